@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// slice2c: Slice files into C90 stubs and skeletons for IceC.
+// slice2c: compiles Slice files into C90 stubs and skeletons for IceC.
 
 #include "c/context.h"
 #include "front/front.h"
@@ -110,7 +110,7 @@ std::string shown(const std::string& file) {
     return relative.empty() || *relative.begin() == ".." ? path.string() : relative.string();
 }
 
-// Returns a rule for make. `files`: the Slice file and all files that it includes.
+// Returns a rule for make. `files` are the Slice file and all files that it includes.
 std::string dependencyRule(const std::string& file, const CFileNames& names,
                            const std::vector<std::string>& files) {
     std::string rule = names.base + "." + names.headerExtension;
@@ -155,8 +155,8 @@ bool saveHardware(const std::vector<hw::Block>& blocks, const Options& o) {
     return true;
 }
 
-// The definitions of all files of one program, with their places. A C name must be unique among
-// them, and so must a file name, since it becomes the name of a header.
+// The definitions of all files of one program, with their positions. C names must be unique among
+// them. File names must also be unique, because headers are named after them.
 class Program {
 public:
     void add(const Unit& unit, Diagnostics& diagnostics) {
@@ -182,10 +182,10 @@ private:
     std::map<std::string, std::string> headers_, definitions_;
 };
 
-// What the files of a command line have in common.
+// Data that the files of a command line share.
 struct Collected {
-    std::string rules;                                                   // --depend
-    Program program;                                                     // --one-program
+    std::string rules; // --depend
+    Program program;   // definitions for the option --one-program
     nlohmann::ordered_json described = nlohmann::ordered_json::object(); // --describe
 };
 
@@ -211,7 +211,7 @@ bool compile(const std::string& file, const Options& o, Collected& all) {
     }
     Diagnostics diagnostics(std::cerr);
     Unit unit = compileUnit(p.text, file, o.rules, diagnostics);
-    if (o.describe) { // C's limits do not matter
+    if (o.describe) { // limits of C do not apply to a description
         if (diagnostics.errors() == 0)
             describeUnit(unit, all.described);
         return diagnostics.errors() == 0;

@@ -34,9 +34,9 @@ struct Preprocessed {
     std::vector<std::string> includes; // files included directly
 };
 
-// `options`: -I, -D, -U as for the C preprocessor.
+// Preprocesses a file. `options` are -I, -D and -U as for the C preprocessor.
 Preprocessed preprocess(const std::string& file, const std::vector<std::string>& options);
 
-// The unit of a preprocessed file; errors are in `diagnostics`.
+// Returns the unit of a preprocessed file. Errors are reported to `diagnostics`.
 Unit compileUnit(const std::string& text, const std::string& file, NameRules rules,
                  Diagnostics& diagnostics);

@@ -9,7 +9,7 @@
 #include "base.h"
 
 #define LINES 50U     /* lines of the microcontroller */
-#define FPGA_PINS 55U /* of these and of the modem */
+#define FPGA_PINS 55U /* number of the FPGA's pins, for these lines and for the modem */
 #define CHANNELS 3U
 
 /* Numbers of lines and of the FPGA's pins; see line_tester.v. */
@@ -40,12 +40,12 @@ typedef struct Pins {
 } Pins;
 
 typedef struct Answer {
-    U32 id, clocks, edges; /* clocks: units of 64 clocks of the board, modulo 65536 */
+    U32 id, clocks, edges; /* clocks: clocks of the board in units of 64, modulo 65536 */
     Pins pins;
-    Pins early; /* the modem's pins, shortly after the last frame drove its pins */
+    Pins early; /* levels of the modem's pins shortly after the last frame set their drivers */
 } Answer;
 
-/* What the tester drives. */
+/* Levels and enables of the tester's outputs. */
 extern Pins lines_value, lines_enable;
 
 const char* Lines_name(U32 line);
@@ -62,16 +62,18 @@ int Lines_idleNwait(void);
 int Pins_get(const Pins* pins, U32 pin);
 void Pins_set(Pins* pins, U32 pin, int high);
 
-/* Looks for the tester on each channel. Returns a bit for each channel that answers, and keeps the
- * first one for Lines_exchange. */
+/* Tries to reach the tester on each channel. Returns a bit for each channel that answers, and keeps
+ * the first one for Lines_exchange. */
 U32 Lines_find(void);
-/* Returns 1 for the three lines of the channel in use. They work, since the tester answers. */
+/* Returns 1 if the line belongs to the channel in use. Its three lines work, because the tester
+ * answers. */
 int Lines_isChannels(U32 line);
-/* Gives the tester what to drive, and returns what it saw before. Returns 0 if it does not answer.
- */
+/* Sets what the tester drives, and returns in `answer` what it saw before. Returns 0 if the
+ * tester does not answer. */
 int Lines_exchange(Answer* answer);
 
-/* The steps. `found`: Lines_find's channels, 0 if the tester does not answer. */
+/* Steps of the test. `found` is the result of Lines_find: the channels that work; 0 if the
+ * tester does not answer. */
 void Lines_testAlone(U32 found);   /* stuck lines and shorts, without the FPGA */
 void Lines_testThrough(U32 found); /* open, swapped and inverted lines */
 void Lines_testClock(void);        /* the FPGA's clock, and the edges of NWE */

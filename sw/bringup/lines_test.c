@@ -2,9 +2,9 @@
  *
  * lines_test: finds stuck, shorted, open, swapped and inverted lines, and names them.
  *
- * Alone, the microcontroller drives one line at a time and holds all others by weak pulls: what
- * follows is shorted. Through the FPGA, each line carries a number of its own, bit by bit and then
- * inverted: the number that arrives names the line at the other end.
+ * Without the FPGA, the microcontroller drives one line at a time and holds all others by weak
+ * pulls: a line that follows is shorted. With the FPGA, each line transmits a different number, bit
+ * by bit and then inverted. The received number identifies the line at the other end.
  */
 #include "board_pins.h"
 #include "bringup.h"
@@ -12,17 +12,19 @@
 #include "lines.h"
 #include "timing.h"
 
-#define SETTLE_US 20U /* an open line of 100 pF at a pull of 40 kOhm */
-#define CODE_BITS 7U  /* one more than the numbers need: no number is another one inverted */
+#define SETTLE_US 20U /* settling time: an open line of 100 pF with a pull of 40 kOhm */
+/* one bit more than needed, so that no number is the inverse of another one */
+#define CODE_BITS 7U
 #define CODE_MASK 127U
 #define NONE 255U
 
 typedef enum Fate { GOOD, STUCK, DRIVEN_LOW, DRIVEN_HIGH, SHORTED, OPEN, MOVED, INVERTED } Fate;
 
 static U8 fate[LINES];
-static U8 arrives[LINES]; /* the line whose number arrived at the FPGA's pin */
+static U8 arrives[LINES]; /* for each line, the line with the number that arrived at the FPGA's
+                           * pin */
 
-/* A line whose level only the FPGA drives, in operation. A buffer may be in its way. */
+/* Returns whether only the FPGA drives this line in operation. Such a line may contain a buffer. */
 static int isOutput(U32 line) {
     return line == LINE_NWAIT || line == LINE_IRQ;
 }
@@ -62,7 +64,8 @@ static void reportStuck(U32 line, int high) {
                     "a short to ground, or another part that drives it");
 }
 
-/* `found`: the tester answers, and can still show that something inverts a line it drives. */
+/* `found` is not 0 if the tester answers. It can then later detect an inverter in a line that it
+ * drives. */
 static void testStuck(U32 found) {
     U8 down[LINES], up[LINES];
     U32 i;
@@ -134,8 +137,8 @@ static int failExchange(void) {
     return 0;
 }
 
-/* Sends numbers from the microcontroller, and fills `first` and `second` with what each pin of the
- * FPGA has seen: its bits, and its bits of the inverted passes. */
+/* Sends numbers from the microcontroller, and fills `first` and `second` with the numbers that each
+ * pin of the FPGA has received in the normal and the inverted passes. */
 static int sendCodes(U8* first, U8* second) {
     Answer answer;
     U32 i, pass;

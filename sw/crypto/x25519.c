@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * x25519: Montgomery's ladder modulo p = 2^255 - 19, in words of 16 bits, the lowest first.
- * A number stays below 2^256, not below p: what goes beyond 2^256 counts 38.
+ * Numbers are kept below 2^256, not below p. A carry of 2^256 is replaced by 38, because both are
+ * equal modulo p.
  */
 #include "x25519.h"
 
@@ -10,7 +11,7 @@
 #include <string.h>
 
 #define WORDS 16
-#define A24 121665U /* constant of the curve, (486662 - 2) / 4 */
+#define A24 121665U /* constant of the curve: (486662 - 2) / 4 */
 
 typedef U16 Number[WORDS];
 
@@ -121,7 +122,7 @@ static void exchange(U16* a, U16* b, U32 isWanted) {
     }
 }
 
-/* Reduces a number below p: counts bit 255 as 19, then subtracts p if the result is not
+/* Reduces a number below p: replaces bit 255 by 19, then subtracts p if the result is not
  * negative. */
 static void normalize(U16* r) {
     Number less;
@@ -185,7 +186,8 @@ void X25519(U8* result, const U8* number, const U8* point) {
     for (i = 254; i >= 0; --i) {
         U32 bit = (U32)number[i >> 3] >> (i & 7) & 1U;
         if (i == 254)
-            bit = 1; /* this bit is set, and the three lowest are not */
+            bit = 1; /* this bit of the scalar is always set, and the three lowest bits are
+                      * always clear */
         if (i < 3)
             bit = 0;
         exchange(l.x2, l.x3, swapped ^ bit);

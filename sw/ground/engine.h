@@ -18,7 +18,7 @@
 
 namespace XBeeAT {
 
-constexpr size_t mostPeers = 32; // peers of a modem
+constexpr size_t mostPeers = 32; // largest number of peers of a modem
 
 class Engine : private Peer::Host {
 public:
@@ -44,7 +44,8 @@ private:
     U32 pollPeers(U32 now);
     bool downTooLong(U32 now);
     void fail(const std::string& text);
-    // Waits like ModemSetup::Wait; negative: the engine must stop, or the port is lost.
+    // Waits as ModemSetup::Wait defines. Returns a negative number if the engine must stop, or if
+    // the port is lost.
     int waitMs(int ms, bool forBytes);
     bool any(bool (Peer::*is)() const) const;
     void readSerial(U32 now);
@@ -56,10 +57,11 @@ private:
     int wakePipe_[2] = {-1, -1};
     // failed_: the port is lost, or no modem answered; complained_: that was logged as an error.
     bool stop_ = false, failed_ = false, complained_ = false;
-    U32 longest_ = 0;                            // bytes of a frame; 0: the modem is not ready
-    std::map<int, std::unique_ptr<Peer>> peers_; // by address; never removed
-    U32 upAt_ = 0, downLimitUs_ = 0;  // time at which a link was last up; longest time that all may
-                                      // be down
+    U32 longest_ = 0;                            // size of the largest frame, bytes; 0 if the modem
+                                                 // is not ready
+    std::map<int, std::unique_ptr<Peer>> peers_; // peers by address; a peer is never removed
+    U32 upAt_ = 0, downLimitUs_ = 0;  // time at which a link was last up; longest time for which
+                                      // all links may be down
     std::condition_variable changed_; // signals changes of stop_ and of requests
     std::thread thread_;
 };

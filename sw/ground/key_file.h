@@ -27,8 +27,9 @@ std::string readSecret(const std::string& path);
 
 class KeyFile {
 public:
-    KeyFile() = default; // has no keys: every vehicle is talked to in the clear
-    // Throws std::runtime_error, with advice, also if a line is invalid.
+    KeyFile() = default; // without keys: communication with every vehicle is unencrypted Reads a
+                         // file. Throws
+    // std::runtime_error, with advice, if readSecret does or if a line is invalid.
     explicit KeyFile(const std::string& path);
 
     // Returns the keys of a vehicle; throws std::runtime_error if the file has none.
@@ -36,7 +37,7 @@ public:
 
 private:
     std::string path_;
-    std::map<int, LinkKeys> keys_; // by address, or `anyVehicle`
+    std::map<int, LinkKeys> keys_; // keys by address, or by `anyVehicle`
 };
 
 } // namespace XBeeAT

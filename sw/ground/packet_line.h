@@ -20,14 +20,14 @@ namespace XBeeAT {
 
 class PacketLine {
 public:
-    // Interface of a peer, as the line uses it.
+    // Interface of a peer that sends packets on this line.
     class Sender {
     public:
         explicit Sender(int address) : address_(address) {}
         virtual ~Sender() = default;
         int address() const { return address_; }
-        virtual bool isUp() const = 0;      // it has a session
-        virtual U32 randomWait() const = 0; // RN for its traffic
+        virtual bool isUp() const = 0;      // returns whether the peer has a session
+        virtual U32 randomWait() const = 0; // returns RN for the peer's traffic
 
         uint64_t airUs = 0; // air time used
 
@@ -39,34 +39,35 @@ public:
 
     explicit PacketLine(SerialPort& serial) : serial_(serial) {}
 
-    // A new sender has had as much of the air as the one that sent last.
+    // Adds a sender. It is treated as if it had used as much air time as the sender that sent last.
     void join(Sender& sender) {
         sender.airUs = airUs_;
         senders_.push_back(&sender);
     }
-    // The modem is set up; it answers for each packet in API mode. `target`: DL.
+    // Starts the line after the modem has been set up. With `isApi`, the modem answers for each
+    // packet. `target` is DL.
     void start(bool isApi, bool escapes, int target) {
         out_.clear();
         target_ = target;
         api_ = isApi ? std::make_unique<ApiModem>(escapes) : nullptr;
     }
     bool isApi() const { return api_ != nullptr; }
-    // Reaches several vehicles only in API mode.
+    // Returns whether a sender's packets can reach its target; several vehicles need API mode.
     bool reaches(const Sender& sender, bool hasLink) const {
         return api_ || (sender.address() == target_ && hasLink);
     }
 
-    // Takes a packet while the line is free. Returns whether it did.
+    // Sends a packet if the line is free. Returns whether the packet was accepted.
     bool send(Sender& sender, const U8* frame, U32 size, U32 now);
-    // Reads the available bytes, and calls `deliver` and, per packet sent, `answer`. Returns
-    // read()'s result.
+    // Reads the available bytes. Calls `deliver` for received bytes, and `answer` for each sent
+    // packet that the modem has answered. Returns the result of read().
     ssize_t read(const Deliver& deliver, const Answer& answer);
-    // Calls `answer(false)` for each packet that the modem will not answer for any more.
+    // Calls `answer(false)` for each packet that the modem will no longer answer.
     void expire(U32 now, const Answer& answer) {
         if (api_)
             api_->expire(now, [&] { answer(false); });
     }
-    // Writes the bytes that the port has not taken yet.
+    // Writes the bytes that the port has not accepted yet.
     void flush();
     bool isFlushed() const { return out_.empty(); }
 
@@ -74,7 +75,7 @@ private:
     SerialPort& serial_;
     std::vector<Sender*> senders_;
     std::unique_ptr<ApiModem> api_; // null in transparent mode
-    std::vector<U8> out_;           // bytes of the packet that the port has not taken yet
+    std::vector<U8> out_;           // bytes of the packet that the port has not accepted yet
     uint64_t airUs_ = 0;            // airUs of the sender that sent last
     int target_ = 0;
 };

@@ -15,19 +15,22 @@ namespace XBeeAT {
 
 struct Settings {
     std::string device;
-    int baud = 115200;    // target; 115200 is the modem's BD 7, really 111,111
+    int baud = 115200;    // baud rate of the modem after set-up; 115200 stands for BD 7, which
+                          // really is 111,111
     int source = 0x0000;  // MY
     int target = 0x0001;  // DL
     int rfChannel = 0x0C; // CH
     int pan = 0x3332;     // ID
     LinkKeys keys;        // keys of the link's sessions
-    std::string modemKey; // AES, up to 32 hexadecimal digits; empty: the modem's setting stays
-    int guardMs = 1000;   // the modem's present guard time
-    bool setUp = true;    // set up the modem by AT commands
-    bool isApi = true;    // API mode, if the modem is set up and has it
-    bool isWire = false;  // no modems: the port is wired to the vehicle's board
+    std::string modemKey; // AES key, up to 32 hexadecimal digits; an empty key leaves the modem's
+                          // setting unchanged
+    int guardMs = 1000;   // guard time that the modem has now, ms
+    bool setUp = true;    // true: set the modem up by AT commands
+    bool isApi = true;    // true: use API mode, if the modem is set up and supports it
+    bool isWire = false;  // true: there are no modems, and the port is wired to the vehicle's board
     int downMs = 15000;   // time without a link after which the modem is set up again, ms
-    int idleMs = 60000;   // a program silent this long makes room for one that waits; 0: never
+    int idleMs = 60000;   // silence after which a program loses its channel to a waiting program,
+                          // ms; 0 disables this
 
     // Returns a random number for sessions; tests may replace it.
     std::function<unsigned()> random = [] { return std::random_device()(); };
@@ -40,12 +43,12 @@ struct Settings {
         return duration_cast<milliseconds>(now).count() / 250 - 1767225600LL * 4;
     };
 
-    // Packets that may wait for the modem's result (Link_expectAnswers).
+    // Returns the number of packets that may wait for the modem's result (Link_expectAnswers).
     unsigned mostWaiting() const { return baud > 115200 ? 2 : 3; }
     double characterUs() const { return 1e7 / (baud == 115200 ? 111111 : baud); }
 };
 
-// Levels: 0 error, 1 link and connections, 2 AT commands.
+// Log function. Levels: 0 errors, 1 link and connections, 2 AT commands.
 using Log = std::function<void(int level, const std::string& text)>;
 
 } // namespace XBeeAT

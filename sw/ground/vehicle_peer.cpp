@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// vehicle_peer: callbacks from the link, and requests to it.
+// vehicle_peer: connects programs with the link to a vehicle: callbacks from the link, and requests
+// to the link.
 
 #include "vehicle_peer.h"
 
@@ -63,7 +64,7 @@ int VehiclePeer::onMessage(void* context, int channel, const U8* data, U32 size)
     return 0;
 }
 
-// The link's channel of a program is closed.
+// Records that the link has closed a program's channel.
 void VehiclePeer::leave(ProgramConnection& program) {
     if (!program.is(ProgramConnection::State::Wanted))
         lost_ += program.leave(host_.clock.nowUs());
@@ -168,7 +169,7 @@ void VehiclePeer::stop(U32 now) {
     reportLost();
 }
 
-// Gives bytes to the link as the line brings them.
+// Passes bytes to the link as they arrive on the line.
 void VehiclePeer::receive(const U8* bytes, size_t size, U32 now) {
     if (!yielding_.admits(bytes, size, now))
         return;
@@ -183,7 +184,7 @@ void VehiclePeer::receive(const U8* bytes, size_t size, U32 now) {
         yielding_.heard(s.framesReceived != frames);
 }
 
-// A vehicle only calls a ground station with address 0 by itself.
+// By itself, a vehicle only calls a ground station with address 0.
 void VehiclePeer::yieldOrResume(U32 now) {
     const bool connects = Link_state(link_.get()) == LINK_STATE_CONNECTING;
     switch (yielding_.poll(connects, host_.settings.source != 0, now)) {

@@ -21,10 +21,10 @@ public:
     void reset() { isYielded_ = isLost_ = hearsOther_ = false; }
     bool isYielded() const { return isYielded_; }
 
-    // Takes bytes from the vehicle before the link does. Returns false if the link must not get
-    // them: while yielded, only the vehicle's HELLO at the beginning of a packet counts, because it
-    // means that the vehicle has no session. The HELLO is in hello(); `bytes` and `size` are set to
-    // the bytes after it.
+    // Examines bytes from the vehicle before the link processes them. Returns false if the link
+    // must not get the bytes. While this side has yielded, only a HELLO of the vehicle at the
+    // beginning of a packet is accepted, because it means that the vehicle has no session. The
+    // HELLO is in hello(); `bytes` and `size` are set to the bytes after it.
     bool admits(const U8*& bytes, size_t& size, U32 now) {
         if (now - heardAt_ >= LINK_FRAME_GAP)
             headSize_ = 0;
@@ -37,15 +37,16 @@ public:
                head_[1] == LINK_VERSION;
     }
     const U8* hello() const { return head_; }
-    // Notes whether the frame that was heard last belongs to this side's session.
+    // Records whether the last frame that was heard belongs to this side's session.
     void heard(bool isOwn) { hearsOther_ = !isOwn; }
-    // The session has changed its state.
+    // Records that the session has begun or ended.
     void sessionIs(bool isUp, U32 now) {
         isLost_ = !isUp && hearsOther_ && now - heardAt_ < speaksWithinUs;
     }
 
-    // Returns the next action. `connects`: the link calls the vehicle; `callsAgain`: the vehicle
-    // does not call this ground station by itself, so that this side calls after a minute.
+    // Returns the next action. `connects` is true if the link calls the vehicle. `callsAgain` is
+    // true if the vehicle does not call this ground station by itself; this side then calls after a
+    // minute.
     enum class Step { None, Yield, Resume };
     Step poll(bool connects, bool callsAgain, U32 now) {
         const bool yields = isLost_ && connects;
@@ -64,11 +65,11 @@ public:
     void resume() { isYielded_ = hearsOther_ = false; }
 
 private:
-    static constexpr U32 quietUs = LINK_AGE_LAST; // silence after which the other side has lost the
-                                                  // vehicle
+    static constexpr U32 quietUs = LINK_AGE_LAST; // silence after which the other ground station
+                                                  // has lost the vehicle
     static constexpr U32 longestUs = 60'000'000;
     // A vehicle with a session sends at least this often, because it is pinged when silent. Earlier
-    // bytes are a frame cut by a reset.
+    // bytes belong to a frame that a reset has cut.
     static constexpr U32 speaksWithinUs = LINK_PING_AFTER + 4 * LINK_PING_EVERY;
 
     bool isYielded_ = false;

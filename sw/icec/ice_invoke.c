@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Records which limit was reached, or which other failure happened, for Ice_ObjectPrx_failure.
- * `bound`: the stream's. */
+ * `bound` is the field of the stream. */
 static Ice_Status fail(Ice_ObjectPrxPtr self, Ice_Status status, int why, const char* bound) {
     self->reason = Ice_Failed_text((Ice_Byte)why, bound);
     return status;
@@ -45,8 +45,8 @@ static Ice_Status connect(Ice_ObjectPrxPtr self) {
     if (self->mode >= ICE_DATAGRAM)
         return ICE_NO_ENDPOINT;
     if (self->versions[0] != 1 || self->versions[2] != 1)
-        return ICE_PROTOCOL; /* no common version with the object */
-    if (self->generation)    /* the only connection of a fixed proxy */
+        return ICE_PROTOCOL; /* this side has no version in common with the object */
+    if (self->generation)    /* a fixed proxy has only this connection */
         return icec_countPending(ic, self->connection, self->generation, 0) ? ICE_OK
                                                                             : ICE_CONNECTION_LOST;
     Ice_InputStream_init(&is, self->endpoints + 1, self->endpointsSize - 1);
@@ -66,7 +66,8 @@ static Ice_Status connect(Ice_ObjectPrxPtr self) {
 }
 
 Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int* connection) {
-    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "", 0); /* to get a slot for waiting */
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "", 0); /* takes a slot in which the task
+                                                                * can wait */
     if (!os)
         return (Ice_Status)self->status;
     icec_unlock(self->communicator, ICE_LOCK_SEND);
@@ -85,14 +86,15 @@ static void writeContext(Ice_OutputStreamPtr os, const Ice_ContextEntry* context
     }
 }
 
-/* Writes a request up to its parameters; in a batch it has neither head nor id. */
+/* Writes a request up to its parameters. In a batch, a request has neither header nor id. */
 static void beginRequest(Ice_ObjectPrxPtr self, const char* operation, Ice_Byte mode) {
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_OutputStreamPtr os = &ic->request;
     Ice_OutputStream_init(os, ic->requestData, ICE_REQUEST_MAX);
     if (!self->batch) {
         if (self->mode == ICE_TWOWAY) {
-            ic->lastId = (ic->lastId & 0x3FFFFFFF) + 1; /* never 0, which marks a one-way request */
+            ic->lastId = (ic->lastId & 0x3FFFFFFF) + 1; /* an id is never 0, which marks a
+                                                         * one-way request */
             self->id = ic->lastId;
         }
         icec_beginMessage(os, ICEC_REQUEST);
@@ -161,7 +163,7 @@ static Ice_Status sendRequest(Ice_ObjectPrxPtr self, Ice_Callback callback, void
     return icec_send(self->communicator, self->connection, os);
 }
 
-/* Sends, and releases the buffer. */
+/* Sends the request, and releases the buffer. */
 static Ice_Status sendAndUnlock(Ice_ObjectPrxPtr self, Ice_Callback callback, void* cookie) {
     Ice_Status status = sendRequest(self, callback, cookie);
     icec_unlock(self->communicator, ICE_LOCK_SEND);
@@ -193,13 +195,14 @@ Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callbac
     Ice_Status status = sendAndUnlock(self, callback, cookie);
     if (status != ICE_OK || self->mode != ICE_TWOWAY)
         return Ice_ObjectPrx_end(self, status);
-    /* Wakes the receiving task, so that it sleeps at most until this call times out. */
+    /* Wakes the receiving task, so that it does not sleep longer than until this call times out. */
     if (isWaiting(ic, slot))
         icec_wake(ic);
     return ICE_OK;
 }
 
-/* Status, encapsulation and a one-byte result contain nothing to point to. */
+/* Size up to which a reply's body (status, encapsulation, a result of one byte) contains nothing
+ * to which a pointer could refer. */
 #define NOTHING_KEPT 8
 
 Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status) {

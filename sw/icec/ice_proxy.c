@@ -13,7 +13,7 @@ void icec_initProxy(Ice_ObjectPrxPtr prx, Ice_CommunicatorPtr ic) {
     prx->communicator = ic;
     prx->timeoutMs = ICE_TIMEOUT_MS;
     prx->minor = 1;
-    prx->endpointsSize = 2; /* no endpoints, no adapter's id */
+    prx->endpointsSize = 2; /* no endpoints and no adapter id */
     if (ICEC_FULL) {
         prx->call = prx->connection = -1;
         memset(prx->versions, 1, sizeof prx->versions);
@@ -66,7 +66,8 @@ static void adoptEncoding(Ice_CommunicatorPtr ic, Ice_Byte* endpoints, Ice_Byte 
     Ice_Byte* at = endpoints + 1;
     int n;
     for (n = endpoints[0]; n > 0; --n) {
-        Ice_Int size = 2 + at[2]; /* type, and an encapsulation: at most ICE_ENDPOINT_MAX */
+        Ice_Int size = 2 + at[2]; /* size of an endpoint: its type and its encapsulation, at most
+                                   * ICE_ENDPOINT_MAX */
         Ice_OutputStream nothing;
         Ice_OutputStream_init(&nothing, 0, 0);
         if (at[7] != minor && icec_printEndpoint(ic, at, size, &nothing))
@@ -81,7 +82,8 @@ void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx)
         return;
     }
     if (ICEC_FULL && prx->generation)
-        os->failed = ICE_FAILED_MALFORMED; /* a fixed proxy's connection only exists here */
+        os->failed = ICE_FAILED_MALFORMED; /* the connection of a fixed proxy exists in this
+                                            * process only */
     Ice_OutputStream_writeBlob(os, prx->identity, prx->identitySize);
     Ice_OutputStream_writeShort(os, (Ice_Short)(prx->mode | prx->secure << 8));
     if (ICEC_FULL && os->minor != 0)
@@ -93,7 +95,8 @@ void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx)
         adoptEncoding(prx->communicator, os->data + os->size - prx->endpointsSize, os->minor);
 }
 
-/* Appends bytes of the message to those already kept. Returns 0 without room. */
+/* Appends bytes of the message to those that the proxy already has. Returns 0 if there is no
+ * room. */
 static int keep(Ice_InputStreamPtr is, Ice_Int begin, Ice_ObjectPrxPtr prx) {
     Ice_Int size = is->position - begin;
     if (is->failed || size > ICE_ENDPOINT_MAX - prx->endpointsSize)
@@ -116,12 +119,14 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
         is->failed = ICE_FAILED_IDENTITY;
     prx->mode = Ice_InputStream_readByte(is);
     prx->secure = Ice_InputStream_readBool(is);
-    prx->minor = is->minor; /* 1.0 sends no version: the stream's applies */
+    prx->minor = is->minor; /* encoding 1.0 sends no version with a proxy; the version of the
+                             * stream is used */
     if (ICEC_FULL)
         prx->versions[3] = is->minor;
     if (is->minor != 0) {
         const Ice_Byte* versions = Ice_InputStream_readBlob(is, 4);
-        prx->minor = versions && versions[3] != 0; /* a later version also supports 1.1 */
+        prx->minor = versions && versions[3] != 0; /* a peer with a later version also supports
+                                                    * 1.1 */
         if (ICEC_FULL && versions)
             memcpy(prx->versions, versions, 4);
     }

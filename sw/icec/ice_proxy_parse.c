@@ -18,8 +18,8 @@ U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
     return end == at + size && *at != '-' ? value : 0xFFFFFFFFU;
 }
 
-/* Takes the next word, without its quotes; it ends at a character of `ends`. Escapes are kept.
- * Returns the text after it; 0 if quotes do not match. */
+/* Sets `found` to the next word without its quotes. A word ends at a character of `ends`. Escape
+ * sequences are kept. Returns the text after the word; 0 if its quotes do not match. */
 static const char* word(const char* text, const char* ends, Ice_String* found) {
     const char quote = *text;
     int isQuoted = quote == '"' || quote == '\'';
@@ -197,7 +197,7 @@ static Ice_Status parseAdapter(const char* text, Ice_ObjectPrxPtr prx) {
     if (!text || text[strspn(text, ICEC_SPACES)] != 0)
         return ICE_PARSE;
     Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);
-    os.size = 2; /* no endpoints, the id's size */
+    os.size = 2; /* no endpoints; the size of the adapter id follows */
     icec_unescape(id, 0, &os);
     if (os.failed)
         return icec_parseFailure(&os);
@@ -238,11 +238,13 @@ static Ice_Status parse(const char* text, Ice_ObjectPrxPtr prx) {
     text = word(text, ICEC_SPACES ":@", &identity);
     if (!text)
         return ICE_PARSE;
-    if (identity.size == 0 || (identity.size == 1 && *identity.data == '/')) /* "" and / are null */
+    if (identity.size == 0 || (identity.size == 1 && *identity.data == '/')) /* an empty text and
+                                                                              * "/" are the null
+                                                                              * proxy */
         return text != begin && text[strspn(text, ICEC_SPACES)] == 0 ? ICE_OK : ICE_PARSE;
     for (;;) {
         text += strspn(text, ICEC_SPACES);
-        if (strchr(":@", *text)) /* or at the end */
+        if (strchr(":@", *text)) /* or the text ends */
             break;
         text += strcspn(option.data = text, ICEC_SPACES ":@");
         option.size = (Ice_Int)(text - option.data);

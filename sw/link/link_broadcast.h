@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_broadcast: one packet for all vehicles on the channel, under the group's key.
+ * link_broadcast: encrypts and decrypts packets for all vehicles on the channel, with the group's
+ * key.
  *
  *     byte 0        LINK_BROADCAST, with which no frame of a link begins
  *     1..4          number, the low byte first: quarters of a second since 2026 began
@@ -8,9 +9,9 @@
  *     13..          the message, encrypted
  *     last LINK_TAG tag
  *
- * Nobody acknowledges it, so the ground sends copies. A vehicle keeps the newest number that it has
- * taken, without power too, and takes newer ones only: each message at most once. Without keys the
- * key is all zeros.
+ * Vehicles do not acknowledge the packet, so the ground sends several copies. A vehicle stores the
+ * newest number that it has accepted, even without power, and accepts only newer numbers: so each
+ * message is executed at most once. Without keys, the key is all zeros.
  */
 #pragma once
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_channels: which channels are open. Both sides open and close them; a channel that was closed
- * here cannot be opened again until the peer has answered.
+ * link_channels: records which channels are open. Both sides open and close them; a channel that
+ * was closed here cannot be opened again until the peer has answered.
  */
 #pragma once
 
@@ -10,7 +10,7 @@
 /* Sets of channels, one bit each. */
 typedef struct Link_Channels {
     U8 open;     /* channels on which messages may be sent */
-    U8 closing;  /* closed here; the peer's closing has not arrived */
+    U8 closing;  /* channels that were closed here; the peer's closing has not arrived */
     U8 closeDue; /* closings of this side that are not queued yet */
 } Link_Channels;
 
@@ -27,10 +27,10 @@ typedef struct Link_Channels {
 /* Records that an opening has been queued here. */
 #define LINK_OPEN(channels, channel) ((channels)->open = (U8)((channels)->open | 1U << (channel)))
 
-/* Records that an open channel is closed here. `isQueued`: its closing is in the queue. */
+/* Records that an open channel is closed here. `isQueued` is 1 if its closing is in the queue. */
 void link_closeChannel(Link_Channels* channels, U32 channel, int isQueued);
 
-/* Notes that a closing that was due is in the queue now. */
+/* Records that a closing that was due has been queued. */
 #define LINK_NOTE_CLOSING(channels, channel) \
     ((channels)->closeDue = (U8)((channels)->closeDue ^ 1U << (channel)))
 

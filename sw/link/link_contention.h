@@ -11,8 +11,8 @@
 
 /* Traffic of one side. */
 typedef struct Link_Traffic {
-    U32 before;  /* bytes before the present span */
-    U8 isStream; /* 1: sends much */
+    U32 before;  /* bytes before the current span */
+    U8 isStream; /* 1: the side sends a stream */
 } Link_Traffic;
 
 typedef struct Link_Contention {
@@ -20,15 +20,16 @@ typedef struct Link_Contention {
     U32 since, messages; /* start of the present span, and messages received before it */
     U32 lostAt;          /* time of the last loss, us */
     U8 hasLost;          /* 1: `lostAt` is recent */
-    U8 isCalled;         /* 1: the peer calls during an own stream */
-    U8 isBusy;           /* 1: the radio has had a packet since its last answer */
+    U8 isCalled;         /* 1: the peer calls while this side sends a stream */
+    U8 isBusy;           /* 1: the radio has had a packet all the time since its last answer */
     U32 answeredAt;      /* time of the last result of the radio, us */
     U32 rest;            /* longest pause after the next loss, us */
-    U32 usualUs;         /* mean time of a packet that arrives, us */
-    U32 quick;           /* share of the last packets, of 65,536, lost within that time */
+    U32 usualUs;         /* mean time of a packet that is delivered, us */
+    U32 quick;           /* share of the last packets, in 1/65,536, that were lost within that
+                          * time */
 } Link_Contention;
 
-/* Returns whether the peer calls during an own stream, and sends none itself. */
+/* Returns whether the peer calls while this side sends a stream, and sends no stream itself. */
 #define LINK_IS_CALLED(c) ((c)->isCalled && !(c)->peers.isStream)
 
 /* Records the radio's result for a packet at time `now`. `silence`: time since the peer was heard,

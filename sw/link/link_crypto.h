@@ -6,12 +6,12 @@
 
 #include "link_frame.h"
 
-#define LINK_NONCE_BYTES 8U   /* nonce of each side in the handshake under a key */
+#define LINK_NONCE_BYTES 8U   /* size of each side's nonce in a handshake with a key */
 #define LINK_PUBLIC_BYTES 32U /* public key, which HELLO-ACK and CONFIRM carry */
-#define LINK_PUBLIC_AT (LINK_HEADER + 2U * LINK_NONCE_BYTES) /* its offset in such a frame */
-#define LINK_ANSWER_BYTES                                                  \
-    (2U * LINK_NONCE_BYTES + LINK_PUBLIC_BYTES) /* payload of such a frame \
-                                                 */
+/* offset of the public key in such a frame */
+#define LINK_PUBLIC_AT (LINK_HEADER + 2U * LINK_NONCE_BYTES)
+#define LINK_ANSWER_BYTES \
+    (2U * LINK_NONCE_BYTES + LINK_PUBLIC_BYTES) /* payload of such a frame, bytes */
 
 /* Keys of both directions: for frames of the vehicle, then for frames of the ground. */
 typedef struct Link_Keys {
@@ -21,10 +21,10 @@ typedef struct Link_Keys {
 /* Secret of a Link, derived from the key that Link_setKey supplies and the vehicle's address. */
 typedef struct Link_Secret {
     U8 key[LINK_KEY_BYTES];
-    U8 hello[LINK_KEY_BYTES]; /* key of HELLOs, derived from the first */
+    U8 hello[LINK_KEY_BYTES]; /* key for HELLO frames, derived from the first key */
 } Link_Secret;
 
-/* Ephemeral X25519 pair (forward secrecy). It makes the keys of one session. */
+/* Ephemeral X25519 key pair, for forward secrecy. It is used for the keys of one session. */
 typedef struct Link_KeyPair {
     U8 privateKey[LINK_PUBLIC_BYTES], publicKey[LINK_PUBLIC_BYTES];
 } Link_KeyPair;
@@ -36,8 +36,8 @@ void link_makeSecret(Link_Secret* secret, const U8* key, U32 address);
 void link_deriveKeys(const Link_Secret* secret, const U8* vehicles, const U8* grounds,
                      Link_Keys* keys);
 
-/* Makes the key pair from 32 random bytes. This takes long (docs/link.md), as does link_mixKeys:
- * both are called only for a peer that has the key, once per session. */
+/* Makes the key pair from 32 random bytes. This function and link_mixKeys take a long time
+ * (docs/link.md). Both are called once per session, and only for a peer that has the key. */
 void link_makePair(Link_KeyPair* pair, U32 (*random)(void* context), void* context);
 
 /* Derives the keys of the session from the keys of the handshake and the public key of the peer.

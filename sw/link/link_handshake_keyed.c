@@ -7,22 +7,22 @@
 
 #include <string.h>
 
-/* Costs of opening a frame, rounds of Ascon. */
-#define ROUNDS_HELLO 48U /* under the keys of both slots */
+/* Costs of opening a frame, in rounds of Ascon. */
+#define ROUNDS_HELLO 48U /* HELLO, tried with the keys of both slots */
 #define ROUNDS_ANSWER 168U
 
 static int isSameNonce(const U8* a, const U8* b) {
     return memcmp(a, b, LINK_NONCE_BYTES) == 0;
 }
 
-/* Returns whether a CONFIRM belongs to the present session. */
+/* Returns whether a CONFIRM belongs to the current session. */
 static int isOfSession(const Link_Handshake* handshake, const U8* nonces) {
     const Link_Identity* present = &handshake->present;
     return handshake->state == LINK_STATE_UP && isSameNonce(nonces, present->peerNonce) &&
            isSameNonce(nonces + LINK_NONCE_BYTES, present->nonce);
 }
 
-/* Prepares the session with the peer's nonce under the key of a slot. */
+/* Prepares the session with the nonce of the peer and the key of a slot. */
 static void makeKeyed(Link_Handshake* handshake, U32 slot, const U8* frame) {
     Link_Identity* candidate = &handshake->candidate;
     int isGround = handshake->isGround;
@@ -34,12 +34,12 @@ static void makeKeyed(Link_Handshake* handshake, U32 slot, const U8* frame) {
                     &candidate->secrets.handshake);
 }
 
-/* Takes fresh and relevant frames only; this check takes no round of Ascon. */
+/* Accepts only frames that are fresh and relevant. This check costs no round of Ascon. */
 static U32 cost(const Link_Handshake* handshake, const U8* frame) {
     const U8* nonces = frame + LINK_HEADER;
     Link_Kind kind = LINK_KIND_OF(frame);
     if (isSameNonce(nonces, handshake->nonce))
-        return 0; /* an own frame, reflected */
+        return 0; /* this is a reflected frame of this side */
     if (kind == LINK_KIND_HELLO)
         return (frame[1] & ~LINK_VERSION_UP) == LINK_VERSION ? ROUNDS_HELLO : 0U;
     if (frame[1] != LINK_VERSION)
@@ -61,7 +61,7 @@ static int expect(Link_Handshake* handshake, const U8* frame, U32 attempt, Link_
         seal->key = LINK_PEERS_KEY(&handshake->present, handshake);
         return attempt == 0;
     }
-    if (!((U32)handshake->keys >> attempt & 1U)) /* an attempt for each slot */
+    if (!((U32)handshake->keys >> attempt & 1U)) /* there is one attempt for each slot */
         return 0;
     seal->key = handshake->secrets[attempt].hello;
     if (kind != LINK_KIND_HELLO) {
@@ -88,14 +88,14 @@ static void onHello(Link_Handshake* handshake, const U8* frame, U32 slot) {
                  (isPresent && !handshake->isUnconfirmed)))
         return;
     handshake->lastAnswer = now;
-    if (isPresent) { /* the peer has not heard the CONFIRM */
+    if (isPresent) { /* the peer has not received the CONFIRM */
         link_sendHandshake(handshake, &handshake->present, LINK_KIND_CONFIRM, LINK_VERSION);
         return;
     }
     if (isUp && !handshake->isUnconfirmed) {
         handshake->slot = (U8)slot;
         link_sendHandshake(handshake, 0, LINK_KIND_HELLO, LINK_VERSION | LINK_VERSION_UP);
-    } else { /* an unconfirmed peer may still answer an earlier HELLO, and begin that session */
+    } else { /* an unconfirmed peer may still answer an earlier HELLO, and begin its session */
         makeKeyed(handshake, slot, frame);
         offerPair(handshake);
         link_sendHandshake(handshake, &handshake->candidate, LINK_KIND_HELLO_ACK, LINK_VERSION);
@@ -123,8 +123,8 @@ static U32 onFrame(Link_Handshake* handshake, const U8* frame, U32 attempt) {
                                      : LINK_VERDICT_BEGIN | LINK_VERDICT_UNCONFIRMED;
 }
 
-/* Sends HELLO; if both slots have a key, under each in turn. A peer in an unknown session gets
- * HELLO too, since its answer makes a new session. */
+/* Sends HELLO; if both slots have a key, uses the keys in turn. A peer in an unknown session also
+ * gets a HELLO, because its answer makes a new session. */
 static void sendHello(Link_Handshake* handshake, const U8* unknown) {
     U32 keys = handshake->keys;
     (void)unknown;

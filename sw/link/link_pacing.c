@@ -6,11 +6,12 @@
 
 #include <string.h>
 
-/* Least room in a packet for another fragment and an acknowledgement after it, which has a payload
- * of 9 bytes. */
+/* Smallest room that a packet must have for another fragment followed by an acknowledgement, which
+ * has a payload of 9 bytes. */
 #define LEAST(pacing) (pacing->env.codec->overhead + 10U)
 
-/* Packets for which the modem counts as slow after the radio had no room for one packet. */
+/* Number of packets for which the modem is assumed to be slow after the radio had no room for a
+ * packet. */
 #define SLOW 64U
 
 void link_initPacing(Link_Pacing* pacing, const Link_Identity* session, struct Link* owner,
@@ -37,7 +38,7 @@ void link_noteRoundTrip(Link_Pacing* pacing, U32 us) {
         pacing->fastest = us;
 }
 
-/* Returns the time of a packet and a silence on the line, us. */
+/* Returns the time on the line of a packet and the silence after it, us. */
 static U32 lineOf(const Link_Pacing* pacing, U32 size) {
     return (size + LINK_SILENCE) * pacing->byteTimeUs16 >> 4;
 }
@@ -67,9 +68,9 @@ static int handOverAnswered(Link_Pacing* pacing) {
     return 1;
 }
 
-/* Hands the packet, which has a frame, to the radio. It is padded if another packet may follow
- * while the modem holds it: the modem joins two packets unless the first is full, and all later
- * packets would then begin inside a frame. */
+/* Hands the packet, which contains a frame, to the radio. If another packet may follow while the
+ * modem holds this packet, this packet is padded to its full size. Otherwise the modem would join
+ * both packets, and all later packets would begin inside a frame. */
 static int handOver(Link_Pacing* pacing, int isFollowed) {
     U32 size = pacing->packed;
     U32 full = (U32)pacing->longest + pacing->env.codec->overhead;
@@ -101,7 +102,8 @@ static int handOver(Link_Pacing* pacing, int isFollowed) {
     }
     pacing->slack = slack;
     pacing->early = 0;
-    if (pacing->heard && pacing->fastest > LINK_PACKET_US) { /* a wire has no turns */
+    if (pacing->heard && pacing->fastest > LINK_PACKET_US) { /* over a cable both sides can send
+                                                              * at once */
         U32 heard = pacing->heard;
         U32 wait = timeOf(lineOf(pacing, heard), heard, full) * LINK_HEARD_QUARTERS >> 2;
         pacing->early = (time + wait) / 2U;
@@ -137,8 +139,9 @@ U32 link_paceByAnswer(Link_Pacing* pacing, int isDelivered, U32 silence) {
     U32 rest =
         link_noteAnswer(&pacing->contention, env->now, isDelivered, silence, pacing->waiting != 0);
     pacing->paceUntil = env->now;
-    /* During calls only one packet is in front of a reply: the next one of a stream follows when
-     * the radio is about to need it. A slow line (more than two packets wait) has no such time. */
+    /* While the peer calls, only one packet of a stream may be ahead of a reply. The next packet is
+     * handed over shortly before the radio needs it. This is not possible on a slow line (more than
+     * two packets wait). */
     pacing->isHeld = 0;
     if (pacing->waiting && pacing->mostWaiting == 2U && LINK_IS_CALLED(&pacing->contention)) {
         U32 full = (U32)pacing->longest + env->codec->overhead;
@@ -180,7 +183,8 @@ static int sendSealed(Link_Pacing* pacing, U8* frame, U32 header, const Link_Sea
 int link_sendNow(Link_Pacing* pacing, U8* frame, U32 header, const Link_Seal* seal) {
     if (!sendSealed(pacing, frame, header, seal))
         return 0;
-    (void)link_flush(pacing); /* otherwise it is sent with the packet when the radio has room */
+    (void)link_flush(pacing); /* otherwise the frame is sent with the packet, when the radio has
+                               * room */
     return 1;
 }
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_session: begins and ends sessions, and gives each opened frame to the part that it is for.
+ * link_session: begins and ends sessions, and passes each opened frame to the part of the link that
+ * handles it.
  */
 #pragma once
 
@@ -10,7 +11,7 @@
 
 typedef struct Link_Session {
     U8 wanted;    /* 1: Link_start was called */
-    U32 failures; /* frames of the session with a wrong tag */
+    U32 failures; /* number of the session's frames with a wrong tag */
     Link_Handshake handshake;
     Link_Liveness liveness;
     Link_Receiver receiver;
@@ -20,24 +21,24 @@ typedef struct Link_Session {
 /* Records whether the program wants a session. */
 #define LINK_WANT(session, isWanted) ((session)->wanted = (isWanted))
 
-/* Ends the session, if any: clears its state and reports its end. */
+/* Ends the session, if there is one: clears its state and reports its end. */
 void link_endSession(Link_Session* session, Link_State next);
 
-/* Ends a session that the peer's wish or silence has ended. */
+/* Ends the session because the peer wants this or has been silent for too long. */
 void link_lose(Link_Session* session);
 
-/* Ends the session, if any, on request of this side, and sends BYE. */
+/* Ends the session, if there is one, on request of this side, and sends BYE. */
 void link_abort(Link_Session* session);
 
-/* Returns the cost of trying to open a plausible frame, rounds of Ascon; 0 if it is not for this
- * side. */
+/* Returns the cost of trying to open a plausible frame, in rounds of Ascon; 0 if the frame is
+ * not for this side. */
 U32 link_costOf(const Link_Session* session, const U8* frame);
 
-/* Fills in the seal of a frame, on the assumption that it is genuine. `attempt`: 0 or 1. Returns 0
- * if a genuine frame cannot have a seal. */
+/* Writes the seal that the frame must have to be genuine. `attempt` is 0 or 1. Returns 0 if no
+ * genuine frame of this kind can exist now. */
 int link_expect(Link_Session* session, const U8* frame, U32 attempt, Link_Seal* seal);
 
-/* Acts upon an opened frame; `attempt` is the one that opened it. */
+/* Processes a frame that was opened with the seal of `attempt`. */
 void link_onFrame(Link_Session* session, const U8* frame, U32 attempt);
 
 /* Counts an expected frame that no key of the session could authenticate. A frame of the handshake

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * endpoint_minimal: messages between the run time and the link, in one task.
+ * endpoint_minimal: passes messages between the run time and the link, in one task.
  */
 #include "endpoint_minimal.h"
 
@@ -12,15 +12,15 @@
 #define BODY 7
 #define RETRIES 1000 /* tries to send while the link has no room, 20 ms apart */
 
-/* The head of an encoded endpoint: type, 13 bytes of encapsulation, encoding 1.1. */
+/* Beginning of an encoded endpoint: type, encapsulation of 13 bytes, encoding 1.1. */
 static const Ice_Byte head[HEAD] = {
     XBEE_ENDPOINT_TYPE & 0xFF, XBEE_ENDPOINT_TYPE >> 8, 6 + BODY, 0, 0, 0, 1, 1};
 
-/* Pending events, one bit each, delivered lowest bit first: a message has bit 0. */
+/* Bit of a pending event. The lowest bit is delivered first; the event of a message is bit 0. */
 #define EVENT(kind, channel) \
     (2U << (((U32)(kind) - ICE_EVENT_CLOSED) * LINK_CHANNELS + (U32)(channel)))
 
-/* Cancels a report. Returns 1 if it was not delivered yet. */
+/* Cancels an event. Returns 1 if the event was not delivered yet. */
 static int cancel(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     if (!(self->events & EVENT(kind, channel)))
         return 0;
@@ -36,7 +36,8 @@ static void end(XBeeATEndpoint* self, int channel) {
 
 int XBeeATEndpoint_onMessage(void* context, int channel, const U8* data, U32 size) {
     XBeeATEndpoint* self = context;
-    /* Opening and closing come before it in order, so no other event can be pending. */
+    /* Openings and closings are delivered before messages, so a message is only accepted while
+     * no other event is pending. */
     if (!self->buffer || self->events)
         return 1;
     memcpy(self->buffer, data, size);
@@ -53,8 +54,8 @@ void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
         return;
     if (!isOpen)
         end(self, channel);
-    /* A closing cancels an unseen opening, so at most a closing and then an opening are pending for
-     * a channel, however often the ground restarts. */
+    /* A closing cancels an opening that was not delivered. So at most one closing and one later
+     * opening are pending for a channel, even if the ground restarts often. */
     if (isOpen || !cancel(self, ICE_EVENT_OPENED, channel))
         self->events |= EVENT(isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel);
 }
@@ -72,7 +73,7 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
     if (self->events) {
         while (!(self->events >> first & 1U))
             ++first;
-        self->events &= self->events - 1U; /* without the lowest one */
+        self->events &= self->events - 1U; /* removes the lowest event from the set */
         first = first ? first + LINK_CHANNELS - 1U : self->from;
         event->kind = (Ice_EventKind)(ICE_EVENT_MESSAGE + first / LINK_CHANNELS);
         event->connection = (int)(first % LINK_CHANNELS);
@@ -86,7 +87,7 @@ static Link_Status openOwn(XBeeATEndpoint* self) {
     Link_Status status = LINK_OK;
     if (!self->ownOpen) {
         status = Link_openChannel(self->link, XBEE_OWN_CHANNEL);
-        if (status == LINK_OK) { /* the end of the last connection is not the end of this one */
+        if (status == LINK_OK) { /* a pending closing belongs to the previous connection */
             self->ownOpen = 1;
             self->events &= ~EVENT(ICE_EVENT_CLOSED, XBEE_OWN_CHANNEL);
         }
@@ -126,7 +127,8 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
 
 static void closeChannel(void* context, int channel) {
     XBeeATEndpoint* self = context;
-    /* The ground may have closed it already, and it may belong to a new connection. */
+    /* The ground may already have closed the channel, and the channel may belong to a new
+     * connection. */
     if (!cancel(self, ICE_EVENT_CLOSED, channel)) {
         (void)Link_closeChannel(self->link, channel);
         end(self, channel);
@@ -135,7 +137,7 @@ static void closeChannel(void* context, int channel) {
 
 static Ice_Status listenTo(void* context, const char* options) {
     (void)context;
-    (void)options; /* the radio is always open */
+    (void)options; /* the radio is always open, so there is nothing to do */
     return ICE_OK;
 }
 
@@ -154,7 +156,7 @@ static U32 nowMs(void* context) {
 }
 
 static void wakeUp(void* context) {
-    (void)context; /* one task: none waits */
+    (void)context; /* with one task, no task waits */
 }
 
 void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoint* self, Link* link,

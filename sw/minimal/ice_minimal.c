@@ -63,7 +63,8 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
     target.data = is->data + target.size;
     Ice_InputStream_takeString(is, &current.name);
     Ice_InputStream_takeString(is, &current.category);
-    current.facet.size = Ice_InputStream_readByte(is); /* number of facets: one is not supported */
+    current.facet.size = Ice_InputStream_readByte(is); /* number of facets; a facet is not
+                                                        * supported */
     icec_skipStrings(is, (U32)current.facet.size);
     Ice_InputStream_takeString(is, &current.operation);
     target.size = is->position - target.size;
@@ -89,8 +90,8 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
     return ICE_OK;
 }
 
-/* Handles a message. Returns ICE_OK, or why the connection must be closed: a malformed message
- * loses it. */
+/* Handles a message. Returns ICE_OK, or the status with which the connection must be closed.
+ * After a malformed message the connection is lost. */
 static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, Ice_Int size) {
     Ice_InputStreamPtr is = &ic->is;
     Ice_InputStream_init(is, ic->in, size);
@@ -102,7 +103,7 @@ static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, Ice_Int si
         return dispatch(ic, connection, is);
     case ICEC_REPLY:
         if (Ice_InputStream_readInt(is) == ic->id && connection == ic->connection)
-            ic->call = (Ice_Byte)icec_readReply(is); /* another reply arrived too late */
+            ic->call = (Ice_Byte)icec_readReply(is); /* a reply to an earlier call is ignored */
         return ICE_OK;
     case ICEC_VALIDATE:
         ic->connections[connection] = ICE_OK;
@@ -181,7 +182,7 @@ Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char* opera
     Ice_OutputStream_writeInt(os, self->mode == ICE_TWOWAY ? ic->id : 0);
     Ice_OutputStream_writeBlob(os, self->identity, self->identitySize);
     Ice_OutputStream_writeText(os, operation);
-    Ice_OutputStream_writeShort(os, mode & ~ICE_RESULTS); /* and no context */
+    Ice_OutputStream_writeShort(os, mode & ~ICE_RESULTS); /* the mode; the context is empty */
     ic->body = icec_beginEncapsulation(os);
     return os;
 }
@@ -221,8 +222,8 @@ static const char* optionsOf(Ice_CommunicatorPtr ic, const char* text) {
     return strncmp(text, ic->endpoint->name, size) == 0 && text[size] <= ' ' ? text + size : 0;
 }
 
-/* Parses "name [-t|-o]:transport options"; without a transport, the proxy refers to an object
- * here. */
+/* Parses "name [-t|-o]:transport options"; without a transport, the proxy refers to an object of
+ * this program. */
 static Ice_Status parse(Ice_CommunicatorPtr ic, const char* text, Ice_ObjectPrxPtr prx) {
     size_t size = strcspn(text, " :");
     const char* options = strchr(text, ':');
@@ -231,7 +232,8 @@ static Ice_Status parse(Ice_CommunicatorPtr ic, const char* text, Ice_ObjectPrxP
     if (size - 1U > ICE_IDENTITY_MAX - 4U)
         return ICE_LIMIT;
     prx->identity[0] = (Ice_Byte)size;
-    memcpy(prx->identity + 1, text, size); /* followed by 0: no category, no facet */
+    memcpy(prx->identity + 1, text, size); /* after the name follow two zeros: no category, no
+                                            * facet */
     prx->identitySize = (Ice_Byte)(size + 3U);
     prx->mode = strncmp(text + size, " -o", 3) == 0; /* ICE_ONEWAY */
     if (options) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_minimal: stop and wait.
+ * link_minimal: the minimal link layer: it sends one fragment at a time and waits for its
+ * acknowledgement (stop and wait).
  */
 #include "link_minimal.h"
 
@@ -10,7 +11,7 @@
 /* Bits of a channel's state; LINK_FIRST or LINK_LAST is also set while an opening or closing
  * fragment is due. */
 #define OPEN 1U
-#define CLOSING 2U /* closed here, the peer's closing has not arrived yet */
+#define CLOSING 2U /* channel was closed here; the peer's closing has not arrived yet */
 #define DUE (LINK_FIRST | LINK_LAST)
 
 /* Sends link->frame, which contains its payload (link_seal). A frame for which the radio has no
@@ -29,7 +30,7 @@ static void report(Link* link, Link_Outcome outcome) {
         link->port->writable(link->context);
 }
 
-/* Ends the session, if any: clears its fields and reports its end. */
+/* Ends the session, if there is one: clears its fields and reports its end. */
 static void lose(Link* link) {
     int channel;
     if (link->state != LINK_STATE_UP)
@@ -47,7 +48,7 @@ static void lose(Link* link) {
 
 static void onHello(Link* link, const U8* frame) {
     U32 peerNonce = link_get32(frame + LINK_HEADER);
-    if (peerNonce != link->peerNonce) { /* equal nonces: our answer was lost */
+    if (peerNonce != link->peerNonce) { /* equal nonces mean that our answer was lost */
         lose(link);
         link->peerNonce = peerNonce;
         link->nonce = link->port->random(link->context);
@@ -66,14 +67,14 @@ static void onChannel(Link* link, U32 channel, U32 isOpen) {
     U8* c = link->channels + channel;
     if (*c & CLOSING) {
         if (!isOpen)
-            *c ^= CLOSING; /* the answer to our closing */
+            *c ^= CLOSING; /* this is the answer to our closing */
     } else if (isOpen != (*c & OPEN)) {
         *c = isOpen ? OPEN : LINK_LAST;
         link->port->channel(link->context, (int)channel, (int)isOpen);
     }
 }
 
-/* Takes the expected fragment. A message on a channel that was closed here is dropped. */
+/* Processes the expected fragment. A message on a channel that was closed here is dropped. */
 static void onData(Link* link, const U8* frame, U32 size) {
     U32 flags = frame[2];
     U32 channel = LINK_CHANNEL(flags);
@@ -128,7 +129,8 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
         else if (kind == LINK_KIND_RST && epoch == LINK_KEY_EPOCH(link->key))
             lose(link);
         return;
-    } else if (link->state != LINK_STATE_UP) { /* the peer is in an earlier session */
+    } else if (link->state != LINK_STATE_UP) { /* the frame belongs to an earlier session of the
+                                                * peer */
         link->key = LINK_EPOCH_KEY(epoch) | LINK_NO_SEED;
         transmit(link, LINK_CONTROL_HEADER(LINK_KIND_RST, 0, 0U));
         return;
@@ -148,7 +150,7 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
 }
 
 void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
-    /* A frame begins after a silence, or if it fills the packet. */
+    /* A frame begins after a silence, or directly if its length fills the packet. */
     if (nowUs - link->inputAt > LINK_FRAME_GAP || LINK_LENGTH(bytes) + LINK_OVERHEAD == size)
         link->inputCount = 0;
     link->inputAt = nowUs;
@@ -164,8 +166,8 @@ void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
 
 /* ---- sending ---- */
 
-/* Returns the next fragment's flags; 0 if none. Openings come first, closings after the
- * message. */
+/* Returns the flags of the next fragment; 0 if there is nothing to send. Openings are sent
+ * before the message, closings after it. */
 static U32 cut(Link* link) {
     U32 size, channel, flags;
     link->size = 0;
@@ -235,7 +237,7 @@ void Link_init(Link* link, const Link_Config* config) {
     link->port = config->port;
     link->context = config->context;
     link->retryUs =
-        config->byteTimeUs16 * LINK_MAX_FRAME; /* the time of 16 of the longest frames */
+        config->byteTimeUs16 * LINK_MAX_FRAME; /* duration of 16 frames of maximum size */
 }
 
 void Link_start(Link* link, U32 nowUs) {

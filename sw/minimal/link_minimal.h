@@ -17,25 +17,25 @@ struct Link {
     /* The following fields are 0 when a session begins. */
     U8 channels[LINK_CHANNELS]; /* OPEN, CLOSING, and due fragments */
     U8 ackDue;
-    U8 flags;           /* byte 2 of the fragment in flight, or 0 */
-    U8 channel;         /* channel of the message going out */
-    U32 sendNext;       /* number of the fragment in flight, or of the next one: SEQ extended */
-    U32 receiveNext;    /* number expected */
-    U32 outSize, outAt; /* bytes of the message being sent, and acknowledged bytes of it */
+    U8 flags;           /* byte 2 of the fragment in flight; 0 without one */
+    U8 channel;         /* channel of the message that is being sent */
+    U32 sendNext;       /* number (extended SEQ) of the fragment in flight, or of the next one */
+    U32 receiveNext;    /* number of the fragment that is expected from the peer */
+    U32 outSize, outAt; /* size of the message being sent, and its acknowledged bytes */
     U32 size;           /* bytes of the fragment in flight */
-    U32 messageSize;    /* bytes received of the message coming in */
-    U32 peerNonce;      /* 0: no session */
+    U32 messageSize;    /* number of bytes received of the current incoming message */
+    U32 peerNonce;      /* nonce of the peer; 0 without a session */
     /* End of the fields that begin at 0. */
     U32 nonce, key;
     U32 timerAt; /* time at which the fragment in flight is sent again */
-    U32 retryUs; /* time between its transmissions */
+    U32 retryUs; /* interval of retransmissions, us */
     U32 inputAt, heardAt;
     U32 inputCount;
     const Link_Port* port;
     void* context;
     U32 tag;
     U8 input[LINK_INPUT_BYTES];
-    U8 frame[LINK_MAX_FRAME]; /* the frame going out */
+    U8 frame[LINK_MAX_FRAME]; /* frame that is being sent */
     U8 out[LINK_MAX_MESSAGE + LINK_CHECK];
     U8 message[LINK_MAX_MESSAGE + LINK_CHECK];
 };

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
  * receiver: writes an image into its slot. The slot's header is written when its sectors are empty,
- * so that a header in flash identifies the image after it, also after a loss of power.
+ * so that a header in flash always identifies the image that follows, even after a loss of power.
  */
 #include "receiver.h"
 
 #include <string.h>
 
-#define CHUNK 256U /* bytes read or programmed at once */
+#define CHUNK 256U /* largest number of bytes that are read or programmed at once */
 
 static U32 slotAt(const Receiver* self) {
     return Slots_at(self->port->layout, self->slot);
@@ -54,8 +54,8 @@ static int hasBegun(const Receiver* self, const Slots_Header* header) {
            isErased(self, slotAt(self) + self->port->layout->readyAt, 4);
 }
 
-/* Continues the image with its header in flash. Its last piece may be partly written; it is sent
- * again. */
+/* Continues the image whose header is in flash. Its last piece may have been written only in
+ * part, and is sent again. */
 static void takeUp(Receiver* self) {
     const U32 at = slotAt(self) + SLOTS_IMAGE_AT;
     self->received = (self->header.bytes - 1U) & ~(CHUNK - 1U);
@@ -108,7 +108,7 @@ static Receiver_Reason prepareFor(Receiver* self, const Slots_Header* header) {
     return RECEIVER_OK;
 }
 
-/* Checks a list of keys, but for signatures. */
+/* Checks a list of keys except for its signatures. */
 static Receiver_Reason looksAtKeys(const Receiver* self, const Slots_Header* list) {
     const Slots_Header* keys = Slots_keys(self->port);
     if (!self->port->mapped || list->magic != SLOTS_MAGIC ||
@@ -170,7 +170,8 @@ Receiver_Reason Receiver_confirm(Receiver* self) {
     return RECEIVER_OK;
 }
 
-/* Returns 1 if the running image is signed with a key of this list, so that it starts again. */
+/* Returns 1 if the running image is signed with a key of the new list, so that it can start
+ * again. */
 static int staysSigned(const Receiver* self, const Slots_Header* list) {
     Slots_Header header;
     if (self->port->layout->hasGolden && self->running == 0U)

@@ -13,19 +13,21 @@
 #define UAV_FRAME_HEADER \
     0x000FFF80U /* width and height of the frame, two 32-bit words, written by the camera */
 
-/* The modem's AES key, 16 bytes that stay valid; 0, the initial value: no encryption. Read when the
- * tasks start. The board gives the link's keys (uav_keys.h). */
+/* The modem's AES key: 16 bytes, which must stay valid. 0, the initial value, disables
+ * encryption. It is read when the tasks start. The keys of the link are set by the board
+ * (uav_keys.h). */
 extern const U8* uav_modemKey;
 
-/* The modem's present guard time in ms; 0, the initial value: the factory's 1000. */
+/* Guard time that the modem has now, ms. 0, the initial value, stands for the factory's 1000. */
 extern U16 uav_guardMs;
 
-/* 1: a cable to the ground's serial port replaces the modems; 0, the initial value: a modem. Read
- * when the tasks start. */
+/* 1 if a cable to the ground's serial port replaces the modems; 0, the initial value, with a
+ * modem. It is read when the tasks start. */
 extern U8 uav_wire;
 
-/* 1: transparent mode of the modem; 0, the initial value: API mode, with a report for each packet
- * whether the ground's modem has received it. Read when the tasks start. */
+/* 1 selects transparent mode of the modem. 0, the initial value, selects API mode, in which the
+ * modem reports for each packet whether the ground's modem has received it. It is read when the
+ * tasks start. */
 extern U8 uav_transparent;
 
 typedef enum UAV_Status {
@@ -34,8 +36,8 @@ typedef enum UAV_Status {
     UAV_NO_KEY   /* the vehicle was neither given a key nor opened */
 } UAV_Status;
 
-/* Creates the tasks. Call it between OSInit and OSStart, after UAV_useBoard. Only with UAV_OK there
- * are tasks. */
+/* Creates the tasks. Call it between OSInit and OSStart, after UAV_useBoard. The tasks exist only
+ * if the result is UAV_OK. */
 UAV_Status UAV_start(const FSMC_Port* port, void* context);
 
 /* Handles the FPGA's interrupt, which is level-sensitive. */

@@ -13,14 +13,15 @@
 
 #include <string.h>
 
-/* Sizes of the smaller links: bytes of the queue and of a received message, fragments in flight. */
+/* Sizes of the smaller links: bytes of the send queue, bytes of a received message, fragments in
+ * flight. */
 #define OBSERVER_SENDS 8192U
 #define OBSERVER_TAKES 1024U
 #define OBSERVER_WINDOW 16U
 #define VEHICLE_SENDS 1024U
 #define VEHICLE_TAKES 512U
 #define VEHICLE_WINDOW 4U
-#define VEHICLE_MS 3000 /* time for which a report waits for the other vehicle's reply */
+#define VEHICLE_MS 3000 /* time for which a report waits for the other vehicle's reply, ms */
 
 static Link observerLink, vehicleLink;
 static LINK_BUFFERS(OBSERVER_SENDS, OBSERVER_TAKES, OBSERVER_WINDOW) observerBuffers;
@@ -30,10 +31,11 @@ static const Link_Config observerConfig = {&uav_linkPort, &uav_peers[UAV_OBSERVE
 static const Link_Config vehicleConfig = {&uav_linkPort, &uav_peers[UAV_VEHICLE],
                                           UAV_BYTE_TIME_US16, LINK_USE(vehicleBuffers)};
 
-static U8 toAll[LINK_MAX_FRAME]; /* a call to all vehicles, and its bytes while it waits; else 0 */
+static U8 toAll[LINK_MAX_FRAME]; /* a call to all vehicles; its bytes while it waits, 0 without a
+                                  * call */
 static U8 toAllSize;
 
-/* Adds a peer, if the vehicle was given one. Returns 1 if so. */
+/* Adds a peer if the vehicle has one in this role. Returns 1 if a peer was added. */
 static int addPeer(int role, Link* link, const Link_Config* config) {
     UAV_Peer* peer = &uav_peers[role];
     const U32 address = UAV_addressOf(role);
@@ -70,8 +72,8 @@ void UAV_dialVehicle(void) {
         XBeeATEndpoint_dial(&uav_endpoint, UAV_VEHICLE, uav_now);
 }
 
-/* Takes a call to all vehicles, once. While one waits for IceC the others are dropped: a later copy
- * may arrive in time. */
+/* Accepts a call to all vehicles once. While a call waits for IceC, other calls are dropped,
+ * because a later copy of them may arrive in time. */
 static void onAnyPacket(void* context, const U8* bytes, U32 size) {
     if (*bytes != LINK_BROADCAST) {
         UAV_onPacketOf(context, bytes, size);
@@ -91,7 +93,7 @@ int UAV_offerCall(void) {
     if (toAllSize && XBeeATEndpoint_onMessage(&uav_endpoint, XBEE_OWN_CHANNEL,
                                               toAll + LINK_BROADCAST_HEAD, toAllSize) == 0)
         toAllSize = 0;
-    return toAllSize != 0; /* the endpoint kicks the radio task when it takes the call */
+    return toAllSize != 0; /* the endpoint wakes the radio task when it has accepted the call */
 }
 
 int UAV_makeVehicleProxy(Ice_ObjectAdapterPtr adapter, Ice_ObjectPrxPtr other) {

@@ -10,11 +10,11 @@
 #include "uav_backup.h"
 
 typedef enum UAV_Role {
-    UAV_GROUND,           /* the first ground, always there */
-    UAV_OBSERVER,         /* a second ground */
-    UAV_VEHICLE,          /* another vehicle, which this one calls */
+    UAV_GROUND,           /* the first ground station; always exists */
+    UAV_OBSERVER,         /* a second ground station */
+    UAV_VEHICLE,          /* another vehicle, which this vehicle calls */
     UAV_PEERS,            /* number of roles with a link */
-    UAV_GROUP = UAV_PEERS /* senders of calls to all vehicles */
+    UAV_GROUP = UAV_PEERS /* the group: senders of calls to all vehicles */
 } UAV_Role;
 
 #define UAV_GROUND_ADDRESS 0x0000U
@@ -26,7 +26,7 @@ typedef enum UAV_Role {
  * UAV_NO_PEER removes the peer. Returns 0 if the firmware has no such peers. */
 int UAV_providePeer(int role, U32 address, const U8* key);
 
-/* Returns 1 if the vehicle takes calls to all vehicles: it has the group's key, or is open. */
+/* Returns 1 if the vehicle accepts calls to all vehicles: it has the group's key, or it is open. */
 int UAV_isOfGroup(void);
 
 /* Sets the number that calls to all vehicles must exceed: the current one (link_broadcast.h) when
@@ -34,7 +34,8 @@ int UAV_isOfGroup(void);
 void UAV_setCallNumber(U32 number);
 
 /* Largest distance of a call's number from the previous one: 400 days in quarters of a second.
- * Otherwise one call with the highest number would make the vehicle refuse all later ones. */
+ * Without this limit, one call with the highest number would make the vehicle refuse all later
+ * calls. */
 #define UAV_MOST_AHEAD (400U * 24U * 3600U * 4U)
 #define UAV_FIRST_CALL 0x7FFFFFFFU /* highest number of the first call if no number was set */
 

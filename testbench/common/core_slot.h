@@ -25,9 +25,10 @@ constexpr U32 coreSlot = 5;
 #ifdef CORE_CLK_HZ // defined for cores with that parameter
 constexpr U32 coreClocksOfMs = CORE_CLK_HZ / 1000;
 #else
-constexpr U32 coreClocksOfMs = 100; // few, so that time-outs expire soon
+constexpr U32 coreClocksOfMs = 100; // small, so that time-outs expire soon
 #endif
-constexpr U32 coreMemory = 0x01000000; // DDR3 byte address of the core's buffers, to the driver
+constexpr U32 coreMemory = 0x01000000; // DDR3 byte address of the core's buffers, as the driver
+                                       // uses it
 
 // Status of a call that neither succeeded nor threw one of its exceptions.
 class CoreError : public std::runtime_error {
@@ -40,7 +41,7 @@ private:
     Ice_Status status_;
 };
 
-// DDR3: behind the core's memory port, if it has one.
+// The DDR3 at the core's memory port, if the core has one.
 template <class Module, class = void> class CoreMemory {
 public:
     explicit CoreMemory(Bench<Module>&) {}
@@ -56,8 +57,8 @@ public:
     explicit CoreMemory(Bench<Module>& bench) : NpiMemory<Module>(bench, 0.2, testSeed()) {}
 };
 
-// Clock of a core with a separate clock domain, in addition to the chip's 100 MHz; its edges are
-// between the chip's.
+// Clock of a core with a separate clock domain, in addition to the chip's 100 MHz; its edges lie
+// between the edges of the chip's clock.
 #ifndef CORE_OWN_HZ
 #define CORE_OWN_HZ 24000000u
 #endif
@@ -153,12 +154,12 @@ public:
     CoreMemory<Module> memory_{bench_};
     BusMaster<Module> bus_{bench_};
     Hw_Core* core_ = nullptr;
-    std::function<void()> interrupt_;    // the servant's interrupt function; empty:
-                                         // Hw_Core_interrupt
+    std::function<void()> interrupt_;    // interrupt function of the servant; without it,
+                                         // Hw_Core_interrupt is used
     std::function<void()> beforeAccess_; // called before each register access, as if another task
                                          // ran
     U32 posted_ = 0;
-    U32 memoryAt_ = coreMemory; // their address for the core: the value of MEMORY
+    U32 memoryAt_ = coreMemory; // address of the buffers for the core: the value of MEMORY
     uint64_t started_ = 0, waitedClocks_ = 0;
     unsigned errors_ = 0;
 
@@ -167,7 +168,7 @@ private:
     U32 inMemory(U32 address) const { return address - ddr - coreMemory + memoryAt_; }
     U32 access(bool isWrite, U32 address, U32 value) {
         if (address < control || address >= control + 0x1000)
-            return 0; // the FSMC's own registers
+            return 0; // this address belongs to the FSMC's own registers
         U32 word = (address - control) / 4;
         if (beforeAccess_)
             beforeAccess_();

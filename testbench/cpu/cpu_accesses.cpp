@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// cpu_accesses: CortexM3's loads and stores outside of RAM: their waits, the store buffer, faults;
-// and a debugger's accesses.
+// cpu_accesses: loads and stores of CortexM3 outside of RAM, with wait cycles, the store buffer and
+// faults; and accesses by a debugger.
 
 #include "cortex_m3.h"
 #include "unicorn_calls.h"
@@ -17,7 +17,7 @@ std::string accessText(uint32_t address, unsigned bytes, const char* what) {
     return std::string(text) + what;
 }
 
-// Returns the bytes of the longest aligned access that begins at an address.
+// Returns the size in bytes of the longest aligned access that can begin at an address.
 unsigned accessSize(uint32_t address, uint32_t bytes) {
     return address % 4 == 0 && bytes >= 4 ? 4 : address % 2 == 0 && bytes >= 2 ? 2 : 1;
 }
@@ -31,7 +31,7 @@ void CortexM3::passWaited() {
     attention_ = attention_ || exceptions_.deliverable();
 }
 
-// Carries out a store. Its fault is imprecise: reported late and without an address.
+// Performs a buffered store. Its fault is imprecise: it is reported late and without an address.
 template <class Store> void CortexM3::store(uint32_t address, unsigned bytes, Store store) {
     try {
         store();
@@ -82,7 +82,8 @@ uint32_t CortexM3::guardedAccess(uint32_t address, unsigned bytes, Access access
     return 0;
 }
 
-// Bit-band aliases: one word per bit of RAM and of the peripherals (B3.1, TRM 3.7).
+// Returns whether the address is a bit-band alias: one word for each bit of RAM and of the
+// peripherals (B3.1, TRM 3.7).
 bool CortexM3::isBitBand(uint32_t address) const {
     return address >> 25 == 0x22000000 >> 25 || address >> 25 == 0x42000000 >> 25;
 }
@@ -111,7 +112,8 @@ void CortexM3::writeBit(uint32_t address, uint32_t value) {
     }
 }
 
-// An unaligned access to memory is split into aligned ones; to a device it is unpredictable.
+// Returns whether an unaligned access is split into aligned ones, as in memory. In a device it is
+// unpredictable.
 bool CortexM3::isSplit(uint32_t address, unsigned bytes) {
     if (address % bytes == 0 || address >= 0xE0000000)
         return false;
@@ -160,7 +162,7 @@ void CortexM3::onWrite(uint32_t address, unsigned bytes, uint32_t value) {
         requestReset();
 }
 
-// Called before libunicorn stores to flash; only the bus's result counts.
+// Called before libunicorn stores to flash. Only the result of the bus counts.
 void CortexM3::onFlashWrite(uint32_t offset, unsigned bytes, uint32_t value) {
     settleFlash();
     if (failure_ || synchronous_.number)
@@ -183,7 +185,7 @@ void CortexM3::flashChanged(uint32_t offset, uint32_t bytes) {
 }
 
 bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {
-    drainStore(); // RAM is on the same bus
+    drainStore(); // the buffered store must be done first, because RAM is on the same bus
     if (!control_.isForbidden(address, bytes, write) || synchronous_.number || isMpuOff())
         return false;
     synchronous_ = {MemManage, SystemControl::dataAccess | SystemControl::mmfarValid,

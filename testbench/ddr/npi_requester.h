@@ -3,8 +3,9 @@
 // npi_requester: requesters on the packed NPI ports of a memory controller, with a reference
 // memory.
 //
-// Each acknowledgement, which is the order in memory (docs/memory.md), updates the reference. Every
-// read word and its place are compared with it at once. A difference throws.
+// The order of acknowledgements is the order of accesses in memory (docs/memory.md), so each
+// acknowledgement updates the reference memory. Every read word is compared with the reference at
+// once, and a difference throws.
 
 #pragma once
 
@@ -48,17 +49,18 @@ template <class Port> void setBits(Port& port, unsigned lsb, unsigned width, uin
 // The traffic that a requester makes.
 struct NpiTraffic {
     double ask = 1.0;    // probability, per cycle, of starting a request when none is waiting
-    double push = 1.0;   // ... of pushing the next word of a write
-    double pop = 1.0;    // ... of taking a word that has arrived
+    double push = 1.0;   // probability, per cycle, of pushing the next word of a write
+    double pop = 1.0;    // probability, per cycle, of popping a word that has arrived
     double writes = 0.5; // share of writes
     unsigned minSize = 0, maxSize = 5;
-    unsigned outstanding = 32; // words requested and not yet taken; may be exceeded only with pop =
-                               // 1 (rule 3)
-    bool byteEnables = true;   // random; else all bytes
+    unsigned outstanding = 32; // largest number of words that were requested and not popped yet;
+                               // may be exceeded only with pop = 1 (rule 3)
+    bool byteEnables = true;   // true: byte enables are random; false: all bytes are written
     bool anyLineWord = true;   // reads of cache lines start at a random word
-    bool sequential = false;   // address after address, else anywhere
-    uint32_t base = 0, bytes = 1 << 16; // its part of the memory
-    uint32_t above = 0;                 // ignored address bits beyond the memory: random
+    bool sequential = false;   // true: each address follows the previous one; false: addresses are
+                               // random
+    uint32_t base = 0, bytes = 1 << 16; // part of the memory that this requester uses
+    uint32_t above = 0;                 // random address bits beyond the memory, which are ignored
 };
 
 template <class Module> class NpiRequesters {
@@ -86,7 +88,7 @@ public:
         return true;
     }
 
-    // Records accepted requests, in their order, where requested.
+    // If this is requested, records accepted requests in their order.
     struct Accepted {
         uint32_t address;
         unsigned words;
@@ -163,7 +165,7 @@ private:
         bool raised = false, willing = false, popping = false;
         uint32_t next = 0; // address of a sequential stream
         uint64_t since = 0;
-        std::deque<Expected> expected; // words of reads, in their order
+        std::deque<Expected> expected; // expected words of reads, in their order
     };
 
     bool roomFor(const Port& port, const Request& r) const { // rule 3

@@ -2,10 +2,11 @@
 //
 // checkpoints: frozen copies of this process (fork), used by a debugger to step backwards.
 //
-// A copy has everything: processor, chip, radio, air. To go back, a process wakes the last copy
-// before that place, with an order, and ends. The woken process is a copy of the frozen one, which
-// stays. Connections are shared, so the debugger notices nothing. The first process ends when the
-// last one does, with its status; all others end with their parent.
+// A copy has everything: processor, chip, radio, air. To go back to a place, a process wakes the
+// last copy before this place, gives it an order, and ends. The woken process is itself a copy of
+// the frozen one, which stays frozen. Connections are shared, so the debugger notices nothing. The
+// first process ends together with the last one, with the same exit status; all others end with
+// their parent.
 
 #pragma once
 
@@ -41,7 +42,8 @@ public:
             throw std::system_error(errno, std::generic_category(), "checkpoints");
         shared_->first = shared_->active = getpid();
     }
-    // A woken process leaves the other processes to the first one, which waits for its status.
+    // The destructor of a woken process does not end other processes; the first process does, which
+    // waits for the exit status.
     ~Checkpoints() {
         if (getpid() != shared_->first)
             return;
@@ -51,8 +53,8 @@ public:
     Checkpoints(const Checkpoints&) = delete;
     Checkpoints& operator=(const Checkpoints&) = delete;
 
-    // Forks a frozen copy, unless one exists at or after this place or there are too many. Returns
-    // an order in a woken process, nothing if the run continues.
+    // Forks a frozen copy, unless one exists at or after this place or there are too many. In a
+    // woken process, returns the order; otherwise returns nothing, and the run continues.
     std::optional<Order> freeze(uint64_t place) {
         Shared& s = *shared_;
         if (s.count == mostCopies || (s.count && s.copies[s.count - 1].place >= place))
@@ -86,7 +88,7 @@ public:
             pause();
         _exit(0);
     }
-    // Ends the copies after this place: the run will differ from here.
+    // Ends the copies after this place, because the run will be different after it.
     void forgetBehind(uint64_t place) {
         for (Shared& s = *shared_; s.count && s.copies[s.count - 1].place > place; --s.count)
             kill(s.copies[s.count - 1].process, SIGKILL);
@@ -136,7 +138,7 @@ private:
         sigfillset(&all);
         sigemptyset(&wakes);
         sigaddset(&wakes, SIGUSR1);
-        sigprocmask(SIG_SETMASK, &all, &before); // a Ctrl-C must not reach it
+        sigprocmask(SIG_SETMASK, &all, &before); // a Ctrl-C must not reach the frozen copy
         signal(SIGCHLD, SIG_IGN);
         do {
             int number;

@@ -49,7 +49,7 @@ void FsmcMaster::setClocks(unsigned hclkPerUnit, unsigned clkPerUnit) {
         delays_->setHclk(static_cast<int>(10000 * clkPerUnit_ / hclkPerUnit_));
 }
 
-// Reports a signal that comes at the wrong time, unless such are tolerated.
+// Reports a signal that changes at the wrong time, unless such signals are tolerated.
 void FsmcMaster::complain(const std::string& what) const {
     if (!tolerant_)
         throw FsmcError(what);
@@ -85,7 +85,7 @@ unsigned FsmcMaster::idleQuiet(unsigned hclk, uint64_t ns) {
         design_.passQuiet((phase_ + uint64_t(hclk) * clkPerUnit_) / hclkPerUnit_, ns);
     if (clocks == 0)
         return 0;
-    // Up to the last of these clocks, as single steps would.
+    // Advances up to the last of these clocks, with the same result as single steps.
     const uint64_t cycles = (clocks * hclkPerUnit_ - phase_ + clkPerUnit_ - 1) / clkPerUnit_;
     phase_ += static_cast<unsigned>(cycles * clkPerUnit_ - clocks * hclkPerUnit_);
     hclks_ += cycles;
@@ -137,10 +137,10 @@ FsmcMaster::Access FsmcMaster::decode(uint32_t address, bool write) {
     return access;
 }
 
-// RM0033, BUSTURN: the pauses between pairs of accesses.
+// Waits between two accesses, as RM0033 describes for BUSTURN.
 void FsmcMaster::turnaround(const Access& access) {
     bool held = access.muxed || access.mode == 'D';
-    unsigned pause = 1; // after a read
+    unsigned pause = 1; // pause after a read
     if (lastHeld_)
         pause = lastBusturn_;
     else if (lastWrite_)
@@ -192,7 +192,7 @@ void FsmcMaster::addressPhase(const Access& access, uint16_t value, uint8_t lane
     }
     strobe = false;
     show();
-    // The pins' delays leave no time for NWAIT that does not follow the strobe.
+    // Without pin delays, NWAIT must follow the strobe at once.
     if (free && isWaiting(access) && !delays_)
         complain(access.name + ": NWAIT went active after the strobe");
 }
@@ -257,7 +257,7 @@ uint16_t FsmcMaster::readPins(uint32_t address) {
     show();
     if (pins_.dDriven && !delays_)
         complain(access.name + ": the data bus is still driven after the access");
-    return ours ? value : 0xFFFF; // another chip's bank: pulled up
+    return ours ? value : 0xFFFF; // the bank belongs to another chip; its data lines are pulled up
 }
 
 void FsmcMaster::writePins(uint32_t address, uint16_t value, uint8_t lanes) {
@@ -285,7 +285,7 @@ void FsmcMaster::abort(const Access& access, unsigned hclk) {
     show();
     if (pins_.dDriven && !delays_)
         throw FsmcError(access.name + ": the access was aborted, and the data bus is still driven");
-    passHclk(8); // a processor's reset takes far longer
+    passHclk(8); // the reset of a processor takes far longer
 }
 
 void FsmcMaster::abortRead(uint32_t address, unsigned hclk) {

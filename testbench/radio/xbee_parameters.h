@@ -25,24 +25,29 @@ inline const std::map<std::string, XBeeParameter>& xbeeParameters() {
         {"ID", {0x3332, 0, 0xFFFF, true}}, // network; FFFF: all networks
         {"CH", {0x0C, 0x0B, 0x1A, true}},  // channel
         {"BD", {3, 0, 0x3D090, true}},     // baud rate: a code, or above 7 the rate itself
-        {"RO", {3, 0, 0xFF, true}},        // character times of silence that send a packet off
-        {"RN", {0, 0, 3, true}},           // least exponent of the random wait before sending
-        {"MM", {0, 0, 3, true}},           // 0 header and acks, 1 neither, 2 acks, 3 header
+        {"RO", {3, 0, 0xFF, true}},        // silence after which a packet is sent, in character
+                                           // times
+        {"RN", {0, 0, 3, true}},           // smallest exponent of the random wait before sending
+        {"MM", {0, 0, 3, true}},           // 0: header and acknowledgements, 1: neither, 2:
+                                           // acknowledgements, 3: header
         {"RR", {0, 0, 6, true}},           // additional rounds of the MAC's four tries
         {"EE", {0, 0, 1, true}},           // encryption
         {"GT", {1000, 2, 3300, true}},     // ms of silence around the command sequence
         {"CT", {100, 2, 0xFFFF, true}},    // time without a command that ends command mode, 100 ms
         {"CC", {'+', 0, 0xFF, true}},      // character of the command sequence
-        {"D6", {0, 0, 5, true}},           // 1: RTS is heeded
+        {"D6", {0, 0, 5, true}},           // 1: the modem obeys RTS
         {"D7", {1, 0, 5, true}},           // 1: CTS is driven
         {"AP", {0, 0, 2, true}},           // 1 API frames, 2 with escapes
         {"DB", {0x28, 0, 0xFF, false}},    // -dBm of the last packet, 0x17 to 0x5C
-        {"EC", {0, 0, 0xFFFF, true}},      // packets not sent: the channel was never clear
-        {"EA", {0, 0, 0xFFFF, true}}};     // packets not acknowledged in any of their tries
+        {"EC", {0, 0, 0xFFFF, true}},      // number of packets not sent because the channel was
+                                           // never clear
+        {"EA", {0, 0, 0xFFFF, true}}};     // number of packets that were not acknowledged in any of
+                                           // their tries
     return table;
 }
 
-// Rate of a BD value in baud. Above 7: 16 MHz / 16 divided by the nearest integer.
+// Returns the baud rate for a value of BD. Above 7, it is 16 MHz / 16 divided by the nearest
+// integer.
 inline double xbeeBaud(uint32_t bd) {
     static const double rates[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 1e6 / 9};
     if (bd < 8)

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// board_wires: the way of a signal from the microcontroller to the chip, as a board has it. GPIO
-// modes and alternate functions decide whether it leaves its pin, the board which ball it reaches
-// (boards/NAME/board.toml), and the constraints which port of the chip that is (board.ucf).
+// board_wires: models the path of each signal from the microcontroller to the chip on a given
+// board. GPIO modes and alternate functions determine whether the signal leaves its pin. The board
+// determines which ball the signal reaches (boards/NAME/board.toml). The constraints determine to
+// which port of the chip this ball belongs (board.ucf).
 //
-// A board on which each signal reaches its port is straight; it costs nothing at run time.
+// On a straight board, each signal reaches its own port; the model then costs no run time.
 
 #pragma once
 
@@ -43,8 +44,8 @@ public:
     BoardWires(const std::string& wires, const std::string& ucf);
 
     uint32_t oscillatorHz() const { return oscillatorHz_; }
-    // Sets the function that returns what a pin does; without one all pins are switched to their
-    // signals, as for a program without pins.
+    // Sets the function that returns what a pin does; without this function all pins are switched
+    // to their signals, as a program that does not model pins needs it.
     void follow(std::function<PinSetting(unsigned port, unsigned pin)> setting);
 
     bool isStraight() const { return isStraight_; }
@@ -52,7 +53,7 @@ public:
     bool reaches(Line line) const { return from_[line] == int(line); }
     // Returns the pins as the chip sees them.
     FsmcPins atChip(const FsmcPins& near) const;
-    // Gives the processor's pins the levels that the chip drives at its own.
+    // Sets the processor's pins to the levels that the chip drives at its pins.
     void toProcessor(const FsmcPins& chip, FsmcPins& near) const;
 
     uint16_t levels(unsigned, uint16_t inside) override { return inside; }
@@ -68,8 +69,8 @@ private:
     void updateStraight();
 
     uint32_t oscillatorHz_ = 0;
-    std::array<int, Lines> from_;      // signal that arrives at a port; -1: none
-    std::array<bool, Lines> isHigh_{}; // level of a port at which none arrives
+    std::array<int, Lines> from_;      // signal that arrives at each port; -1 without a signal
+    std::array<bool, Lines> isHigh_{}; // level of each port at which no signal arrives
     std::array<bool, Lines> isSwitched_;
     std::map<Line, Pin> pins_; // pins of the FSMC
     std::function<PinSetting(unsigned, unsigned)> setting_;

@@ -88,8 +88,8 @@ public:
     Flight& operator=(const Flight&) = delete;
 
     // Flies until the program has ended, the time is over, or `stopSignal` is set. Returns the
-    // program's exit status, or a shell's for the signal. A replay throws std::runtime_error where
-    // it departs from the recording.
+    // program's exit status, or the status that a shell would return for the signal. A replay
+    // throws std::runtime_error if it differs from the recording.
     int run();
 
     static volatile sig_atomic_t stopSignal;
@@ -120,12 +120,14 @@ private:
     RfChannel air_;
     Station ground_;
     SocModel soc_;
-    std::vector<std::unique_ptr<Follower>> followers_; // addresses 2 and up
-    std::unique_ptr<Station> second_;                  // with several vehicles
+    std::vector<std::unique_ptr<Follower>> followers_; // additional vehicles, with the addresses 2
+                                                       // and up
+    std::unique_ptr<Station> second_;                  // second ground station; only with several
+                                                       // vehicles
     std::unique_ptr<Trouble> trouble_;                 // faults, with several vehicles
     std::map<const SocModel*, unsigned> starts_;       // number of starts of each vehicle's vision
                                                        // core
-    std::unique_ptr<Cable> cable_;                     // replaces the modems and the air
+    std::unique_ptr<Cable> cable_;                     // cable that replaces the modems and the air
     Child child_;
     Events events_;
     Pace pace_;

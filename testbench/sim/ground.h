@@ -47,7 +47,7 @@ public:
         options.set = {{"GT", guardMs}};
         return options;
     }
-    // `address`: of its modem.
+    // `address` is the address of its modem.
     Ground(RfChannel& air, uint64_t seed, uint32_t address = 0) : random_(seed), link_(new Link) {
         XBee::Options options;
         options.name = "ground";
@@ -85,8 +85,8 @@ public:
         return std::min(modem_->nextEvent(), nextPoll_);
     }
     bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
-    // Returns a call of an object; `parameters` are encoded. Mode 0 is normal, 2 idempotent; id 0
-    // is oneway.
+    // Returns a call of an object; `parameters` are already encoded. Mode 0 is normal, 2
+    // idempotent; id 0 is oneway.
     static std::vector<uint8_t> request(int id, const std::string& object,
                                         const std::string& operation, int mode = 0,
                                         const std::vector<uint8_t>& parameters = {}) {
@@ -118,12 +118,13 @@ public:
     }
     void noise(const std::vector<uint8_t>& bytes) { line_.send(bytes, now_); }
 
-    std::map<int, int> replies;                   // request id to reply status
+    std::map<int, int> replies;                   // reply status by request id
     std::map<int, std::vector<uint8_t>> messages; // whole reply by request id
-    int delivered = 0, unknown = 0;               // outcomes of messages
+    int delivered = 0, unknown = 0;               // number of messages by outcome
     uint64_t deliveredBytes = 0;                  // bytes of acknowledged messages
     size_t backlog() const { return backlog_; }   // bytes of undelivered messages
-    std::vector<uint8_t> key; // key of the link, used from the next start; empty: unencrypted
+    std::vector<uint8_t> key; // key of the link, used from the next start(); without a key,
+                              // unencrypted
     const Link_Statistics& statistics() const { return *Link_statistics(link_.get()); }
     bool validated = false, running = true;
     unsigned hurry = 1; // factor by which the clock of the link is sped up (UavMachine::hurry)
@@ -159,13 +160,13 @@ private:
     std::unique_ptr<Link_Buffers> buffers_{new Link_Buffers};
     uint64_t now_ = 0, clock_ = 0, nextPoll_ = 0;
     size_t backlog_ = 0;
-    bool isOpen_ = false; // the channel of its calls
+    bool isOpen_ = false; // true if the channel for its calls is open
 };
 
 // A vehicle's chip, its ground station, and the air between them.
 struct GroundAndChip {
     explicit GroundAndChip(uint64_t seed = testSeed()) : air(seed), ground(air, seed + 5) {
-        uav_guardMs = Ground::guardMs; // the host build's
+        uav_guardMs = Ground::guardMs; // the variable of the host build
         soc.onTime([this](uint64_t now) { return ground.advance(now); });
     }
     bool within(double seconds) const { return static_cast<double>(soc.now()) < seconds * 1e9; }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // spi_flash: a 2 MiB serial NOR flash like Winbond's W25Q16: it takes instructions byte by byte, as
-// the SPI master clocks them, with realistic erase and write times. Programming only clears bits.
-// After a loss of power in an operation a seed decides the bits.
+// the SPI master clocks them, with realistic erase and write times. Programming can only clear
+// bits. If a loss of power interrupts an operation, the affected bits are random; a seed makes them
+// repeatable.
 
 #pragma once
 
@@ -15,11 +16,11 @@ class SpiFlash {
 public:
     static constexpr uint32_t bytes = 0x200000;
 
-    // `now` is in ns.
+    // `now` returns the time in ns.
     explicit SpiFlash(std::function<uint64_t()> now, uint64_t seed = 1)
         : memory(bytes, 0xFF), now_(std::move(now)), random_(seed) {}
 
-    // Chip select; an instruction that changes something begins when it rises.
+    // Sets chip select. An instruction that changes something begins when chip select rises.
     void select(bool isLow) {
         settle();
         if (isSelected_ && !isLow && !in_.empty() && !isUnder_) {
@@ -47,7 +48,7 @@ public:
             in_.clear();
         isSelected_ = isLow;
     }
-    // Clocks one byte: takes `in`, and returns the byte that the flash drives meanwhile.
+    // Clocks one byte: reads `in`, and returns the byte that the flash drives at the same time.
     uint8_t transfer(uint8_t in) {
         settle();
         in_.push_back(in);
@@ -66,9 +67,9 @@ public:
         }
         return 0xFF;
     }
-    // Cuts the current operation by a loss of power. A cut write has cleared some of its bits. An
-    // erase first clears all bits and then sets them; if cut, it leaves rows of 64 bytes old,
-    // cleared, erased, or in between.
+    // Interrupts the current operation by a loss of power. An interrupted write has cleared some of
+    // its bits. An erase first clears all bits and then sets them; after an interruption each row
+    // of 64 bytes is unchanged, cleared, erased, or partly erased.
     void powerOff() {
         settle();
         for (uint32_t row = at_; isUnder_ && row < at_ + size_; row += 64) {
@@ -88,8 +89,9 @@ public:
     uint64_t busyNs() const { return end_ > now_() ? end_ - now_() : 0; }
 
     std::vector<uint8_t> memory;
-    uint64_t operations() const { return operations_; } // erases and writes that have begun
-    // Called when an erase or a write has begun.
+    uint64_t operations() const {
+        return operations_;
+    } // number of erases and writes that have begun Called when an erase or a write has begun.
     std::function<void()> onOperation;
 
 private:

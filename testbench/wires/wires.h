@@ -30,21 +30,21 @@ public:
     size_t count() const { return names_.size(); }
     const std::string& name(unsigned net) const { return names_[net]; }
 
-    // Sets what an end does, at this time.
+    // Sets the driver and the pull of an end, at this time.
     void set(unsigned net, unsigned end, End what, uint64_t now);
-    // A further driver at end 0: another chip on the board.
+    // Sets an additional driver at end 0, which belongs to another chip on the board.
     void setOther(unsigned net, Level driver, uint64_t now);
     // Returns the level that an end sees.
     bool level(unsigned net, unsigned end, uint64_t now) {
         settle(now);
         return nodes_[nodeOf_[2 * net + end]].level != inverted_[2 * net + end];
     }
-    // Time at which a pull moves a wire; ~0 if none does.
+    // Returns the time at which a pull changes the level of a wire; ~0 if none does.
     uint64_t nextChange() const { return due_; }
-    // Two drivers have worked against each other this many times. Faults cause it; a board without
-    // faults never does.
+    // Returns how many times two drivers have worked against each other. This is caused by faults
+    // only.
     uint64_t fights() const { return fights_; }
-    // True if edges of this net arrive more than once.
+    // Returns whether edges of this net arrive more than once.
     bool isRinging(unsigned net) const { return ringing_[net]; }
 
 private:
@@ -67,7 +67,8 @@ private:
     std::vector<bool> ringing_;
     std::vector<End> ends_;
     std::vector<Level> others_;
-    std::vector<int8_t> drive_, pull_; // of each node, while settling
+    std::vector<int8_t> drive_, pull_; // driver and pull of each node, used while levels are
+                                       // computed
     std::vector<bool> fight_;
     bool dirty_ = true;
     uint64_t due_ = ~0ull, fights_ = 0;

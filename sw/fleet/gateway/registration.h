@@ -15,10 +15,10 @@
 
 namespace gateway {
 
-// Events publishes a vehicle's events to an IceStorm topic, as calls of Station.vehicleState.
+// Events publishes the events of a vehicle to an IceStorm topic, as calls of Station.vehicleState.
 class Events {
 public:
-    // `publisher`: the topic's publisher; null disables events.
+    // `publisher` is the publisher of the topic; null disables events.
     Events(std::string vehicle, std::shared_ptr<Ice::ObjectPrx> publisher)
         : vehicle_(std::move(vehicle)), publisher_(std::move(publisher)) {}
     void tell(bool isHere) const; // publishes the vehicle's proxy, or a null proxy; no parameters
@@ -46,10 +46,10 @@ public:
                  const std::shared_ptr<Ice::LocatorPrx>& locator)
         : open(std::move(open)), name_(std::move(name)), forwarder_(forwarder), events_(events),
           locator_(locator ? locator->ice_invocationTimeout(patienceMs) : nullptr) {}
-    // Checks whether the vehicle is connected, and which ground station is registered; call it
-    // every `lookMs`. Throws Ice's exceptions if no registry answers.
+    // Checks whether the vehicle is connected, and which ground station is registered. Must be
+    // called every `lookMs`. Throws Ice's exceptions if no registry answers.
     void look();
-    void leave(); // call it before the program ends
+    void leave(); // must be called before the program ends
 
     static constexpr int lookMs = 250, looksBetweenQuestions = 4;
     static constexpr int patienceMs = 2000; // time-out of a registry or another ground station
@@ -67,8 +67,8 @@ private:
     const Events& events_;
     const std::shared_ptr<Ice::LocatorPrx> locator_;
     std::shared_ptr<Ice::ObjectAdapter> adapter_, closing_;
-    std::shared_ptr<Ice::ObjectPrx> own_; // the adapter's endpoints
-    unsigned entered_ = 0;                // session() when the registry was last written
+    std::shared_ptr<Ice::ObjectPrx> own_; // proxy with the endpoints of the adapter
+    unsigned entered_ = 0;                // value of session() when the registry was last written
     bool isEntered_ = false;              // this ground station has registered itself
     int looks_ = 0;
 };

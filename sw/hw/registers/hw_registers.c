@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * hw_registers: looks names up in the table and accesses words through the FSMC driver; the polling
- * task answers `wait`.
+ * hw_registers: servant for registers by name. It looks names up in the table and accesses words
+ * through the FSMC driver. The polling task answers calls of `wait`.
  */
 #include "hw_registers.h"
 #include "fsmc.h"
@@ -34,7 +34,8 @@ Hw_Status Hw_Registers_Core_init(Hw_Registers_Core* self, U32 slot, U32 id,
 }
 
 void Hw_Registers_Core_interrupt(Hw_Registers_Core* self) {
-    /* Masked until a call waits: a line that stays high would interrupt for ever. */
+    /* Events are masked until a call waits, because a line that stays high would interrupt for
+     * ever. */
     FSMC_write(self->slot, MASK, 0);
     self->came = 1;
     self->port->post(self->context, 0);
@@ -143,7 +144,7 @@ static int transfer(Hw_Registers_Core* self, const Hw_Register* r, int isWrite, 
         FSMC_write(self->slot, r->word, *value);
     else
         *value = FSMC_read(self->slot, r->word);
-    /* A write may be posted: a read after it ends later, and errors are counted by then. */
+    /* A write may be posted. The read after it ends later, and bus errors are counted by then. */
     (void)FSMC_read(self->slot, ID);
     if (self->port->busErrors(self->context) == before)
         return 1;
@@ -214,8 +215,8 @@ static int write(Hw_Registers_Core* self, Ice_String name, Ice_Long value) {
         sayNumber(self, bits);
         return 0;
     }
-    /* The other fields of a register that can be read and written stay; in w1c, w1s and ws fields 0
-     * has no effect. */
+    /* In a register that can be read and written, the other fields keep their values; in w1c, w1s
+     * and ws fields 0 has no effect. */
     if (r->access == Hw_rw && memchr(name.data, '.', (size_t)name.size)) {
         if (!transfer(self, r, 0, &others))
             return 0;
@@ -260,11 +261,12 @@ Ice_Status Hw_Registers_wait(Hw_RegistersPtr servant, Ice_Int ms, const Ice_Curr
     self->deadline = self->port->nowMs(self->context) + (U32)ms;
     self->waits = 1;
     FSMC_write(self->slot, MASK, ALL);
-    self->port->post(self->context, 0); /* the polling task learns of the deadline */
+    self->port->post(self->context, 0); /* informs the polling task about the deadline */
     return ICE_LATER;
 }
 
-/* Takes the slot's events. Returns their number, and their names from the table: EVENT's fields. */
+/* Reads and clears the slot's events. Returns their number, and their names: those of EVENT's
+ * fields in the table. */
 static Ice_Int takeEvents(Hw_Registers_Core* self) {
     static const char prefix[] = "EVENT.";
     const Ice_Int skipped = sizeof prefix - 1;

@@ -26,13 +26,14 @@
 typedef struct TcpEndpoint_Connection {
     int fd;                       /* -1: free */
     Ice_Byte accepted, reported;  /* reported: the event OPENED has been delivered */
-    Ice_Byte sending, over;       /* over: closed, except for the task that still sends */
+    Ice_Byte sending, over;       /* over: 1 if the connection is closed and only a sending task
+                                   * still uses it */
     Ice_Byte spoke;               /* this side has sent a message */
     Ice_Byte served;              /* a request or reply was sent or received */
     Ice_Int skip;                 /* remaining bytes of a refused message */
     U32 sentMs;                   /* time of the last message sent */
-    U32 usedMs;                   /* time of the last request or reply */
-    Ice_Int owed;                 /* replies due in either direction */
+    U32 usedMs;                   /* time of the last request or reply, ms */
+    Ice_Int owed;                 /* number of replies that are due in either direction */
     struct sockaddr_storage peer; /* address of the peer, if this side made the connection */
     socklen_t peerSize;
     Ice_Int have;
@@ -40,15 +41,16 @@ typedef struct TcpEndpoint_Connection {
 } TcpEndpoint_Connection;
 
 typedef struct TcpEndpoint {
-    int listener; /* -1: not listening */
+    int listener; /* listening socket; -1 if not listening */
     int port;     /* port of the listener */
     char host[64];
     int pipe[2];
-    Ice_Int sendMs, heartbeatMs, idleMs; /* may be changed after TcpEndpoint_init */
+    Ice_Int sendMs, heartbeatMs, idleMs; /* limits; they may be changed after TcpEndpoint_init */
     pthread_mutex_t lock;                /* guards the following members */
     TcpEndpoint_Connection connections[ICE_CONNECTIONS];
 } TcpEndpoint;
 
-/* Makes "tcp" known to the communicator. ICE_NO_ENDPOINT: the system refuses. */
+/* Registers the transport "tcp" with the communicator. Returns ICE_NO_ENDPOINT if the system
+ * refuses. */
 Ice_Status TcpEndpoint_init(Ice_CommunicatorPtr ic, TcpEndpoint* self);
 void TcpEndpoint_destroy(TcpEndpoint* self);

@@ -2,9 +2,10 @@
  *
  * ice_value_write: writes instances of classes to a stream.
  *
- * 1.1: an instance stands where it is first met, its number (from 2) where it is met again; within
- * a slice of the sliced format there is an index into a table behind the slice instead. 1.0: minus
- * the number (from 1), and the instances behind all parameters.
+ * 1.1: an instance is written at its first occurrence, and its number (counted from 2) at later
+ * ones. Within a slice in the sliced format, an index into a table after the slice is written
+ * instead. 1.0: the negative number of the instance (counted from 1) is written, and all instances
+ * follow after the parameters.
  */
 #include "ice_slice.h"
 

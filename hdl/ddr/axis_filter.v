@@ -47,9 +47,10 @@ module axis_filter #(
 
     localparam WORD_BITS = BYTE_BITS - 2; // width of a word count
 
-    reg         waiting; // transfers of an earlier, abandoned operation are not finished
+    reg         waiting; // transfers of an earlier, abandoned operation are still in progress
     reg         writing; // the output goes to memory
-    // the last word was taken: the burst is filled up; waits until it is in memory
+    // closing: the last word was taken, and the burst is being filled up; closed: waits until the
+    // burst is in memory
     reg         closing, closed;
     reg         empty, over; // refused
     reg  [BYTE_BITS-1:0] left; // bytes not yet sent to the core
@@ -64,7 +65,8 @@ module axis_filter #(
 
     // ---- splitting a word from memory into beats ----
     reg  [3:0]  beat;
-    wire [7:0]  rest    = word_keep >> KEEP * beat >> KEEP; // bytes of the beats after this one
+    wire [7:0]  rest    = word_keep >> KEEP * beat >> KEEP; // enabled bytes of the beats after this
+                                                            // one
     wire        is_last = beat == LAST_BEAT || rest == 8'd0;
     wire        sent    = m_axis_tvalid_o && m_axis_tready_i;
     wire [63:0] shifted = word >> WIDTH * beat;
@@ -78,10 +80,10 @@ module axis_filter #(
     // ---- joining beats into a word ----
     reg  [3:0]  place;
     reg         full;      // the word is complete
-    reg         ends;      // and it is the last of the packet
+    reg         ends;      // the complete word is the last one of the packet
     reg  [63:0] out;
     reg  [7:0]  out_keep;
-    reg  [BYTE_BITS-1:0] awaited; // input bytes that still lack output
+    reg  [BYTE_BITS-1:0] awaited; // number of input bytes for which no output has arrived
     wire        room      = bytes != ROOM[BYTE_BITS-1:0];
     wire        out_ready = writing && (write_ready || !room);
     wire        given     = full && out_ready;
@@ -89,7 +91,7 @@ module axis_filter #(
     wire        last = LAST != 0 ? s_axis_tlast_i : awaited <= STEP;
     assign s_axis_tready_o = !full || out_ready;
 
-    reg [3:0] out_bytes; // up to the last byte that is kept
+    reg [3:0] out_bytes; // number of bytes up to the last one that is kept
     integer b;
     always @* begin
         out_bytes = 4'd0;
@@ -177,7 +179,7 @@ module axis_filter #(
     reg past = 1'b0;
     reg [3:0] f_sent;  // beats of the word that the core has taken
     reg [3:0] f_size;  // beats that the bytes of the word need
-    reg [3:0] f_count; // beats of the output that are not in memory's hands
+    reg [3:0] f_count; // beats of the output that are not in memory yet
     // Any beat of a word, with its bytes as they arrived.
     (* anyconst *) reg [3:0] f_lane;
     reg [WIDTH-1:0] f_data;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// mcb_ports: the 64-bit user port of the Spartan-6 MCB, to be included at the beginning of a port
-// list.
+// mcb_ports: the 64-bit user port of the Spartan-6 MCB. Include it at the beginning of a port list.
 
     output wire        mcb_cmd_en_o,
     output wire [2:0]  mcb_cmd_instr_o,

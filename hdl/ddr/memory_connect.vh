@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// memory_connect: connects the ports of memory_ports.vh to an instance with the same ports, to be
-// included at the beginning of its connection list.
+// memory_connect: connects the ports of memory_ports.vh to an instance with the same ports. Include
+// it at the beginning of the connection list.
 
         .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
         .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_rmw_o(npi_rmw_o),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// memory_ports: the memory port (docs/memory.md) of a requester, to be included at the beginning of
-// a port list.
+// memory_ports: the memory port (docs/memory.md) of a requester. Include it at the beginning of a
+// port list.
 
     output wire [31:0] npi_addr_o,
     output wire        npi_addr_req_o,

@@ -15,7 +15,8 @@ module npi_arbiter #(
     // One bit per port: the port has a read FIFO. A port without one must take each word at once;
     // otherwise it holds up all ports.
     parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}},
-    parameter             BLOCK_RAM  = 1,  // 1: FIFOs in block RAM; 0: in LUT RAM, a clock faster
+    parameter             BLOCK_RAM  = 1,  // 1: FIFOs in block RAM; 0: in LUT RAM, which is one
+                                           // clock faster
     parameter             ADDR_WIDTH = 27, // width of a byte address, 9..32 (27: 128 MiB)
     parameter             FIFO_LOG2  = 5,  // FIFO depth: 32 words as specified; less in proofs
     parameter             QUEUE_LOG2 = 4   // queue depth: 15 requests; less in proofs
@@ -121,7 +122,7 @@ module npi_arbiter #(
                 .empty_o(npi_wr_empty_o[p]), .full_o(npi_wr_almost_full_o[p])
             );
             if (READ_FIFO[p]) begin : g_fifo
-                wire rd_full; // a requester has room for its reads (rule 3)
+                wire rd_full; // a requester must have room for the words of its reads (rule 3)
                 npi_fifo #(.WIDTH(68), .LOG2(FIFO_LOG2), .BLOCK(BLOCK_RAM)) u_read (
                     .clk_i(clk_i), .rst_i(rst_i || npi_rd_flush_i[p]),
                     .push_i(rd_valid_i && back_at[p]), .data_i(rd_word),

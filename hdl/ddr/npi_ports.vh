@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_ports: PORTS memory ports (docs/memory.md) on the side of the memory, packed: port p in bits
-// p, 64p+63..64p, ... To be included at the beginning of a port list.
+// npi_ports: PORTS memory ports (docs/memory.md) from the side of the memory, packed: port p has
+// bit p, bits 64p+63..64p, and so on. Include it at the beginning of a port list.
 
     input  wire [32*PORTS-1:0] npi_addr_i,
     input  wire [PORTS-1:0]    npi_addr_req_i,

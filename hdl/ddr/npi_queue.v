@@ -63,7 +63,7 @@ module npi_queue #(
         last_of = {size[2] && |size[1:0], size[2], size[2] || &size[1:0], size[2] || size[1],
                    |size};
     endfunction
-    // The same as move_index has it.
+    // The same function for the size at `move`.
     function [4:0] move_last_of;
         input [2:0] size;
         case (size)
@@ -264,7 +264,7 @@ module npi_queue #(
             cover (full_o);
             cover (inside && issued && is_read && came == 6'd4);
             cover (cmd_valid_o && !cmd_read_o && cmd_last_o == 5'd3);
-            // all of them in one cycle, as far as three positions allow
+            // all four in one cycle, as far as three positions allow
             cover (move_done_i && cmd_valid_o && cmd_ready_i && back_done_i);
             cover (push_i && move_done_i && back_done_i);
         end

@@ -44,8 +44,8 @@ module npi_select #(
     wire [PORTS-1:0] first   = req_i & later & members;
     wire [PORTS-1:0] turn    = asking & members;
 
-    // The lowest bit of each, and the ports above the chosen one, without a carry chain: the ports
-    // are few.
+    // The lowest bit of each, and the ports above the chosen one. Written without a carry chain,
+    // because there are few ports.
     reg [PORTS-1:0] first_low, turn_low, above;
     integer i;
     always @* begin
@@ -83,7 +83,7 @@ module npi_select #(
     end
 
 `ifdef FORMAL
-    // One grant a clock, only to a requester, within a bound.
+    // At most one grant per clock, only to a requester, within a bounded time.
     wire [PORTS-1:0] f_later = later, f_served = served; // for npi_arbiter_proof
     reg past = 1'b0;
     initial assume (rst_i);

@@ -100,7 +100,8 @@ module npi_stream #(
             request_read <= 1'b0;
         end
 
-        // The idle signals are registers, a clock late, because a core's start depends on them.
+        // The idle signals are registers, so one clock late, because the start of a core depends on
+        // them.
         read_idle_o  <= to_give == {WORD_BITS{1'b0}} && outstanding == 6'd0 &&
             !(request && request_read) && !read_start_i;
         write_idle_o <= filled == 3'd0 && bursts == 3'd0 && !push;
@@ -250,7 +251,7 @@ module npi_stream #(
         assert (npi_addr_req_o && $stable(npi_rnw_o) && $stable(npi_size_o));
         assert ($stable(npi_addr_o));
     end
-    // Idle is shown one clock later, not more.
+    // Idle is reported at most one clock late.
     always @(posedge clk_i) if (past && !rst_i && !$past(rst_i)) begin
         assert (write_idle_o || $past(filled != 3'd0 || bursts != 3'd0 || npi_wr_push_o));
         assert (read_idle_o ||

@@ -18,7 +18,7 @@ TESTS = {
     "axis_filter": "test_ip_foreign_axis", "modem_api_": "test_modem_api",
     "modem_": "test_modem test_modem_api", "camera_|async_fifo": "test_ip_camera",
     "fsmc_": "test_fsmc_bridge test_fsmc_modes", "cdc_": "test_fsmc_bridge"}
-SECONDS = "20"  # processor time for each step of a mutant's proof, at least
+SECONDS = "20"  # s of CPU time for each step of a mutant's proof; a longer proof gets more
 DRAW = """setattr -set keep 1 w:f_*
 opt_clean
 write_rtlil plain.il
@@ -26,7 +26,7 @@ write_json plain.json
 select -set proof {module}/t:$ass* {module}/t:$cover {module}/t:$check {module}/t:$any* {lines}
 select -set source {module}/c:* @proof %d
 mutate -list {number} -seed {seed} -o list @source"""
-# A module or its mutant: free signals become the same input of both.
+# Yosys script for the module or its mutant: unconstrained signals become inputs that both share.
 SIDE = """{change}
 chformal -assert -cover -live -fair -remove
 {assume}flatten
@@ -50,8 +50,7 @@ write_aiger -zinit same.aig
 
 
 class Proof:
-    """A proof as CTest runs it: what keeps its verdict, prove.sh module depth source work
-    parameters."""
+    """A proof in the form in which CTest runs it: prove.sh module depth source work parameters."""
     def __init__(self, test, out):
         self.name, words = test["name"].split(".", 1)[1], test["command"]
         start = next(i for i, word in enumerate(words) if word.endswith("/prove.sh"))
@@ -62,8 +61,8 @@ class Proof:
         self.work = out / self.name
 
     def run(self, folder, mutant, seconds=None):
-        """Output and exit status of prove.sh with these commands of Yosys between reading and
-        proving."""
+        """Runs prove.sh with additional commands of Yosys between reading and proving. Returns its
+        output and exit status."""
         limit = {"PROVE_SECONDS": seconds} if seconds else {}
         ran = subprocess.run(
             [self.script, self.module, self.depth, self.source, folder, *self.parameters],
@@ -82,8 +81,8 @@ class Proof:
         return (self.work / "list").read_text().splitlines()[:number]
 
     def lines_of_proof(self):
-        """The lines of the module's proof, as Yosys' select names them: of its file from `ifdef
-        FORMAL or RULES on, and of what that includes."""
+        """Returns the lines of the module's proof in the form that Yosys' select takes: those of
+        its file after `ifdef FORMAL or RULES, and those of the files included there."""
         lines = next(self.source.glob(f"**/{self.module}.v")).read_text().splitlines()
         first = next((n for n, line in enumerate(lines, 1)
                       if re.fullmatch("`(ifdef|elsif) (FORMAL|RULES)", line)), len(lines))
@@ -91,9 +90,9 @@ class Proof:
             f"{self.module}/a:src=*/{self.module}.v:{n}.*" for n in range(first, len(lines) + 1))
 
     def differs(self, folder, mutant):
-        """Whether the mutant's outputs differ from the module's for some input that the proof
-        assumes."""
-        # If parts are cut off, each named wire is an output, because those parts might have read
+        """Returns whether the mutant's outputs differ from the module's for some input that the
+        proof's assumptions allow."""
+        # If parts are cut off, each named wire counts as an output, because those parts may read
         # it.
         seen = "expose w:* w:$* %d\n" if any("delete" in text for text in self.parameters) else ""
         # commands of prove.sh that map to flip-flops and gates
@@ -121,7 +120,7 @@ class Proof:
 
 
 def attempt(proof, index, mutant):
-    """A mutant's row: proof, module, source line, change, result, seconds."""
+    """Tries one mutant. Returns its row: proof, module, source line, change, result, seconds."""
     start = time.monotonic()
     folder = proof.work / str(index)
     # A proof gets four times the time that it takes without a mutant, because a slower proof does
@@ -200,7 +199,7 @@ def by_tests(rows, copy, pool):
 
 
 def progress(results, number):
-    """Returns the results and prints the progress, a line each tenth."""
+    """Returns the results, and prints the progress after each tenth."""
     start, rows = time.monotonic(), []
     for row in results:
         rows.append(row)
@@ -216,7 +215,7 @@ def progress(results, number):
 def measure(proofs, options, out):
     source = pathlib.Path(proofs[0].tree)
     tree = tree_state(source, "bus hdl tests")  # measured tree, for the regression's status
-    # A copy: any edit meanwhile would move the names of cells.
+    # A copy of the tree is used, because any edit during the run would change the names of cells.
     shutil.rmtree(out / "drawn", ignore_errors=True)
     for folder in ("bus", "hdl", "ip"):
         shutil.copytree(source / folder, out / "drawn/source" / folder)
@@ -276,7 +275,7 @@ def main():
     shown = subprocess.run(["ctest", "--test-dir", options.build, "--show-only=json-v1", "-R",
                             rf"^formal\.({options.block})"], stdout=subprocess.PIPE, check=True)
     proofs = [Proof(test, out / "drawn") for test in json.loads(shown.stdout)["tests"]]
-    # Without proofs of several modules together:
+    # Proofs of several modules together are left out.
     proofs = [proof for proof in proofs if not proof.module.endswith("_proof")]
     if not proofs:
         sys.exit(f"mutants: no proof has a name that begins with {options.block}: "

@@ -37,13 +37,13 @@ write_verilog -noattr {folder}/{top}.v
 
 
 def module_of(name):
-    """Returns the name of a module without its parameters."""
+    """Returns the name of a module without the suffix for its parameters."""
     return re.sub(r"^\$paramod(\$[0-9a-f]+)?\\(\w+).*", r"\2", name)
 
 
 def cells(path):
-    """The cells of a design in Yosys' JSON: module -> kind and source -> [(cell, width of each
-    port)], as they were made."""
+    """Returns the cells of a design in Yosys' JSON as {module: {kind and source: [(cell, width of
+    each port)]}}, in the order of their creation."""
     def made(item):
         return int((re.findall(r"\$(\d+)$", item[0]) or [0])[0])
 
@@ -51,8 +51,8 @@ def cells(path):
     for module, content in json.load(open(path))["modules"].items():
         alike = found[module] = collections.defaultdict(list)
         for name, cell in sorted(content["cells"].items(), key=made):
-            # The last of several, because the location of a condition that Yosys could not resolve
-            # precedes it.
+            # Of several locations the last one is used, because the location of a condition that
+            # Yosys could not resolve precedes it.
             source = cell["attributes"].get("src", "").split("|")[-1]
             source = re.sub(r".*/((bus|hdl|ip)/)", r"\1", source)
             widths = {port: len(bits) for port, bits in cell["connections"].items()}
@@ -125,7 +125,7 @@ def main():
                                           "-Wno-style", file])
                 given = dict(zip(arguments, arguments[1:]))
                 makefile = pathlib.Path(given["--Mdir"], given["--prefix"] + ".mk")
-                # compiled once, runs for seconds
+                # -O1, because the model is compiled once and runs only for seconds
                 makefile.write_text("override OPT_FAST = -O1\n" + makefile.read_text())
                 return status
     os.execvp("verilator", ["verilator", *arguments])

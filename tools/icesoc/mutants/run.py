@@ -32,22 +32,22 @@ WORK = TOP / "build/mutants"
 class Bug:
     def __init__(self, name, said):
         self.name, self.test, self.does, file = name, said["test"], said["does"], said["file"]
-        self.changes = []  # file, old lines, new lines
+        self.changes = []  # (file, old lines, new lines) of each change
         for change in [said, *said.get("more", [])]:
             file = change.get("file", file)
             self.changes.append((file, *([lines] if isinstance(lines, str) else lines
                                          for lines in (change["old"], change["new"]))))
 
     def place(self, root):
-        """file:line of its first change, in the file without it."""
+        """Returns file:line of the first change, in the file without the bug."""
         file, before, _ = self.changes[0]
         lines = (root / file).read_text().split("\n")
         starts = [i for i in range(len(lines)) if lines[i:i + len(before)] == before]
         return f"{file}:{starts[0] + 1}"
 
     def planted(self, root):
-        """Returns the texts of the files with the bug in them; raises ValueError if it does not
-        fit."""
+        """Returns the texts of the files with the bug; raises ValueError if the bug does not fit
+        the files."""
         texts = {}
         for file, before, after in self.changes:
             text = texts.get(file) or "\n" + (root / file).read_text()
@@ -60,7 +60,7 @@ class Bug:
 
 
 def bugs(chosen):
-    """The bugs of a block (`*`: of all), or the one of block/name."""
+    """Returns the bugs of a block (`*`: of all blocks), or the bug block/name."""
     block, _, name = chosen.partition("/")
     found = []
     for file in sorted(glob.glob(f"tests/mutants/{block}.bugs.json")
@@ -76,9 +76,9 @@ def bugs(chosen):
 
 
 def prepare(copy, *options):
-    """A copy of the tree for a worker, with its own build folder."""
+    """Creates a copy of the tree for a worker, with a separate build folder."""
     copy.mkdir(parents=True, exist_ok=True)
-    for kept in copy.rglob("*.orig"):  # left by an interrupted run
+    for kept in copy.rglob("*.orig"):  # files left by an interrupted run
         restore(kept.with_suffix(""))
     listed = subprocess.run(
         ["git", "grep", "--no-index", "--exclude-standard", "--no-color", "-lz", ""],
@@ -86,8 +86,8 @@ def prepare(copy, *options):
     there = {name for name in os.fsdecode(listed.stdout).split("\0") if os.path.exists(name)}
     for top in copy.iterdir():
         for file in [top, *top.rglob("*")] if top.name != "build" else []:
-            if not file.is_dir() and str(file.relative_to(copy)) not in there:  # removed from the
-                                                                                # tree
+            # file that was removed from the tree
+            if not file.is_dir() and str(file.relative_to(copy)) not in there:
                 file.unlink()
     subprocess.run(["xargs", "-0", "cp", "-pu", "--parents", "-t", copy], input=listed.stdout,
                    stderr=subprocess.DEVNULL)
@@ -104,13 +104,13 @@ def environment(copy):
 
 
 def restore(file):
-    """Restores the file, newer than the build of the bug."""
+    """Restores a file, with a time after the build with the bug."""
     os.replace(f"{file}.orig", file)
     os.utime(file)
 
 
 def targets(test, copy):
-    """Targets that a test needs."""
+    """Returns the targets that a test needs."""
     kind, _, rest = test.partition(".")
     if kind.startswith("test_"):
         return [kind]
@@ -135,7 +135,7 @@ def attempt(test, copy, log):
                 break
         else:
             return "passes"
-    # A proof must fail by its properties, not by a file that cannot be read.
+    # A proof counts as failed only if a property fails, not if a file cannot be read.
     said = re.search("an assertion fails|not proven|not reached", log.read_text(errors="replace"))
     return "does not build" if test.startswith("formal.") and not said else otherwise
 
@@ -160,7 +160,7 @@ def try_bug(bug, copy):
 
 
 def check(chosen, build):
-    """Checks whether each bug fits the current tree, and its test is in a build folder; builds
+    """Checks that each bug fits the current tree and that a build folder has its test; builds
     nothing."""
     bad, tests = 0, ""
     if build:
@@ -180,8 +180,8 @@ def check(chosen, build):
 
 
 def keep(rows):
-    """Writes the results; results of other blocks are kept from an earlier run, unless a bug was
-    removed."""
+    """Writes the results. Results of other blocks are kept from an earlier run, unless their bug
+    was removed."""
     results = WORK / "results.tsv"
     there = {bug.name for bug in bugs("*")}
     earlier = results.read_text().splitlines() if results.exists() else []
@@ -203,7 +203,7 @@ def try_all(chosen, jobs):
         copy = copies.get()
         try:
             for test in sorted({bug.test for bug in group}):
-                # It must pass without a bug, or "caught" means nothing.
+                # The test must pass without a bug; otherwise a failure proves nothing.
                 log = WORK / f"baseline.{test.replace('/', '-')}.log"
                 if attempt(test, copy, log) != "passes":
                     sys.stderr.write(log.read_text(errors="replace"))
@@ -248,7 +248,7 @@ def main():
         return check(chosen, options.check)
     with only_one(WORK, "mutants"):
         if options.block == "*":
-            # The state that all blocks were measured from, for the regression's light
+            # folders that the results depend on, for the status summary of the regression
             measured = "bus hdl ip slice sw testbench tests tools"
             write(WORK / "tree", tree_state(TOP, measured))
         return try_all(chosen, options.jobs)

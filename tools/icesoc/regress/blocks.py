@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""blocks: gathers what is known of each block, a row a folder of the tree: the tests and proofs of
-this run, the lines covered, the mutants caught, the LUTs, and the last commit without a failure."""
+"""blocks: collects the known facts of each block (one row per folder of the tree): the tests and
+proofs of this run, the lines covered, the mutants caught, the LUTs, and the last commit without a
+failure."""
 import collections
 import pathlib
 import re
@@ -10,7 +11,7 @@ from icesoc.util.tree import tracked
 
 
 class Blocks:
-    """Which block a file, a module or a test belongs to."""
+    """Finds the block to which a file, a module or a test belongs."""
 
     def __init__(self, source):
         files = [pathlib.PurePath(file) for file in tracked(source)]

@@ -11,8 +11,8 @@ SHOWN = 6  # files
 
 
 class Changes:
-    """Notes the state of the tree, with changes that are not committed, as a tree of git. Its
-    objects go into <out>/tree; the repository gets none."""
+    """Records the state of the tree, with uncommitted changes, as a tree object of git. Its objects
+    are stored in <out>/tree; the repository is not changed."""
 
     def __init__(self, source, build, out):
         self.source, self.build, self.environment, self.tree = source, build, {}, ""
@@ -34,15 +34,17 @@ class Changes:
         return "" if added or status else tree.strip()
 
     def meanwhile(self):
-        """The files that have changed since the tree was noted, that is, while the tests ran."""
+        """Returns the files that have changed since the tree was recorded, that is, while the tests
+        ran."""
         now = self.tree and self._write_tree()
         return self.git("diff", "--name-only", "--no-renames", self.tree, now)[1].splitlines() \
             if now else []
 
     @functools.cache
     def differing(self, since):
-        """{path: (first different line, number of them)} since a tree or a commit; None if git does
-        not know it any more. Files that are not committed come first, sources before others."""
+        """Returns {path: (first different line, number of different lines)} since a tree or a
+        commit; None if git no longer has it. Uncommitted files are listed first, sources before
+        others."""
         status, text = self.git("diff", "--unified=0", "--no-color", "--no-ext-diff",
                                 "--no-renames", "--src-prefix=a/", "--dst-prefix=b/", since,
                                 self.tree)
@@ -66,11 +68,11 @@ class Changes:
         return Graph(self.source, self.build)
 
     def forget_graph(self):
-        """Discards cached contents of the files of ninja, after a build has changed them."""
+        """Discards the cached file graph of ninja, after a build has changed it."""
         self.__dict__.pop("graph", None)
 
     def of_test(self, test, since):
-        """The differences since a tree or a commit in the files of a test."""
+        """Returns the differences since a tree or a commit in the files of a test."""
         folders = test.reads()
         inputs = set()
         if test.unbuilt or test.is_program(self.build.resolve()):
@@ -81,15 +83,15 @@ class Changes:
                 if path in inputs or path.startswith(tuple(f + "/" for f in folders))}
 
     def touched(self, test, last_pass):
-        """Returns whether files of a test have changed since it last passed; if it has never passed
-        here, since the commit."""
+        """Returns whether files of a test have changed since it last passed or, if it has never
+        passed here, since the commit."""
         since = last_pass[1].get("tree") if last_pass else "HEAD"
         return not self.tree or not since or self.differing(since) is None or \
             bool(self.of_test(test, since))
 
     def since(self, last_pass, test, seed):
-        """"changed since it passed at 632b860abc: ip/fir/fir.v:12 (2 lines), ...", or that nothing
-        has; "" if neither is known."""
+        """Returns text such as "changed since it passed at 632b860abc: ip/fir/fir.v:12 (2 lines),
+        ...", or that nothing has changed; "" if neither is known."""
         if not self.tree:
             return ""
         end, noted = last_pass or (None, dict[str, str]())
@@ -98,7 +100,7 @@ class Changes:
                       if each and self.differing(each) is not None), None)
         if not since or not (end or self.differing(since)):
             return ""
-        # The files read by a script are not all known.
+        # Not all files that a script reads are known.
         files = self.of_test(test, since) or self.differing(since)
         text = "the commit; it is not known to have passed" if not end else \
             f"it passed at {commit}" + (

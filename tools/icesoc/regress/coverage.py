@@ -32,11 +32,13 @@ class Share:
 
 class File:
     def __init__(self):
-        self.shares = collections.defaultdict(Share)  # by lines, toggles, points
-        self.counts = collections.Counter()  # counts of the points: `name: cover property` in the
-                                             # RTL
-        self.missed = []  # signals that never toggled, lines that never ran, points
-        self.explained = collections.Counter()  # reason: number of points
+        self.shares = collections.defaultdict(Share)  # share covered by kind: lines, toggles,
+                                                      # points
+        self.counts = collections.Counter()  # counts of the named cover points: `name: cover
+                                             # property` in the RTL
+        self.missed = []  # signals that never toggled, lines that never ran, points that were never
+                          # reached
+        self.explained = collections.Counter()  # number of points by reason
 
 
 def inside(path, root):
@@ -47,7 +49,7 @@ def inside(path, root):
 
 
 class Explanations:
-    """Points that cannot be reached, with the reason: they do not count."""
+    """Points that cannot be reached, with the reasons; they are not counted."""
 
     def __init__(self, rules):
         self.rules = [(r.get("file", ""), re.compile(r["points"]), r["why"], collections.Counter())
@@ -69,8 +71,9 @@ class Explanations:
 
 
 def read_verilator(path, root, files, explanations):
-    """verilated.dat: C '\\1key\\2value\\1key\\2value...' count. If a module exists several times,
-    in several models or with several parameters, a point is covered if any of them covers it."""
+    """Reads verilated.dat, lines such as C '\\1key\\2value\\1key\\2value...' count. If a module
+    exists in several models or with several parameters, a point is covered if any of them covers
+    it."""
     counts, places = collections.Counter(), {}
     for line in open(path, errors="replace"):
         if not line.startswith("C '"):
@@ -98,7 +101,7 @@ def read_verilator(path, root, files, explanations):
 
 
 def read_info(path, root, files, _):
-    """lcov's .info: SF:file, DA:line,count"""
+    """Reads a .info file of lcov: SF:file, DA:line,count"""
     file = ""
     for text in open(path, errors="replace"):
         if text.startswith("SF:"):
@@ -111,7 +114,7 @@ def read_info(path, root, files, _):
 
 
 def report(files, gates, out):
-    """Prints a line a file and writes the summary; returns the files below their gates."""
+    """Prints one line per file and writes the summary; returns the files below their gates."""
     rows, below, total = [], [], collections.defaultdict(Share)
     for name, file in sorted(files.items()):
         above = [path for path in gates if name.startswith(path)]

@@ -22,7 +22,8 @@ def reason(text):
 
 
 def main():
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # CTest ends on SIGINT, and reports it
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # CTest ends on SIGINT and reports the interrupt
+                                                  # itself
     with tempfile.TemporaryDirectory() as folder:
         words = sys.argv[1:]
         if "--output-junit" not in words:

@@ -18,15 +18,15 @@ RUNNERS = re.compile(
     r"^-- \S+ \S+ XBeeAT: |^[\s{}()\[\];=-]*$|^(ERROR|FAIL): test_|^FAILED[ :]|^Ran \d+ test|"
     r"^g?make(\[\d+\])?: \*\*\*|^ninja: build stopped|^collect2: |^terminate called|as expected$|"
     r"^#\d|^Thread \d|^Stack of |^Google Test trace:|stands at clock", re.I)
-# A message of a compiler or a lint about a line of a file
+# A message of a compiler or of lint that names a line of a file
 OF_FILE = re.compile(
     r"^%(Error|Warning)[^ ]*: [^ ]+:\d+:|"
     r"^[^ ]+:\d+:(\d+:)? *((fatal|runtime) error|error|warning):|"
     r"^SUMMARY: \S+Sanitizer: |^[^ ]+\.vhdl?:\d+:\d+:|: undefined reference to ")
-# A test's message about a value; an exception of Python, of Ice
+# A message of a test about a value, or an exception of Python or Ice
 OF_VALUE = re.compile(r"\berror\b|(?<!as )\bexpected\b|\bdiffers?\b|"
                       r"^(\S+: )*(\w+\.)*(::\w+)*\w*(Error|Exception):|^what\(\): ", re.I)
-# GoogleTest's lines about two values, and about a condition
+# GoogleTest's lines about two unequal values, and about a condition
 EQUALITY = re.compile(r"(?m)^Expected equality of these values:"
                       r"\n +(.*)(?:\n +Which is: (.*))?\n +(.*)(?:\n +Which is: (.*))?$")
 CONDITION = re.compile(r"(?m)^Value of: (.*)\n +Actual: (.*)\nExpected: (.*)$")
@@ -35,23 +35,25 @@ CONDITION = re.compile(r"(?m)^Value of: (.*)\n +Actual: (.*)\nExpected: (.*)$")
 @dataclasses.dataclass
 class Failure:
     result: Result
-    reason: str  # the line with the error
-    bucket: str = ""  # the reason without its numbers: failures of one bucket have one cause
+    reason: str  # line of the log with the error
+    bucket: str = ""  # the reason without its numbers; failures with the same bucket have the same
+                      # cause
     repeat: str = ""  # one command
-    place: str = ""  # from GoogleTest: "tests/sw/link/link_test.cpp:185", or ""
-    changed: str = ""  # since it passed, or ""
+    place: str = ""  # place from GoogleTest, such as "tests/sw/link/link_test.cpp:185", or ""
+    changed: str = ""  # text about files that have changed since the test passed, or ""
     log: str = ""  # file
-    wave: str = ""  # FST or VCD file, or ""
-    about: str = ""  # text with the names of relevant signals: the assertion, or the reason
-    scope: str = ""  # instance in which to look: "u_window.u_wrapper", or ""
-    own_assertion: bool = False  # proofs: the assertion is in the proven module
-    save: str = ""  # GTKWave save file, or ""
-    clock: int = 0  # clock of the failure in that waveform; 0: its end
+    wave: str = ""  # path of an FST or VCD file, or ""
+    about: str = ""  # text that names the relevant signals: the assertion, or the reason
+    scope: str = ""  # instance to look at first, such as "u_window.u_wrapper", or ""
+    own_assertion: bool = False  # for a proof: the assertion that fails is in the proven module
+                                 # itself
+    save: str = ""  # path of the GTKWave save file, or ""
+    clock: int = 0  # clock of the failure in the waveform; 0: its end
 
 
 def comparison(match):
-    """status is 5, not ICE_OK, which is 0: a literal follows the value. Of two lists, the first
-    element that differs: list differs at [2]: expected 5, got 4."""
+    """Returns the difference in a GoogleTest message, such as "status is 5, not ICE_OK, which is
+    0". Of two lists it is the first different element: "list differs at [2]: expected 5, got 4"."""
     a, of_a, b, of_b = match.groups()
     if of_a and of_b and of_a[0] == of_b[0] == "{":
         got, expected = (text.strip("{ }").split(", ") for text in (of_a, of_b))
@@ -64,9 +66,9 @@ def comparison(match):
 
 
 def reason_of(log):
-    """The reason in the test's log: GoogleTest's lines after the first "Failure", else a compiler's
-    first message about a file, else the first line about an error, else the last line. An exception
-    that ends in a colon takes the next line with it, a diff its first two lines."""
+    """Returns the reason in a test's log: GoogleTest's lines after the first "Failure"; otherwise a
+    compiler's first message about a file, the first line about an error, or the last line. If an
+    exception ends in a colon, the next line is included; of a diff, the first two lines."""
     last, of_file, of_value, failure = "", "", "", None
     log = CONDITION.sub(r"\1 is \2, not \3", EQUALITY.sub(comparison, log))
     log = re.sub(r"((?:Error|Exception)\b.*:)\n+ *(?=\S)", r"\1 ", log)
@@ -91,9 +93,9 @@ def reason_of(log):
 
 
 def find_assertion(failure):
-    """Adds the assertion that fails to a proof's failure: its place and text, its instance, and
-    whether that belongs to the proven module. Yosys names the assertion's cell by
-    instance, file and line, with the lines of all cells around it."""
+    """Adds the failing assertion to the failure of a proof: its place and text, its instance, and
+    whether it belongs to the proven module. Yosys names the cell of an assertion by instance, file
+    and line, with the lines of all cells around it."""
     match = re.search(
         r"Assert failed in \S+: (\S+) \((?:\$flatten/)?(?:(\S*?)\.?\$assert\$(\S+)\$)?",
         failure.result.log)
@@ -106,7 +108,7 @@ def find_assertion(failure):
     first, last = int(at[3]), int(at[5])
     path = pathlib.Path(at[1].lstrip("|"))
     lines = path.read_text().splitlines()[first - 1:last] if path.exists() else []
-    if len(lines) > 1:  # Yosys begins at the end of the statement before
+    if len(lines) > 1:  # the location by Yosys begins at the end of the previous statement
         lines[0] = lines[0][int(at[4]):]
     failure.about = " ".join(filter(None, map(str.strip, lines)))
     asserts = next((i for i, line in enumerate(lines) if "assert" in line), max(0, len(lines) - 1))
@@ -116,9 +118,9 @@ def find_assertion(failure):
 
 
 def rank(failure, tests):
-    """The place of a failure in the reading order: first proofs, which name the property, the
-    module that has it before the modules around; then checks of sources; then tests of one block,
-    of the chip, of the firmware; whole missions last."""
+    """Returns the place of a failure in the reading order. First come proofs, which name the
+    property, those of a module before those of the modules around it; then checks of sources; then
+    tests of one block, of the chip, and of the firmware; last whole missions."""
     test = tests.get(failure.result.name)
     text = " ".join([failure.result.name, *([test.place, *test.labels] if test else [])])
     order = ("^formal[.]", "^(lint|tree)[.]", "^(vhdl|slice)[.]|(hdl|bus|ip)/?.* rtl", " rtl",
@@ -128,7 +130,8 @@ def rank(failure, tests):
 
 
 def examine(results, tests, out):
-    """The failures in reading order; keeps logs, and traces of proofs, in <out>/failures/."""
+    """Returns the failures in reading order. Stores their logs, and the traces of proofs, in
+    <out>/failures/."""
     folder, failures = out / "failures", []
     shutil.rmtree(folder, ignore_errors=True)
     for result in [result for result in results if result.status == "failed"]:
@@ -145,7 +148,7 @@ def examine(results, tests, out):
         find_assertion(failure)
         if place := re.search(r"(?:^|\n)(?:[.][.]/)*(\S+:\d+): Failure\n", result.log):
             failure.place = os.path.relpath(place[1]) if place[1][0] == "/" else place[1]
-        trace = re.search(r"trace: (\S+[.]vcd)", result.log)  # printed by proofs
+        trace = re.search(r"trace: (\S+[.]vcd)", result.log)  # proofs print this line
         if trace and os.path.exists(trace[1]):
             failure.wave = f"{base}.vcd"
             shutil.copyfile(trace[1], failure.wave)

@@ -10,8 +10,8 @@ KEPT_RUNS = 300
 
 
 class History:
-    """A run's `ends` are [name, how, seconds, print, seed] of each test and seed, failures last;
-    how: "p", "f" or "s"."""
+    """The stored runs. A run's `ends` are [name, how, seconds, print, seed] for each test and seed,
+    failures last; how: "p" (passed), "f" (failed) or "s" (skipped)."""
 
     def __init__(self, path, costs):
         self.path, self.runs, self.damaged = path, [], 0
@@ -26,25 +26,25 @@ class History:
         self._index()
 
     def _index(self):
-        self.ends = collections.defaultdict(list)  # by test, the newest last: (end, run)
+        self.ends = collections.defaultdict(list)  # results by test, newest last: (end, run)
         for run in self.runs:
             for name, *end in run["ends"]:
                 self.ends[name].append((end, run))
 
     def add(self, run):
-        """Adds a run and writes the file again, atomically."""
+        """Adds a run, and rewrites the file atomically."""
         self.runs = (self.runs + [run])[-KEPT_RUNS:]
         self._index()
         write(self.path, "".join(json.dumps(each, separators=(",", ":")) + "\n"
                                  for each in self.runs))
 
     def last(self, name):
-        """How a test ended in the newest run that had it, or ""."""
+        """Returns how a test ended in the newest run that included it, or ""."""
         return self.ends[name][-1][0][0] if self.ends[name] else ""
 
     def now(self, test, seed=None):
-        """How a test ended last with these sources (and with this seed); without such a run, "f" if
-        it failed last."""
+        """Returns how a test ended last with these sources (and with this seed). If there is no
+        such run, returns "f" if it failed last."""
         return next((end[0] for end, _ in reversed(self.ends[test.name])
                      if end[2] == test.print and seed in (None, end[3])),
                     "f" if self.last(test.name) == "f" else "")
@@ -54,17 +54,17 @@ class History:
         return next((each for each in reversed(self.ends[name]) if each[0][0] == "p"), None)
 
     def seconds(self, name):
-        """Seconds that a test took in the newest run that had it, or None."""
+        """Returns the duration of a test in the newest run that included it, s, or None."""
         return self.ends[name][-1][0][1] if self.ends[name] else None
 
     def usual(self, name):
-        """Seconds that a test may take: the longest of its passes, at least what tests/costs.txt
-        states (a reused result takes no time); None if neither is known."""
+        """Returns the usual duration of a test, s: its longest pass, but at least the value in
+        tests/costs.txt (a reused result takes no time); None if neither is known."""
         times = [end[1] for end, _ in self.ends[name] if end[0] == "p"]
         return max([*times, *self.costs.get(name, [])], default=None)
 
     def flaky(self):
-        """Tests that both passed and failed with one fingerprint and one seed."""
+        """Returns the tests that both passed and failed with the same fingerprint and seed."""
         names = []
         for name, ends in sorted(self.ends.items()):
             how = collections.defaultdict(set)

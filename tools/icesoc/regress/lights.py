@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""lights: shows a run as seven lights: tests, proofs, plan, mutants, coverage, size, speed. A light
-is green, red, or grey: not measured, or the sources have changed since. Each reads its own figures
-only, so that a bug of one kind turns one light red."""
+"""lights: summarises a run in seven statuses: tests, proofs, plan, mutants, coverage, size, speed.
+A status is green, red, or grey (not measured, or the sources have changed since). Each status
+depends only on its own figures, so that a bug of one kind turns one status red."""
 from icesoc.util.tree import tree_state
 
 
@@ -14,14 +14,15 @@ def missing(name, command):
 
 
 def judge(name, good, wrong, bad):
-    """Green with `good`, or red with the first few errors."""
+    """Returns green with the text `good`, or red with the first few errors."""
     if not bad:
         return light(name, "green", good)
     return light(name, "red", f"{len(bad)} {wrong}: {', '.join(bad[:3])}{', ...' * (len(bad) > 3)}")
 
 
 def of_tests(data, name):
-    """Rows of `results` are [name, status, ...]; proofs are the tests named formal.*"""
+    """Returns the status of the tests. Rows of `results` are [name, status, ...]; proofs are the
+    tests named formal.*"""
     rows = [r for r in data["results"] if r[0].startswith("formal.") == (name == "proofs")]
     bad = [row[0] for row in rows if row[1] == "failed"]
     passed = sum(row[1] == "passed" for row in rows)
@@ -38,7 +39,8 @@ def of_tests(data, name):
 
 
 def of_mutants(rows, drawn, source):
-    """Drawn mutants count by their module's score, if the sources are the same."""
+    """Returns the status of mutants. Drawn mutants count by the score of their module, if the
+    sources are the same."""
     tree = drawn.get("tree", "")
     if tree and tree_state(source, tree.split(":")[0]) == tree:
         if bad := [m for m, s in drawn["modules"].items() if s["score"] < drawn["gate"]]:
@@ -51,7 +53,7 @@ def of_mutants(rows, drawn, source):
 
 
 def below_gate(f):
-    """Whether a file's coverage is: of lines, of cover points, or of toggles."""
+    """Returns whether the coverage of a file (lines, cover points or toggles) is below its gate."""
     return f["percent"] < f["gate"] or f.get("point_percent", 100) < f.get("point_gate", 0) or \
         bool(f.get("toggle_points", 0)) and f.get("toggles", 100) < f.get("toggle_gate", 0)
 
@@ -79,7 +81,8 @@ def of_entries(name, entries, command):
 
 
 def of_size(utilisation):
-    """A design that failed has no figure: the result of `make synth` decides."""
+    """Returns the status of size. A design without a figure failed; the result of `make synth`
+    decides."""
     if not utilisation:
         return missing("size", "make synth")
     if utilisation["failures"]:
@@ -109,7 +112,7 @@ def lights_of(data, source):
     measured = [of_mutants(data["mutants"], data.get("drawn", {}), source),
                 of_coverage(data.get("coverage")), of_size(data.get("utilisation")),
                 of_entries("speed", data.get("speed", []), "make bench")]
-    for each in measured:  # a measurement keeps the state of the tree it was made with
+    for each in measured:  # a measurement records the state of the tree in which it was made
         tree = data["trees"].get(each["name"], "")
         if each["state"] != "grey" and tree_state(source, tree.split(":")[0]) != tree:
             each["text"] = f"sources have changed since it was {each['state']}: {each['text']}"

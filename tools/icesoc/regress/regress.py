@@ -93,7 +93,8 @@ class Regression:
         return Changes(self.options.source, self.options.build, self.options.out)
 
     def choose(self, tests, built=True):
-        """The tests that the options choose; before the build only programs of some are known."""
+        """Returns the tests that the options select. Before the build, only the programs of some
+        tests are known."""
         o, chosen = self.options, []
         exact = any(test.name == o.name.text for test in tests)
         for test in tests:
@@ -104,7 +105,7 @@ class Regression:
             if o.label.pattern and not any(map(o.label.search, test.labels)) and \
                     (test.labels or not test.unbuilt):
                 continue
-            if test.unbuilt:  # its cases are not known
+            if test.unbuilt:  # the cases of this program are not known yet
                 named = not exact and (not o.name.text or
                                        test.may_hold(o.name, self._sources(test)))
             else:
@@ -140,8 +141,8 @@ class Regression:
                 if file.suffix == ".cpp" and file.exists()]
 
     def _changed(self, test, built):
-        """Chooses tests that failed last in any case, not those that passed last with these
-        sources, and tests that have never passed here if their files differ from the commit."""
+        """Selects tests that failed last, but not those that passed last with these sources; also
+        tests that have never passed here, if their files differ from the commit."""
         passed = self.history.last_pass(test.name)
         if self.history.last(test.name) == "f":
             return True
@@ -156,7 +157,7 @@ class Regression:
         outputs = {line.rpartition(":")[0] for line in collect(
             ["ninja", "-C", o.build, "-t", "targets", "all"])[1].splitlines()}
         chosen, found = self.choose(tests, built=False), set()
-        for test in chosen:  # grows by the tests that set up fixtures
+        for test in chosen:  # the list grows by the tests that set up fixtures
             found.update(targets_of(test, o.build, outputs))
             chosen += [other for other in tests if set(other.sets) & set(test.needs) and
                        other not in chosen]
@@ -174,7 +175,7 @@ class Regression:
             self.changes.forget_graph()
 
     def nothing(self, tests):
-        """Says why no test is chosen. Returns the exit status."""
+        """Prints why no test is selected. Returns the exit status."""
         o = self.options
         if o.changed or o.rerun_failed:
             print(f"Nothing to run: no test {'changed' if o.changed else 'failed'} since the last "
@@ -201,7 +202,7 @@ class Regression:
         chosen = self.choose(tests)
         if chosen and o.select:
             write_numbers(o.select, chosen)
-        if not chosen or o.prepare or o.select:  # CTest then runs them without history
+        if not chosen or o.prepare or o.select:  # then CTest runs them without history
             return 0 if chosen else self.nothing(tests)
         if o.list:
             print("\n".join(test.name for test in chosen))
@@ -244,7 +245,7 @@ class Regression:
                           flush=True)
             if not interrupted:
                 add_waves(failures, known, o.source, o.build, o.jobs, o.waves)
-        except Interrupted as stop:  # the waveforms are missing then
+        except Interrupted as stop:  # the report is then written without waveforms
             interrupted = stop
             end_descendants()
         with signals_held():
@@ -252,13 +253,13 @@ class Regression:
             try:
                 write_reports(data, failures, o.build / "page", o.out)
                 write_junit(o.out / "junit.xml", results, failures, begin, commit, stopped)
-            finally:  # a full disk does not hide the results
+            finally:  # a full disk must not hide the results
                 summary(data, failures, o.out)
         return interrupted.status if interrupted else 1 if failures else 0
 
     def _examine(self, results, known, changes):
-        """Returns the failures, with the changes that may be their causes. Names processes that
-        tests left, and files that changed while the tests ran."""
+        """Returns the failures, with the changes that may have caused them. Prints the names of
+        processes that tests left, and of files that changed while the tests ran."""
         for each in end_orphans():
             print("A test has left behind, and it was ended:", each)
         for each in changes.meanwhile():

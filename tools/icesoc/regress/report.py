@@ -12,7 +12,7 @@ from icesoc.web.page import filled, page_parts, script_safe
 from icesoc.regress.waves import drawing_of
 
 HERE = pathlib.Path(__file__).resolve().parent
-LARGEST = 2_000_000  # bytes of the page
+LARGEST = 2_000_000  # greatest size of the page, bytes
 MEASURED = {"coverage": "coverage/summary.json", "utilisation": "synth/report.json",
             "speed": "bench/simulator.json", "drawn": "mutants/drawn.json"}
 
@@ -25,7 +25,8 @@ def read(path):
 
 
 def proofs_of(results):
-    """The proofs in logs: "X: proven, 47 clauses with 33 flops", "X: 2 covers reached"."""
+    """Returns the results that proofs print: "X: proven, 47 clauses with 33 flops", "X: 2 covers
+    reached"."""
     def said(log, what):
         return (re.search(what, log) or ["", "-"])[1]
     return [[r.name[7:], r.status, said(r.log, "bounded, ([0-9]+) clocks"),
@@ -34,9 +35,11 @@ def proofs_of(results):
 
 
 def measurements(build):
-    """Results that other commands left in build/, with the state of the tree that they measured."""
+    """Returns the results that other commands left in build/, with the state of the tree that they
+    measured."""
     data = {name: found for name, path in MEASURED.items() if (found := read(build / path))}
-    for file in data.get("coverage", {}).get("files", []):  # the rest is in the coverage summary
+    for file in data.get("coverage", {}).get("files", []):  # the remaining data are in the coverage
+                                                            # summary
         if (more := len(file["missed"]) - 40) > 0:
             file["missed"][40:] = [f"and {more} more"]
     mutants = build / "mutants/results.tsv"
@@ -53,7 +56,8 @@ def gather(history, tests, results, failures, source):
             "proofs": proofs_of(results)}
     del data["ends"]
     known = {test.name: test for test in tests}
-    now = {(r.name, r.seed) for r in results}  # a run with one seed: its failures are in results
+    now = {(r.name, r.seed) for r in results}  # in a run with one seed, the failures of that seed
+                                               # are in the results
     data["seeds"] = [kept for test, kept in history.failing(tests).items()
                      if test not in now or len({r.seed for r in results}) > 1]
     data["results"] = []
@@ -87,7 +91,7 @@ def reasons_of(run):
 
 def write_reports(data, failures, libraries, out):
     style, script = page_parts(libraries)
-    # Drawings get the remaining size of the page.
+    # Drawings get the remaining space of the page.
     rest = LARGEST - len(style) - len(script) - len(json.dumps(data)) - 60_000
     drawn = [i for i, failure in enumerate(failures) if failure.wave]
     for i in drawn:

@@ -17,7 +17,8 @@ from icesoc.util.errors import Interrupted, Stop
 from icesoc.util.files import write
 from icesoc.util.process import children, collect, descendants, end_descendants
 
-SHORTEST_HANG = 30  # CPU time, or time without CPU use, before which no test is ended, s
+SHORTEST_HANG = 30  # s; a test is never ended before it has used this CPU time, or has run for this
+                    # time without using the CPU
 IDLE = 10  # time in which a test must use a second of CPU time, or it counts as idle, s
 
 
@@ -32,17 +33,18 @@ class Result:
 
 
 class Progress:
-    """Prints the progress: on a terminal in one line that it rewrites, else at each tenth. It
-    reports a failure at once."""
+    """Prints the progress: on a terminal in one line that is rewritten, otherwise after each tenth.
+    Prints failures immediately."""
 
     def __init__(self, tests, history, jobs):
         self.jobs, self.total, self.done, self.failed = jobs, len(tests), 0, 0
         self.seconds = {test.name: history.seconds(test.name) for test in tests}
         self.usual = {test.name: history.usual(test.name) for test in tests}
-        self.running = {}  # name: when it began, the oldest first
-        self.due = {}  # by name: age in seconds at which it is named
-        self.busy = {}  # by name: (CPU time, when it was reached), updated each second of CPU time
-        self.hangs = {}  # name: (how it was ended, stacks)
+        self.running = {}  # start time by name, oldest first
+        self.due = {}  # age in s at which a test is reported as late, by name
+        self.busy = {}  # by name: (CPU time, when it was reached), updated after each second of CPU
+                        # time
+        self.hangs = {}  # by name: (how the test was ended, stacks)
         self.lock = threading.Lock()
 
     def start(self, name):
@@ -74,7 +76,7 @@ class Progress:
                 self.due[name] = 2 * age
                 self._line(f"{name} has run for {age:.0f} s, usually {known}", True)
             limit = self.limit(name)
-            is_proof = name.startswith("formal.")  # limited by CPU time
+            is_proof = name.startswith("formal.")  # limited by CPU time instead
             if age < limit or is_proof or name in self.hangs:
                 continue
             try:
@@ -128,7 +130,7 @@ class Progress:
                 print(text, flush=True)
 
 
-GONE = (OSError, StopIteration, ValueError)  # errors about a test that has ended
+GONE = (OSError, StopIteration, ValueError)  # errors that occur if a test has just ended
 
 
 def cpu_time(process):
@@ -142,7 +144,8 @@ def cpu_time(process):
 
 
 def process_of(name, running):
-    """The process of a running test: CTest prints them in the order in which it begins them."""
+    """Returns the process of a running test; CTest prints the tests in the order in which it starts
+    them."""
     ctest = next(pid for pid in children(os.getpid())
                  if pathlib.Path(f"/proc/{pid}/comm").read_text() == "ctest\n")
     processes = children(ctest)
@@ -155,7 +158,7 @@ def end_hang(process, build):
     below = [process, *descendants(process)]
     stacks = ""
     for pid in below:
-        with contextlib.suppress(OSError):  # ended because of an earlier one
+        with contextlib.suppress(OSError):  # ended already, because of an earlier process
             program = os.readlink(f"/proc/{pid}/exe")
             if not program.startswith(f"{build}/"):
                 continue
@@ -220,7 +223,7 @@ def run_tests(tests, build, out, seed, jobs, history):
         end_descendants()
     finally:
         done.set()
-        watcher.join()  # it may be reading the stacks of a hang
+        watcher.join()  # it may still be reading the stacks of a test that hangs
     if sys.stdout.isatty():
         print("\r\033[K", end="")
     if interrupted:

@@ -16,12 +16,12 @@ from icesoc.util.files import digest, write
 from icesoc.util.process import collect
 from icesoc.util.tree import tracked
 
-NOT_BUILT = "_NOT_BUILT"  # CTest's suffix for a program that is not built
+NOT_BUILT = "_NOT_BUILT"  # suffix that CTest gives to a program that is not built
 
 
 class Name:
-    """A choice of tests by name. A plain word chooses names that have it as a whole word, so that
-    `fir` does not choose `first`; anything else is a regular expression."""
+    """A selection of tests by name. A plain word selects names that contain it as a whole word, so
+    that `fir` does not select `first`; anything else is a regular expression."""
 
     def __init__(self, text):
         self.text, self.is_word = text, bool(re.fullmatch(r"[A-Za-z]\w*", text))
@@ -37,17 +37,17 @@ def write_numbers(path, tests):
 
 @dataclasses.dataclass
 class Test:
-    number: int  # CTest's, from 1
+    number: int  # number that CTest gives the test, starting with 1
     name: str
     command: list
-    folder: str = ""  # working directory, which it may write
-    place: str = ""  # the same, relative to tests/: "hdl/modem"
+    folder: str = ""  # working directory; the test may write there
+    place: str = ""  # the same folder relative to tests/, such as "hdl/modem"
     labels: list = dataclasses.field(default_factory=list)
     needs: list = dataclasses.field(default_factory=list)  # CTest's fixtures
     sets: list = dataclasses.field(default_factory=list)
-    targets: list | None = None  # NEEDS=... of its environment: targets that it needs
+    targets: list | None = None  # targets that the test needs, from NEEDS=... in its environment
     path: str = ""  # folder, without tests/: "ip/fir", "hdl/modem"
-    print: str = ""  # changes with the test's program or files
+    print: str = ""  # fingerprint; changes when the test's program or files change
 
     @property
     def unbuilt(self):
@@ -55,7 +55,7 @@ class Test:
 
     @property
     def program(self):
-        """The name of the program and of its target."""
+        """Returns the name of the program and of its target."""
         return self.name.removesuffix(NOT_BUILT) if self.unbuilt else self.name.split(".")[0]
 
     def is_in(self, folder):
@@ -68,7 +68,7 @@ class Test:
             self.command[0].startswith(f"{build.resolve()}/")
 
     def reads(self):
-        """The folders that a test without a program reads."""
+        """Returns the folders that a test without a program reads."""
         own = f"tests/{self.place}"
         if "formal" in self.place or "lint" in self.place:
             return ("bus", "hdl", "ip", "tools", own)
@@ -77,12 +77,14 @@ class Test:
         return ("bus", "hdl", "ip", "slice", "sw", "testbench", "tools", own)
 
     def compiles(self):
-        """Returns the files that a test by GHDL names, and its programs; empty for another test."""
+        """Returns the files that the command of a test by GHDL names, and its programs; empty for
+        another test."""
         return [word for word in self.command if word.startswith("/")] \
             if self.name.startswith("vhdl.") else []
 
     def blocks(self):
-        """Words that --block compares with: from the folder, and from the name up to the case."""
+        """Returns the words that --block compares with: those of the folder, and those of the name
+        up to the case."""
         kind, _, rest = self.name.partition(".")
         more = rest if kind in ("formal", "lint", "wave") else ""
         return set(re.findall("[A-Za-z0-9]+", f"{self.place}/{kind}/{more}"))
@@ -123,7 +125,7 @@ class Test:
 
 
 def list_tests(build):
-    """All tests of a build folder."""
+    """Returns all tests of a build folder."""
     status, text = collect(["ctest", "--test-dir", build, "--show-only=json-v1"])
     if status:
         raise Stop(f"ctest cannot list the tests of {build}:\n{text[:2000]}")
@@ -168,8 +170,8 @@ def targets_of(test, build, outputs):
     for path in re.findall(re.escape(str(build)) + "([^ '\":;,<>]*)", " ".join(test.command)):
         target = path.lstrip("/")
         if f"{build}{path}".startswith(test.folder + "/") and target not in outputs:
-            continue  # the test makes it
-        name = os.path.basename(target)  # Ice adds .so to a plugin's
+            continue  # the test itself creates this file
+        name = os.path.basename(target)  # Ice adds .so to the name of a plugin
         targets.append("synth_inputs" if target == "gen" else target if target in outputs
                        else name if name in outputs else "all")
     return targets
@@ -222,7 +224,8 @@ class Graph:
             if path not in seen:
                 seen.add(path)
                 left += self.made.get(path, [])
-        real = (os.path.normpath(self.build / path) for path in seen)  # ccache's are relative
+        # paths in the files of ccache are relative
+        real = (os.path.normpath(self.build / path) for path in seen)
         return {path[len(source):] for path in real if path.startswith(source)}
 
 
@@ -233,8 +236,8 @@ class Requirement:
     patterns: list  # test names; * matches anything
 
     def matches(self, test):
-        """Returns whether a test proves it; a program that is not built represents all of its
-        cases."""
+        """Returns whether a test proves this requirement; a program that is not built stands for
+        all of its cases."""
         return any(may_match(pattern, test) for pattern in self.patterns)
 
 
@@ -245,7 +248,8 @@ def may_match(pattern, test):
 
 
 def read_plan(source):
-    """tests/plan.toml: a table a page of docs/, `"requirement" = "test.pattern test.*"`."""
+    """Reads tests/plan.toml: one table per page of docs/, with lines `"requirement" = "test.pattern
+    test.*"`."""
     path = source / "tests/plan.toml"
     try:
         pages = tomllib.loads(path.read_text()) if path.exists() else {}
@@ -265,7 +269,7 @@ def unmatched(requirement, tests):
 
 
 def judge_plan(plan, tests, history):
-    """Judges each requirement by the last results of its tests, preferring results with these
+    """Returns for each requirement the last results of its tests, preferring results with these
     sources."""
     rows = []
     for each in plan:

@@ -22,7 +22,7 @@ from icesoc.util.process import collect
 from icesoc.util.tree import tracked
 
 STATUS = pathlib.Path("/var/lib/dpkg/status")
-# Files that a build makes for programs, not for the next step of the build
+# Files that the build makes for programs, and not for its own later steps
 USED = re.compile(r"\.(so|elf|bin|json|vh|list|inc)$|/(?!test_|fuzz_)[\w-]+$")
 
 
@@ -54,8 +54,8 @@ def packages(source, status=STATUS):
 
 
 class Inputs:
-    """The digests of tests' inputs. Digests of files are kept in the build folder, and computed
-    again if size or time of a file have changed."""
+    """Computes digests of the inputs of tests. Digests of files are stored in the build folder, and
+    computed again if size or time of the file has changed."""
 
     def __init__(self, source, build, seed):
         self.source, self.build, self.seed = source.resolve(), build.resolve(), seed
@@ -92,12 +92,12 @@ class Inputs:
 
     @functools.cached_property
     def tracked(self):
-        """The files of the tree."""
+        """Returns the files of the tree."""
         return [str(self.source / name) for name in tracked(self.source)]
 
     @functools.cached_property
     def made(self):
-        """The files of the build that programs use; what tests write is not among them."""
+        """Returns the files of the build that programs use, without those that tests write."""
         listed = collect(["ninja", "-C", self.build, "-t", "targets", "all"])[1]
         names = (line.rpartition(":")[0] for line in listed.splitlines())
         paths = (os.path.join(self.build, name) for name in names)
@@ -105,7 +105,7 @@ class Inputs:
 
     @functools.cached_property
     def all(self):
-        """The digest of the tree and of what is built from it."""
+        """Returns the digest of the tree and of what is built from it."""
         return self.files(self.tracked + self.made)
 
     def files(self, paths):
@@ -138,7 +138,7 @@ class Inputs:
 
 
 class Passes:
-    """The passes of a build folder's tests: the digest of the inputs by the test's name."""
+    """The passes of the tests in a build folder: digest of the inputs by name of the test."""
 
     def __init__(self, source, build, seed):
         self.path, self.inputs = build / "passes.json", Inputs(source, build, seed)
@@ -151,7 +151,7 @@ class Passes:
             self.kept = {}
 
     def changed(self, label, all_tests):
-        """Returns the tests with a label that have not passed with their present inputs, and the
+        """Returns the tests with a label that have not passed with their current inputs, and the
         number of the others."""
         some = [test for test in self.tests.values() if not label or label in test.labels]
         left = [test for test in some if all_tests or not test.command or
@@ -159,8 +159,8 @@ class Passes:
         return left, len(some) - len(left)
 
     def note(self, junit):
-        """Adds the passes in CTest's results, if no input has changed meanwhile, and removes the
-        failures."""
+        """Adds the passes in CTest's results, unless an input has changed meanwhile, and removes
+        the failures."""
         results = xml.parse(junit).iter("testcase") if junit.exists() else ()
         now = Inputs(self.inputs.source, self.inputs.build, self.inputs.seed)
         for case in results:

@@ -17,24 +17,25 @@ CLOCKS_PER_SECOND = 1e8  # frequency of the chip in a flight, Hz
 SECONDS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9, "ps": 1e-12, "fs": 1e-15}  # GHDL's units of time
 FIRST_CORE = 2  # slot
 SOURCES = (".v", ".sv", ".vh", ".vhd", ".vhdl")
-MOST_CHANGES, FEWEST_CHANGES, MOST_SIGNALS = 400, 25, 200  # limits of a drawing
+MOST_CHANGES, FEWEST_CHANGES, MOST_SIGNALS = 400, 25, 200  # limits of a drawing: changes and
+                                                           # signals
 
 
 @dataclasses.dataclass
 class Scene:
-    """A repetition: a test's program, or a flight's recording, around a clock."""
-    program: str  # target of the build with waveforms; "" for a test by GHDL
+    """What is repeated: the program of a test, or the recording of a flight, around a clock."""
+    program: str  # target in the build with waveforms; "" for a test by GHDL
     clock: int
     flight: str = ""  # folder of the recording
-    slot: int = 0  # slot of the last core that the processor was told about; 0: no core
+    slot: int = 0  # slot of the last core that the processor was informed about; 0: no core
     before: int = 2000
     after: int = 20
 
 
 def scene_of(failure, test):
-    """None: the failure has no waveform."""
+    """Returns the Scene of a failure; None if the failure has no waveform."""
     log = failure.result.log
-    if failure.result.end.startswith("Hang"):  # the repetition would also hang
+    if failure.result.end.startswith("Hang"):  # the repetition would hang as well
         return None
     if match := re.search(r"make run REPLAY='([^']+)' FROM=[0-9.]+ TO=([0-9.]+)", log):
         scene = Scene("icesoc-sim", int(float(match[2]) * CLOCKS_PER_SECOND), match[1])
@@ -53,17 +54,17 @@ def scene_of(failure, test):
         scene = Scene(failure.result.name.split(".")[0], int(match[1]))
     elif failure.result.name.startswith("vhdl.") and \
             (match := re.search(r"@(\d+)([munpf]s):", log)):
-        # GHDL runs up to the failure; its waveform has all clocks
+        # GHDL simulates up to the failure, and its waveform contains all clocks
         scene = Scene("", int(int(match[1]) * CLOCKS_PER_SECOND * SECONDS[match[2]]))
     else:
         return None
-    if "e2e" in test.labels:  # a mission's program works for longer than a block
+    if "e2e" in test.labels:  # the program of a mission runs longer than that of a block
         scene.before, scene.after = 150_000, 50_000
     return scene
 
 
 def instance_in(slot, build):
-    """The name of a slot's instance in the chip's list of cores."""
+    """Returns the instance name of the core in a slot, from the chip's list of cores."""
     cores = build / "gen/soc_cores.vh"
     match = re.search(rf"(u_\w+) \([^;]*bus_valid_i\(slot_valid\[{slot}\]\)",
                       cores.read_text() if cores.exists() else "")
@@ -162,7 +163,7 @@ def add_wave(failure, test, scene, source, tested, jobs):
 
 
 def add_waves(failures, tests, source, build, jobs, limit):
-    """Prints its steps on the terminal; a test that cannot be traced has no waveform."""
+    """Adds waveforms, and prints the steps; a test that cannot be traced gets no waveform."""
     made = 0
     for failure in failures:
         test = tests.get(failure.result.name)
@@ -176,7 +177,7 @@ def add_waves(failures, tests, source, build, jobs, limit):
         print(f"Waveform of {failure.result.name} around clock {scene.clock} ...", flush=True)
         try:
             add_wave(failure, test, scene, source, build, jobs)
-        except (Stop, OSError) as error:  # the report is worth more than a waveform
+        except (Stop, OSError) as error:  # the report is more important than a waveform
             print(f"  none: {error}")
 
 
@@ -184,12 +185,12 @@ class Signal:
     def __init__(self, scopes, name, bits):
         self.name, self.depth = ".".join([*scopes, name]), len(scopes)
         self.bits = bits  # 0: text
-        self.changes = collections.deque(maxlen=MOST_CHANGES)  # (time, value), the newest last
+        self.changes = collections.deque(maxlen=MOST_CHANGES)  # (time, value), newest last
 
 
 def shown(bits, width):
-    """A value in hexadecimal, one with such a bit as "x" or "z"; a single bit unchanged. VCD leaves
-    out bits on the left that are 0, or like the first that it has."""
+    """Returns a value in hexadecimal, or "x" or "z" if it has such a bit; a single bit unchanged.
+    VCD omits leading bits that are 0, or equal to the first bit given."""
     bits = bits.rjust(width, bits[0] if bits[0] in "xz" else "0")
     strange = bits.lstrip("01")
     digits = (len(bits) + 3) // 4
@@ -202,7 +203,7 @@ def read_vcd(text):
     signals, moments = {}, []
     _, variables, changes = vcd.read(text)
     for each in variables:
-        if not each.name.startswith("smt_"):  # signals of the solver
+        if not each.name.startswith("smt_"):  # these are signals of the solver
             signal = Signal(each.scopes, each.name, each.width * (each.kind != "string"))
             known = signals.get(each.key)
             if not known or signal.depth < known.depth:

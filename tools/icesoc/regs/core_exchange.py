@@ -70,10 +70,10 @@ def address_of(r):
 
 
 def split(slot):
-    """Returns the registers in the slot, and those behind an adapter.
+    """Returns the registers in the slot, and those that an adapter makes accessible.
 
-    The latter share their addresses in the slot, so they have a separate address map,
-    <SLOT>_PAGES: by their byte addresses in the core.
+    The latter share their addresses in the slot, so they have a separate address map, <SLOT>_PAGES,
+    in which they have their byte addresses in the core.
     """
     registers = slot.block.registers
     return ([r for r in registers if r.page < 0], [r for r in registers if r.page >= 0])
@@ -93,7 +93,8 @@ def rdl_register(r):
 
 
 def rdl_access(r, f):
-    """Returns a field's access; the core itself may change values that it stores."""
+    """Returns the access to a field in SystemRDL; the core itself may change values that it
+    stores."""
     more = "".join(f" {flag};" for flag in ("hwset", "hwclr") if getattr(f, flag))
     if f.access == "rw" and r.storage == "core":
         return "sw=rw; hw=rw;" + more
@@ -152,6 +153,6 @@ def ipxact_of(slots):
 
 
 def files(slots):
-    """Returns the files, name to text."""
+    """Returns the files as {name: text}."""
     return {"icesoc.svd": svd_of(slots), "icesoc.rdl": rdl_of(slots),
             "icesoc.ipxact.xml": ipxact_of(slots)}

@@ -33,7 +33,7 @@ def table_rows(b):
 
 
 def cell(text):
-    """Returns a text for a cell of a Markdown table."""
+    """Returns a text in the form for a cell of a Markdown table."""
     return re.sub(r"([\\|*`<\[])", r"\\\1", text)
 
 
@@ -55,7 +55,7 @@ def markdown(block):
 
 
 def views(block, has_block):
-    """Returns the files of a block, name to text."""
+    """Returns the files of a block as {name: text}."""
     files = dict(FILES)
     if has_block:
         check(block.has_register_block,
@@ -69,7 +69,8 @@ def views(block, has_block):
 
 
 def save(path, text):
-    """Writes a text; an equal file keeps its time, so that nothing is built again because of it."""
+    """Writes a text. If the file has this text already, its time is not changed, so that nothing is
+    built again."""
     path = Path(path)
     if not path.is_file() or path.read_bytes() != text.encode():
         path.write_bytes(text.encode())

@@ -12,7 +12,7 @@ from icesoc.util.schema import problems
 
 SCHEMA = json.loads(Path(__file__).with_name("regs.schema.json").read_text())
 WORDS_PER_SLOT = 16
-FIRST_WORD = 3  # first register of a block: ID, EVENT and MASK precede it
+FIRST_WORD = 3  # number of the first word of a block; ID, EVENT and MASK precede it
 ACCESSES = {
     "ro": "read only",
     "rw": "read and write",
@@ -20,7 +20,7 @@ ACCESSES = {
     "w1s": "write 1 to set",
     "ws": "write acts, reads as 0",
 }
-# Possible owners of a register's value, by its access: the first one is the default.
+# Possible owners of a register's value, by its access; the first owner is the default.
 STORAGES = {
     "ro": ("core",),
     "rw": ("flip-flops", "ram", "core", "memory"),
@@ -55,11 +55,11 @@ class Field:
     lsb: int
     width: int
     doc: str
-    access: str = ""  # "" for the access of its register, or ro
+    access: str = ""  # "ro", or "" for the access of the register
     reset: int | None = 0
-    has_reset: bool = False  # the description gives the reset value
-    hwset: bool = False  # the core may set all bits
-    hwclr: bool = False  # the core may clear all bits
+    has_reset: bool = False  # True: the description contains the reset value
+    hwset: bool = False  # True: the core may set all bits
+    hwclr: bool = False  # True: the core may clear all bits
 
     @property
     def msb(self):
@@ -81,12 +81,13 @@ class Register:
     access: str
     doc: str
     width: int = 32
-    page: int = -1  # byte address of a core's register behind an adapter; -1: in the slot
+    page: int = -1  # byte address in the core of a register that is accessed through an adapter;
+                    # -1: in the slot
     fields: list = field(default_factory=list)
     reset: int | None = 0  # reset value of a register without fields
     storage: str = ""
-    lock: str = ""  # input that blocks writes while high
-    registered: bool = False  # pulses come from flip-flops, one clock after the write
+    lock: str = ""  # name of the input that blocks writes while it is high
+    registered: bool = False  # True: pulses come from flip-flops, one clock after the write
     strobes: tuple = ()  # "read", "write": outputs that are high in the clock of such an access
 
     @property
@@ -108,11 +109,11 @@ class Register:
 
     @property
     def is_stored(self):
-        """True if flip-flops of the register block hold the value."""
+        """Returns whether flip-flops of the register block hold the value."""
         return self.storage == "flip-flops"
 
     def holds(self, part):
-        """Flip-flops of the register block hold the field."""
+        """Returns whether flip-flops of the register block hold the field."""
         return self.is_stored and part.access != "ro"
 
     @property
@@ -126,7 +127,8 @@ class Register:
         return self.lower if alone else f"{self.lower}_{part.name.lower()}"
 
     def is_pulse(self, part):
-        """The part is a bit of a `ws` register: writing 1 gives a pulse of one clock."""
+        """Returns whether the part is a bit of a `ws` register: writing 1 gives a pulse of one
+        clock."""
         return part.access == "ws" and not self.is_stored and bool(part.name) and part.width == 1
 
     @property
@@ -134,18 +136,18 @@ class Register:
         return [p for p in self.parts if self.is_pulse(p)]
 
     def written_bits(self, part):
-        """True if the part has an output with the written value, for the core to store."""
+        """Returns whether the part has an output with the written value, which the core stores."""
         return (part.access != "ro" and self.storage == "core" and bool(part.name)
                 and not self.is_pulse(part))
 
     @property
     def reads(self):
-        """The register block gives a pulse for each read."""
+        """Returns whether the register block gives a pulse for each read."""
         return "read" in self.strobes
 
     @property
     def has_write_strobe(self):
-        """The register block gives a pulse for each write."""
+        """Returns whether the register block gives a pulse for each write."""
         return self.is_written and ("write" in self.strobes or self.storage == "core" and not all(
             self.is_pulse(p) for p in self.parts if p.access != "ro"))
 
@@ -155,7 +157,8 @@ class Event:
     name: str
     bit: int
     doc: str
-    watched: bool = False  # outputs show that it is pending, and that it is being cleared
+    watched: bool = False  # True: outputs indicate that the event is pending, and that it is being
+                           # cleared
 
     @property
     def lower(self):
@@ -177,8 +180,8 @@ class Port:
     is_out: bool
     width: int
     doc: str
-    owner: str  # its register, field or event
-    group: str = ""  # comment before it
+    owner: str  # name of the register, field or event to which the port belongs
+    group: str = ""  # comment before the port
     is_reg: bool = False
 
 
@@ -194,7 +197,7 @@ class Block:
         self.description = description
         self.name, self.doc = description["block"], description["doc"]
         self.prefix = self.name.upper()
-        self.is_slot = "type" in description  # has ID, EVENT and MASK in words 0..2
+        self.is_slot = "type" in description  # True: the block has ID, EVENT and MASK in words 0..2
         self.type = int(description.get("type", "0"), 16)
         self.version = int(description.get("version", "0"), 16)
         self.memory_bytes = description.get("memory_bytes", 0)
@@ -242,7 +245,8 @@ class Block:
 
     @property
     def has_register_block(self):
-        """A register block can be generated: the registers are a slot's, without pages."""
+        """Returns whether a register block can be generated: the registers are those of a slot,
+        without pages."""
         return self.is_slot and all(r.page < 0 for r in self.registers)
 
     @property

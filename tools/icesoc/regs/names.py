@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""names: what the generated files call things, checked before any of them is written.
+"""names: checks the names in the generated files before any file is written.
 
-Two names of a description may become one name in a generated file: the field TX.DONE and the
-register TX_DONE_MASK are both TX_DONE_MASK in C. Such a pair is rejected with both names. VHDL does
-not distinguish capitals, so neither does the check.
+Two names in a description may become the same name in a generated file: the field TX.DONE and the
+register TX_DONE_MASK are both TX_DONE_MASK in C. Such a pair is rejected, and the message contains
+both names. VHDL does not distinguish capitals, so the check ignores them.
 """
-# Macros of C's standard headers that <BLOCK>_<REGISTER> could equal.
+# Macros of C's standard headers that could equal <BLOCK>_<REGISTER>.
 C_MACROS = {f"{kind}_{end}" for end in ("MAX", "MIN") for kind in (
     "CHAR", "SCHAR", "UCHAR", "SHRT", "USHRT", "INT", "UINT", "LONG", "ULONG", "FLT", "DBL", "LDBL",
     "INT8", "INT16", "INT32", "INT64", "UINT8", "UINT16", "UINT32", "UINT64", "INTPTR", "UINTPTR",
@@ -32,14 +32,14 @@ RDL_KEYWORDS = set("""
 
 
 class Collision(Exception):
-    """Two names of a description that become one; its text is for the user."""
+    """Two names of a description that become the same name; the text is for the user."""
 
 
 class Spelled:
     """Names of one scope in the generated files, with the names in the description."""
 
     def __init__(self):
-        self.owners = {}  # name in upper case -> owner
+        self.owners = {}  # name in upper case -> its origin
 
     def add(self, spelled, owner):
         if spelled.upper() not in self.owners:
@@ -85,7 +85,8 @@ def full_name(register, field):
 
 
 def check_ports(b):
-    """Rejects a block with a register block that would have two ports or signals of one name."""
+    """Rejects a block with a register block that would have two ports or signals of the same
+    name."""
     spelled = Spelled()
     for name, _, _ in SLOT_PORTS:
         spelled.add(name, f"the port {name} of every slot")
@@ -94,5 +95,5 @@ def check_ports(b):
 
 
 def rdl(name):
-    """Returns a name as SystemRDL takes it: keywords are escaped."""
+    """Returns a name in the form for SystemRDL: keywords are escaped."""
     return "\\" + name if name in RDL_KEYWORDS else name

@@ -86,7 +86,7 @@ def bits_of(instance, name, next_bit):
 
 
 class Fields:
-    """The fields of a register, as a description has them."""
+    """The fields of a register, in the form of a description."""
 
     def __init__(self, register, name):
         self.fields, self.accesses, self.strobes = [], [], set()
@@ -191,7 +191,7 @@ def addresses_of(component):
 
 
 def unit_of(placed, component):
-    """Returns the distance of words in bytes, from the bus, which has one width."""
+    """Returns the distance of words in bytes, which all registers of a bus have in common."""
     sizes = {size for *_, size in placed}
     if all(address % 4 == 0 for _, address, _ in placed) and max(sizes) <= 4:
         return 4 if len(placed) > 1 else min(sizes)

@@ -4,16 +4,17 @@ software sees: taken over, without effect, or not representable and so an error 
 """
 from icesoc.regs import names
 
-# Used by rdl.py. `name` and `desc` become the doc.
+# Properties that rdl.py uses. `name` and `desc` become the doc.
 TAKEN = {
     "name", "desc", "ispresent", "fieldwidth", "reset", "sw", "hw", "woclr", "woset", "onwrite",
     "singlepulse", "hwclr", "hwset", "swmod", "swacc", "regwidth", "accesswidth", "alignment",
     "addressing", "memory_bytes"}
-# Texts for verification, hints for other tools, and states that ours have anyway.
+# Properties without effect here: texts for verification, hints for other tools, and states that our
+# registers have in any case.
 WITHOUT_EFFECT = {"donttest", "dontcompare", "hdl_path", "hdl_path_slice", "hdl_path_gate",
                   "hdl_path_gate_slice", "encode", "littleendian", "lsb0", "internal"}
-# With these values software sees no difference to the property's absence; other values are errors.
-# A property set to false is off.
+# Values with which software sees no difference to a missing property; other values are errors. A
+# property set to false is off.
 OFF: dict[str, set[str]] = {
     "precedence": {"sw"}, "onread": set(), "rclr": set(), "rset": set(), "swwe": set(),
     "swwel": set(), "we": set(), "wel": set(), "hwenable": set(), "hwmask": set(), "anded": set(),

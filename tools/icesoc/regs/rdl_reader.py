@@ -51,7 +51,8 @@ class Component:
         return self.parent and self.parent.default(name)
 
     def get(self, name, otherwise=None):
-        """Returns a property's text: "true" if it has no value; a default if it is not set."""
+        """Returns the text of a property: "true" if it has no value, or its default if it is not
+        set."""
         if name in self.properties:
             return self.properties[name]
         value = self.parent and self.parent.default(name)
@@ -206,7 +207,7 @@ class Reader:
                     self.take()
                     made.msb, made.lsb = first, self.take_number()
                 else:
-                    made.width = first  # the next free bit
+                    made.width = first  # index of the next free bit
                 self.take("]")
             if self.peek() == "=":
                 self.take()

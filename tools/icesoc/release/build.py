@@ -14,7 +14,7 @@ from icesoc.release import archive, packs, sbom, version
 from icesoc.util.errors import Stop
 from icesoc.util.process import output, run
 
-PARTS = {  # parts of a release, ordered as they are made
+PARTS = {  # parts of a release, in the order in which they are made
     "source": "icesoc-VERSION.tar.gz: all files of the commit",
     "icec": "icec-VERSION.tar.gz (single files, PlatformIO, Zephyr) and the CMSIS-Pack",
     "changes": "CHANGES-VERSION.md: the section of the changelog",
@@ -29,10 +29,10 @@ class Release:
     version: str
     commit: str
     seconds: int  # time of the commit
-    files: dict  # files of the commit, name to bytes
-    programs: set  # names of the executable ones
-    tree: Path  # the same, unpacked
-    origin: Path  # the working tree
+    files: dict  # bytes of the files of the commit, by name
+    programs: set  # names of the executable files
+    tree: Path  # folder with the same files, unpacked
+    origin: Path  # folder of the working tree
     out: Path
 
     def path(self, name):
@@ -61,8 +61,8 @@ def read_commit(tree):
 
 
 def number(tree, commit, files):
-    """Returns the version of a commit. One with unreleased changes has the last version and the
-    commit's number; a released version belongs to one commit for ever."""
+    """Returns the version of a commit. If it has unreleased changes, this is the last version and
+    the number of the commit; a released version always belongs to one commit."""
     text = files["CHANGELOG.md"].decode()
     newest = version.newest(text)
     if version.unreleased(text):
@@ -104,8 +104,8 @@ def site(release):
 
 
 def packages(release):
-    """Copies the Debian packages that `./icesoc package` makes of the working tree, which must be
-    the commit."""
+    """Copies the Debian packages that `./icesoc package` builds from the working tree, which must
+    equal the commit."""
     if output(["git", "-C", str(release.origin), "status", "--porcelain"]):
         raise Stop("release: Debian packages are made of the working tree, which has changes; "
                    "commit them, or choose other parts with --only")
@@ -127,8 +127,8 @@ MAKERS = dict(zip(PARTS, (source, icec, changes, site, packages, bill), strict=T
 
 
 def build(tree, out, parts, key):
-    """Makes these parts in an empty folder, with SHA256SUMS and its signature. Returns the version
-    and the files, the signature last, if there is a key."""
+    """Makes these parts in an empty folder, with SHA256SUMS and, if there is a key, a signature.
+    Returns the version and the files, the signature last."""
     commit, seconds, files, programs = read_commit(tree)
     with tempfile.TemporaryDirectory() as work:
         for name, data in files.items():

@@ -9,7 +9,7 @@ from icesoc import TREE
 from icesoc.util.errors import Stop
 
 LIST = "sw/components.toml"
-SHARED = ["sw/base"]  # every component may include these headers, and brings them along
+SHARED = ["sw/base"]  # headers that every component may include; they are part of the component
 
 
 @dataclasses.dataclass

@@ -24,7 +24,7 @@ def rows(ports):
 
 
 def draw(entity):
-    """Returns the drawing of an entity as SVG that takes the page's text colour."""
+    """Returns the drawing of an entity as SVG, in the text colour of the page."""
     left = rows([p for p in entity.ports if p.direction == "input"])
     right = rows([p for p in entity.ports if p.direction != "input"])
     label = {id(p): p.name + (f" {p.width}" if p.width else "") for p in entity.ports}

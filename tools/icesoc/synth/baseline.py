@@ -16,8 +16,8 @@ NAMED_CHANGES = 6
 MEASURED, ACCEPTED, CHANGED, NEVER = STATES = (
     "measured now",         # figures of the current sources, from this run or from the cache
     "as accepted",          # not synthesised here, but these sources produced the accepted figures
-    "changed since",        # its sources differ from the last figures', measured or accepted
-    "never measured here")  # and the sources of its accepted figures, if any, are unknown
+    "changed since",        # the sources differ from those of the last measured or accepted figures
+    "never measured here")  # as above, and the sources of the accepted figures, if any, are unknown
 
 
 def state_of(run, source_hash, accepted):
@@ -41,7 +41,7 @@ def short_version(yosys):
 
 
 def clock_text(mhz):
-    """A clock as terminal, page and accepted figures round it."""
+    """Returns a clock as the terminal, the page and the accepted figures round it."""
     return f"{mhz:.1f}"
 
 
@@ -51,7 +51,8 @@ def accepted_from(figures, sources=""):
 
 
 def parse(j):
-    """{"yosys", "designs": {name: accepted}}; raises on a malformed file."""
+    """Returns {"yosys", "designs": {name: accepted figures}}; raises an exception if the file is
+    malformed."""
     designs = {}
     for name, d in j["designs"].items():
         costs = {path: {signal: Cost(lut=c[0], ff=c[1], **dict(zip(("ram", "dsp"), c[2:])))
@@ -72,7 +73,8 @@ def read_baseline(file):
 
 
 def written(baseline):
-    """A line for each instance, so that a commit's difference can be read."""
+    """Returns the text of the file with one line per instance, so that differences between commits
+    are readable."""
     def compact(value):
         return json.dumps(value, separators=(",", ":"))
 
@@ -92,10 +94,11 @@ def written(baseline):
 
 
 def accept(report, file):
-    """Records the measured designs, keeps the others, and drops those that are gone. Refuses
-    figures above a limit of synth/designs.json: a limit moves only there."""
+    """Records the figures of measured designs, keeps those of others, and drops designs that no
+    longer exist. Refuses figures above a limit of synth/designs.json: limits are changed only
+    there."""
     old = report.baseline
-    # Figures of two versions of Yosys do not belong together.
+    # Figures of two versions of Yosys are not comparable.
     same = short_version(old["yosys"]) == short_version(report.yosys)
     designs = {}
     for row in report.rows:
@@ -124,7 +127,7 @@ def by_signal(costs):
 
 
 def changes(before, after):
-    """(name, more LUTs, more flip-flops) of each change, largest growth first."""
+    """Returns (name, more LUTs, more flip-flops) of each change, largest growth first."""
     names = sorted({*before, *after})
     rows = [(name, after.get(name, Cost()).lut - before.get(name, Cost()).lut,
              after.get(name, Cost()).ff - before.get(name, Cost()).ff) for name in names]
@@ -132,7 +135,7 @@ def changes(before, after):
 
 
 def grown(title, changed):
-    """Lines below a title, or nothing if nothing grew."""
+    """Returns lines below a title, or nothing if nothing grew."""
     lines = []
     for name, luts, ffs in changed[:NAMED_CHANGES]:
         if luts + ffs > 0:
@@ -142,7 +145,7 @@ def grown(title, changed):
 
 
 def above_limits(row):
-    """A sentence for each limit of synth/designs.json that is exceeded."""
+    """Returns one sentence for each limit of synth/designs.json that is exceeded."""
     return [f"{row.design.name}: {row.figures[key]} {key}, {row.figures[key] - limit} above the "
             f"limit of {limit}" for key, limit in row.design.limits.items()
             if row.figures[key] > limit] + [
@@ -153,16 +156,17 @@ def above_limits(row):
 
 
 def judge(row, baseline, yosys, goal):
-    """(failures, notes) of a design. Its budget is the accepted figure and a little more, since
-    optimisation is not exact: 3 % + 4 LUTs, 1 % + 2 flip-flops. A limit must be kept,
-    whatever is accepted. So must the clock (`goal`, MHz) by a design that was accepted with it; one
-    that was accepted below it may lose a tenth."""
+    """Returns (failures, notes) of a design. Its budget is the accepted figure and a little more,
+    because optimisation varies: 3 % + 4 LUTs, 1 % + 2 flip-flops. Limits always apply, whatever was
+    accepted. The clock (`goal`, MHz) must be kept by a design that was accepted with it; one that
+    was accepted below it may lose a tenth."""
     name, f = row.design.name, row.figures
     if row.main.error:
         return ([f"{name}: synthesis failed"] if row.main.wanted else []), []
     failures = [f"{name}: synthesis for {other.family} failed" for other in row.others
                 if other.wanted and other.error]
-    # Another Yosys counts otherwise: only the version of the accepted figures judges.
+    # Another version of Yosys gives other figures, so only the version of the accepted figures is
+    # judged.
     comparable = short_version(baseline["yosys"]) in ("", short_version(yosys))
     if not comparable:
         return failures, [f"{text} (by another Yosys than the limit was set with)"
@@ -188,7 +192,7 @@ def judge(row, baseline, yosys, goal):
 
 
 def git(source, *words):
-    """Git's output, "" without git."""
+    """Returns the output of git, "" without git."""
     try:
         done = subprocess.run(["git", "-C", source, *words], text=True, stdout=subprocess.PIPE,
                               stderr=subprocess.DEVNULL)
@@ -198,8 +202,8 @@ def git(source, *words):
 
 
 def history(source, count=30):
-    """Commits that changed synth/baseline.json, newest first: {"id", "date", "subject", "designs":
-    {name: {key: figure}}}."""
+    """Returns the commits that changed synth/baseline.json, newest first: {"id", "date", "subject",
+    "designs": {name: {key: figure}}}."""
     commits = []
     lines = git(source, "log", f"-n{count}", "--format=%h%x09%cs%x09%s", "--",
                 "synth/baseline.json")
@@ -217,6 +221,7 @@ def history(source, count=30):
 
 
 def current_commit(source):
-    """"1a2b3c4", with "+" if the tree has changes; "" without git."""
+    """Returns the current commit such as "1a2b3c4", with "+" if the tree has changes; "" without
+    git."""
     id = git(source, "rev-parse", "--short", "HEAD").strip()
     return id and id + "+" * bool(git(source, "status", "--porcelain", "--untracked-files=no"))

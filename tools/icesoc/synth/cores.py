@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""cores: the cost of each core in the chip: itself, its registers, its slot of the decoder, its
-memory port."""
+"""cores: computes the cost of each core in the chip: the core itself, its registers, its slot of
+the decoder, and its memory port."""
 import re
 
 from icesoc.regs.model import Block

@@ -21,7 +21,8 @@ from icesoc.util.errors import Stop
 from icesoc.util.files import digest, write
 from icesoc.util.process import collect as command
 
-BOXES = {"DCM_CLKGEN", "BUFGCE"}  # clock primitives in both copies; the logic around them is proven
+BOXES = {"DCM_CLKGEN", "BUFGCE"}  # clock primitives, which are the same in both copies; the logic
+                                  # around them is proven
 SOLVE = """read_rtlil {file}
 splitnets
 setattr -unset init w:*
@@ -39,8 +40,8 @@ aigmap
 opt_clean
 write_aiger -zinit {file}.aig
 """
-# One clock in reset, because one-hot state registers may be initialised to none, which RTL never
-# is.
+# One clock in reset, because registers with one-hot states may be initialised to no state, which
+# never happens in the RTL.
 IN_RESET = "sim -clock in_clk_i -reset in_rst_i -rstlen 1 -n 1 -zinit -w miter"
 
 
@@ -67,8 +68,8 @@ def attributes_of(module):
 
 
 def prove(design, family, library, options, models, seconds):
-    """(What is known, whether the netlist is equivalent, seconds that it took), of a proof of at
-    most this many seconds. Decided results are stored for the next run."""
+    """Proves a design within this number of seconds. Returns (result, whether the netlist is
+    equivalent, seconds used). Decided results are stored for the next run."""
     begin, run = time.monotonic(), runner.mapped(design, family, library, options)
     files = (run.netlist, *models, pathlib.Path(__file__), pathlib.Path(netlist.__file__),
              options.scripts / "equivalence.ys", options.scripts / "product.v")
@@ -138,8 +139,8 @@ def solved(file, commands, is_plain, options, seconds):
 
 
 def simulated(tests, junit):
-    """(What these tests, by prefixes, show by a JUnit file, whether each ran and all passed, their
-    seconds)."""
+    """Returns (what the tests with these prefixes show according to a JUnit file, whether each ran
+    and all passed, their seconds)."""
     cases = list(xml.etree.ElementTree.parse(junit).iter("testcase")) if junit else []
     of = {prefix: [case for case in cases if re.match(f"{prefix}[^a-z_]", case.get("name"))]
           for prefix in tests.split()}
@@ -152,8 +153,8 @@ def simulated(tests, junit):
 
 
 def table_of(plan, library, options, models, o):
-    """(A row for each design: its proof, or its block's tests on its netlist; how many failed). The
-    small ones are first; each proof is printed when it ends."""
+    """Returns (one row per design: its proof, or the tests of its block on its netlist; number of
+    failures). Small designs come first; each result is printed when it is known."""
     rows, failed = {}, []
 
     def work(design):

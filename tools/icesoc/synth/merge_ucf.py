@@ -16,7 +16,7 @@ PADS = {"c3_sys_clk": "sys_clk_i", "c3_sys_rst_i": "sys_rst_i"}
 
 
 def statements(path):
-    """(line number, text without comments) of each statement."""
+    """Returns (line number, text without comments) of each statement."""
     text = re.sub(r"#[^\n]*", "", open(path).read())
     line = 1
     for part in text.split(";"):
@@ -27,7 +27,8 @@ def statements(path):
 
 
 def keys(statement):
-    """Settings that occur only once: VCCAUX; location, standard, period of a net."""
+    """Returns the settings that may occur only once: VCCAUX, and location, standard and period of a
+    net."""
     if re.match(r"(?i)CONFIG\s+VCCAUX", statement):
         return ["VCCAUX"]
     net = re.match(r'(?i)NET\s+"?([^"\s]+)"?\s+(.*)', statement)

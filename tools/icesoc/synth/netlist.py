@@ -12,7 +12,7 @@ import typing
 
 ZERO, ONE, UNDEFINED = -1, -2, -3
 
-# LUTs that a memory cell takes.
+# Number of LUTs that each kind of memory cell takes.
 MEMORY_LUTS = {
     "RAM32M": 4, "RAM64M": 4, "RAM32X1D": 2, "RAM64X1D": 2, "RAM16X1D": 2, "RAM128X1D": 4,
     "RAM32X1S": 1, "RAM64X1S": 1, "RAM16X1S": 1, "RAM128X1S": 2, "RAM256X1S": 4, "RAM32X2S": 2,
@@ -30,12 +30,12 @@ def is_shift_register(type):
 
 
 def is_memory(type):
-    """LUTs used as memory."""
+    """Returns whether a cell consists of LUTs used as memory."""
     return type in MEMORY_LUTS or is_shift_register(type)
 
 
 def is_register(type):
-    """A flip-flop or a latch."""
+    """Returns whether a cell is a flip-flop or a latch."""
     return is_flip_flop(type) or type in LATCHES
 
 
@@ -62,8 +62,9 @@ class Cell:
     name: str
     type: str
     pins: list
-    named: bool = False  # the name is the design's, not the tool's
-    sources: frozenset = frozenset()  # file names of the block it comes from, and of its instances
+    named: bool = False  # True: the name is from the design, not from the tool
+    sources: frozenset = frozenset()  # names of the files of the block that the cell is from, and
+                                      # of the block's instance
 
     def bits(self, port):
         return next((pin.bits for pin in self.pins if pin.port == port), [])
@@ -74,7 +75,8 @@ class Cell:
 
 
 class Name(typing.NamedTuple):
-    """A name that the source gives a bit: "u_modem.u_at.state", and the index in a vector or -1."""
+    """A name that the source gives to a bit: "u_modem.u_at.state", and the index in a vector or
+    -1."""
     name: str
     index: int = -1  # type: ignore[assignment]  # tuple.index is not used
 
@@ -93,10 +95,10 @@ class Netlist:
     def __init__(self, cells=(), top=""):
         self.top = top
         self.cells, self.ports = [], []
-        self.names = {}    # bit -> its Names, first the one that most likely is its driver's
-        self.sources = {}  # name -> Yosys' attribute src
-        self.driver = {}   # bit -> cell's number
-        self.readers = {}  # bit -> cells' numbers
+        self.names = {}    # bit -> its Names; first the one that most likely belongs to the driver
+        self.sources = {}  # name -> its attribute src from Yosys
+        self.driver = {}   # bit -> number of the cell that drives it
+        self.readers = {}  # bit -> numbers of the cells that read it
         for cell in cells:
             self.add(cell)
 
@@ -112,7 +114,7 @@ class Netlist:
         self.cells.append(cell)
 
     def name_of(self, bit):
-        """Name with index, "" if the source has no name for the bit."""
+        """Returns the name with its index, "" if the source has no name for the bit."""
         return str(self.names[bit][0]) if bit in self.names else ""
 
     def driver_type(self, bit):
@@ -189,14 +191,14 @@ RAM_SIZES = {"clk": 1, "en": 1, "rst": 1, "we": 4, "data": 36}
 
 
 def with_models(file):
-    """The text of a netlist (write_json) in which each block RAM is a block_ram, and each
-    multiplier of ECP5 is Yosys' own."""
+    """Returns the text of a netlist (write_json) in which each block RAM is a block_ram, and each
+    multiplier of ECP5 is a multiplier of Yosys."""
     whole = json.loads(pathlib.Path(file).read_text())
     (module,) = whole["modules"].values()
     free = 1 + max((bit for net in module["netnames"].values() for bit in net["bits"]
                     if isinstance(bit, int)), default=1)
     for net in module["netnames"].values():
-        net["attributes"].pop("init", None)  # flip-flops have it as a parameter
+        net["attributes"].pop("init", None)  # flip-flops have the initial value as a parameter
     for cell in module["cells"].values():
         if cell["type"] in ("RAMB16BWER", "RAMB8BWER"):
             free = make_block_ram(cell, free)
@@ -208,7 +210,8 @@ def with_models(file):
 
 
 def make_block_ram(cell, free):
-    """Changes the cell. Bits of the netlist are below `free`; returns the new `free`."""
+    """Changes the cell to a block_ram. The netlist uses bits below `free`; returns the new
+    `free`."""
     given, log2 = cell["parameters"], 14 if cell["type"] == "RAMB16BWER" else 13
     is_wide, lanes = given.get("RAM_MODE") == "SDP", 4 if log2 == 14 else 2
 
@@ -216,7 +219,7 @@ def make_block_ram(cell, free):
         return given.get(name, "").rjust(size, "0")[-size:]
 
     def word(name, port):
-        """36 bits, the highest first: parity and data."""
+        """Returns the 36 bits of a word, highest first: parity and data."""
         if log2 == 14:
             return bits(f"{name}_{port}", 36)
         a, own = bits(f"{name}_A", 18), bits(f"{name}_{port}", 18)
@@ -239,11 +242,11 @@ def make_block_ram(cell, free):
     connections = {}
     for port, names in zip(RAM_NAMES, RAM_PORTS["SDP" if is_wide else cell["type"]].split()):
         size, joined = RAM_SIZES.get(port.partition("_")[0], log2), []
-        for name in names.split("+"):  # Yosys may give a port more bits than it has
+        for name in names.split("+"):  # Yosys may give a port more bits than the primitive has
             room = lanes if name[:3] in ("DIP", "DOP") or name[:2] == "WE" else \
                 8 * lanes if size == 36 else size
             joined += cell["connections"].get(name, [])[:room]
-        if size == 36 and len(joined) == 18:  # two bytes of four, and their parity
+        if size == 36 and len(joined) == 18:  # two of four bytes, and their parity
             joined[16:16] = [None] * 16
         joined = (joined + [None] * size)[:size]
         is_output = port.endswith("_o")
@@ -289,7 +292,7 @@ def make_block_ram_of_ecp5(cell, free):
         width, own = int(given.get(f"DATA_WIDTH_{port}", "10010"), 2), port.lower()
         address = [pin(f"AD{port}{n}") for n in range(14)]
         enable, bytes = pin(f"WE{port}"), max(1, width // 9)
-        resets = pin(f"RST{port}")  # which blocks a write
+        resets = pin(f"RST{port}")  # while this signal is high, a write is blocked
         if given.get(f"REGMODE_{port}", "NOREG") != "NOREG" or width < 9 or \
                 "0" not in (resets, enable) or given.get(f"CLK{port}MUX") == "INV":
             raise ValueError("block RAM DP16KD has a mode without a model")

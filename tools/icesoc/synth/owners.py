@@ -16,11 +16,11 @@ DECODER = "u_platform.u_bus_decoder"
 
 
 class Cost(typing.NamedTuple):
-    lut: int = 0     # look-up tables, including those used as memory
-    memory: int = 0  # of these, used as memory or shift register
-    ff: int = 0      # flip-flops and latches
-    carry: int = 0   # carry chain segments of 4 bits
-    ram: float = 0   # block RAMs of 16 or 18 Kbit; a half counts 0.5
+    lut: int = 0     # number of look-up tables, including those used as memory
+    memory: int = 0  # number of these used as memory or shift register
+    ff: int = 0      # number of flip-flops and latches
+    carry: int = 0   # number of carry chain segments of 4 bits
+    ram: float = 0   # number of block RAMs of 16 or 18 Kbit; a half counts 0.5
     dsp: int = 0
 
     def __add__(self, other):
@@ -36,7 +36,7 @@ def cost_of(cell):
 
 
 def costs_of(n, owners):
-    """{instance path, "" for the top: {signal: Cost}}"""
+    """Returns {instance path, "" for the top: {signal: Cost}}."""
     costs = {}
     for cell, owner in zip(n.cells, owners):
         cost = cost_of(cell)
@@ -48,8 +48,9 @@ def costs_of(n, owners):
 
 
 def owners_of(n, files_along):
-    """The signal of each cell with its path, "u_modem.u_at.state"; "" if nothing near it has a
-    name. `files_along(path)` are the names of the files of the modules along an instance path."""
+    """Returns the signal to which each cell belongs, with its path, such as "u_modem.u_at.state";
+    "" if nothing near it has a name. `files_along(path)` returns the names of the files of the
+    modules along an instance path."""
     finder = Finder(n, files_along)
     owners = [finder.owner_of(cell) for cell in range(len(n.cells))]
     give_slot_reads(n, owners)
@@ -60,7 +61,8 @@ class Finder:
     def __init__(self, n, files_along):
         self.n, self.files_along = n, files_along
         self.files = {}
-        self.owners = {}  # None: being looked for, so that a loop finds no owner
+        self.owners = {}  # None marks an owner that is being looked for, so that a loop finds no
+                          # owner
 
     def owner_of(self, index):
         if index not in self.owners:

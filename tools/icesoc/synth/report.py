@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""report: the figures as text for the terminal, as JSON for machines, and as one HTML page that
-needs no network; differences between two reports as Markdown."""
+"""report: prints the figures as text on the terminal, and writes them as JSON for machines and as
+one HTML page that needs no network; writes differences between two reports as Markdown."""
 import dataclasses
 import itertools
 
@@ -99,7 +99,7 @@ def paper_table(plan, row):
 
 
 def ranged(value, values, text=str):
-    """Returns a figure and the range of it with the netlist in other orders: "863 (858-865)"."""
+    """Returns a figure and its range for the netlist in other orders: "863 (858-865)"."""
     return text(value) + (f" ({text(min(values))}-{text(max(values))})" if len(values) > 1 else "")
 
 
@@ -137,7 +137,7 @@ def design_table(plan, rows, accepted):
 
 
 def cost_table(library, row, depth=2):
-    """The places of a design's cost: the instances, each with all below it."""
+    """Returns a table of the instances of a design, each with the cost of all below it."""
     paths = {"": Cost()}
     for path, cost in baseline.by_instance(row.figures["costs"]).items():
         names = path.split(".") if path else []
@@ -166,7 +166,8 @@ def path_table(plan, row, count=5):
 
 
 def pads_table(row):
-    """The longest path of each pad, slowest first, with the range after routing."""
+    """Returns a table of the longest path of each pad, slowest first, with the range after
+    routing."""
     return Table(["paths of pads, estimated", "from", "to", "levels", "ns (-3)", "ns (-2)",
                   "routed (-2)"],
                  [[p["kind"], p["from"], f"{p['to']} {p['pin']}", p["levels"], f"{p['ns']:.2f}",
@@ -177,7 +178,7 @@ def pads_table(row):
 
 
 def states_text(rows):
-    """The number of designs in each state: "1 measured now, 65 as accepted"."""
+    """Returns the number of designs in each state: "1 measured now, 65 as accepted"."""
     states = [row.state for row in rows]
     return ", ".join(f"{states.count(state)} {state}" for state in baseline.STATES
                      if state in states)
@@ -255,7 +256,7 @@ def differences(before, after):
     """Returns the differences between two files of entries as a table in Markdown. A design in only
     one file is shown as new or gone. If a design was not measured, its state is shown instead, such
     as `changed since`."""
-    designs = {}  # name: {kind of figure: [then, now]}
+    designs = {}  # name -> {kind of figure: [before, after]}
     for number, report in enumerate((before, after)):
         for entry in report["entries"]:
             name, kind = entry["name"].split(" ", 1)

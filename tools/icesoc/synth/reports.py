@@ -16,12 +16,13 @@ from icesoc.synth.slices import Range
 from icesoc.synth.sources import read_json
 from icesoc.util.errors import Stop
 
-MAP = ("sites", "ff", "slices", "one", "two")  # "one", "two": sites with one or two functions
+MAP = ("sites", "ff", "slices", "one", "two")  # "one", "two": number of sites with one and with two
+                                               # functions
 NETLIST = ("lut", "memory", "through", "ff", "path", "end")
 
 
 def fault_of(report):
-    """Why the report cannot be read, "" if it can."""
+    """Returns why the report cannot be read, or ""."""
     for key, kind in (("at", str), ("device", str), ("tool", str), ("files", dict)):
         if not isinstance(report.get(key), kind):
             return f"no {key}"
@@ -48,25 +49,26 @@ def read(file):
 
 
 def estimated(report):
-    """The estimate of the longest path, ns, at the report's speed grade."""
+    """Returns the estimate of the longest path at the report's speed grade, ns."""
     path, (type, pin) = report["netlist"]["path"], report["netlist"]["end"]
     ns = sum(cell + net for _, _, cell, net in path) + timing.end_delay(type, pin)
     return ns * (timing.SLOW_GRADE if report["device"].endswith("-2") else 1)
 
 
 def clock_ratios(reports, kind):
-    """Ratios of published to estimated clock, of the designs with such a report."""
+    """Returns the ratios of published to estimated clock for the designs with such a report."""
     return [estimated(report) / report[kind] for report in reports if kind in report]
 
 
 def site_ratios(reports):
-    """Ratio of the sites in map's report to the sites estimated from Yosys's netlist."""
+    """Returns the ratios of the sites in map's reports to the sites estimated from Yosys's
+    netlists."""
     return [report["map"]["sites"] / slices.map_sites(n["lut"], n["memory"], n["through"])
             for report in reports if (n := report.get("netlist"))]
 
 
 def left_out(values, fitted):
-    """Yields each value with the values that the others are fitted to."""
+    """Yields each value, together with what is fitted to the other values."""
     return [value / fitted(values[:i] + values[i + 1:]) for i, value in enumerate(values)]
 
 
@@ -76,20 +78,23 @@ def nine_of_ten(errors):
 
 
 def range_of(ratios):
-    """The median of the ratios, with the errors that it has for each when it is of the others."""
+    """Returns the median of the ratios, and the range of errors if each ratio is predicted by the
+    median of the others."""
     median = statistics.median(ratios)
     low, high = nine_of_ten(left_out(ratios, statistics.median))
     return Range(median, median * low, median * high, len(ratios))
 
 
 def best_share(maps):
-    """The share of flip-flops that predicts the slices of these reports best, in hundredths."""
+    """Returns the share of flip-flops that predicts the slices of these reports best, in
+    hundredths."""
     return min((n / 100 for n in range(151)), key=lambda share: sum(
         abs(math.log(slices.occupied(m["sites"], m["ff"], share) / m["slices"])) for m in maps))
 
 
 def slices_range(maps):
-    """Ratios of published to predicted slices, each with the share that fits the others best."""
+    """Returns the range of the ratios of published to predicted slices, each predicted with the
+    share that fits the others best."""
     shares = [best_share(maps[:i] + maps[i + 1:]) for i in range(len(maps))]
     errors = [m["slices"] / slices.occupied(m["sites"], m["ff"], share)
               for m, share in zip(maps, shares)]
@@ -98,7 +103,7 @@ def slices_range(maps):
 
 
 def paired(m):
-    """The share of functions without a separate site."""
+    """Returns the share of functions that need no separate site."""
     return m["two"] / (m["one"] + 2 * m["two"])
 
 

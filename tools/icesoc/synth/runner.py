@@ -28,7 +28,7 @@ from icesoc.util.errors import Stop
 from icesoc.util.files import digest, write
 from icesoc.util.process import collect as command
 
-# A netlist's figures follow from these.
+# The figures of a netlist are determined by the sources of these modules.
 TOOL = digest(pathlib.Path(module.__file__).read_text() for module in (
     nets, netlist, owners, slices, timing, sys.modules[__name__]))
 
@@ -36,14 +36,14 @@ TOOL = digest(pathlib.Path(module.__file__).read_text() for module in (
 @dataclasses.dataclass
 class Run:
     design: Design
-    family: str  # "xc6s", "xc7", "ecp5": the script of that name
-    wanted: bool = True  # False: only from the cache
+    family: str  # name of the script for the family: "xc6s", "xc7" or "ecp5"
+    wanted: bool = True  # False: results are only taken from the cache
     netlist: pathlib.Path = None  # path of the netlist written by Yosys
     figures: dict = None
     error: str = ""  # reason for missing figures
-    known: bool = False  # another state of its sources was synthesised here
-    begun: float = 0  # start, by time.monotonic()
-    spent: float = None  # seconds; 0: cached
+    known: bool = False  # True: another state of the sources was synthesised here
+    begun: float = 0  # time of the start, by time.monotonic()
+    spent: float = None  # duration, s; 0: cached
 
     @property
     def orders(self):
@@ -56,7 +56,8 @@ class Options:
     cache: pathlib.Path
     yosys: str = "yosys"
     jobs: int = 1
-    luts: dict = dataclasses.field(default_factory=dict)  # LUTs of designs, as far as known
+    luts: dict = dataclasses.field(default_factory=dict)  # numbers of LUTs of designs, as far as
+                                                          # they are known
 
 
 @functools.cache
@@ -112,7 +113,7 @@ def script_of(run, library, options, output, more="", memory=False):
 
 
 def yosys_by(script, output, options):
-    """Lets Yosys carry out a script that writes `output`: the whole file or none."""
+    """Runs a script with Yosys that writes `output`, completely or not at all."""
     part, log = pathlib.Path(f"{output}.part"), output.with_suffix(".log")
     write(output.with_suffix(".ys"), script(part))
     status, said = command([options.yosys, "-q", "-s", output.with_suffix(".ys")])
@@ -125,7 +126,7 @@ def yosys_by(script, output, options):
                           "(docs/guides/foreign-core.md)")
         raise Stop("\n".join([*errors, f"whole log: {log}"]))
     if output.exists() and output.read_bytes() == part.read_bytes():
-        part.unlink()  # files made from it are kept
+        part.unlink()  # files made from the unchanged output are kept
     else:
         part.replace(output)
 
@@ -147,7 +148,7 @@ def synthesise(run, library, options):
 
 
 def figures_of(n, spartan6, files_along):
-    """The figures of one netlist; timing and nets only for Spartan-6."""
+    """Returns the figures of one netlist; timing and nets only for Spartan-6."""
     owner = owners.owners_of(n, files_along)
     types = [cell.type for cell in n.cells]
     costs = owners.costs_of(n, owner)
@@ -172,7 +173,7 @@ def figures_of(n, spartan6, files_along):
 
 
 def places_of(n, figures):
-    """File and line of each signal that the report names."""
+    """Returns the file and line of each signal that the report names."""
     named = {f"{path}.{signal}" if path else signal
              for path, signals in figures["costs"].items() for signal in signals}
     for path in figures["timing"]["paths"]:
@@ -213,7 +214,7 @@ def read_figures(text):
 
 def place(run, library, options, version):
     """Sets run.netlist, where Yosys writes the netlist of these sources."""
-    run.netlist = pathlib.Path()  # the hash is not of where its output goes
+    run.netlist = pathlib.Path()  # the hash does not depend on the path of the output
     sources = digest([library.hash_of(run.design.top), version,
                       script_of(run, library, options, "")])
     run.netlist = options.cache / f"{run.design.name}.{run.family}.{sources}.json"
@@ -269,8 +270,8 @@ def time_left(runs, options, now):
 
 
 def carry_out(runs, library, options):
-    """Carries out all runs, names finished ones on stderr, and each ten seconds what is left. A
-    failed run does not stop others."""
+    """Carries out all runs. Prints each finished run on stderr, and every ten seconds the remaining
+    time. A failed run does not stop the others."""
     version = version_of(options.yosys)
     options.cache.mkdir(parents=True, exist_ok=True)
     wanted, terminal, over = [r for r in runs if r.wanted], threading.Lock(), threading.Event()
@@ -300,7 +301,7 @@ def carry_out(runs, library, options):
         return (not run.design.limits, -sum(file.stat().st_size for file in files))
 
     threading.Thread(target=tell, daemon=True).start()
-    sys.setrecursionlimit(1 << 20)  # as deep as the logic of a design
+    sys.setrecursionlimit(1 << 20)  # recursion is as deep as the logic of a design
     threading.stack_size(512 << 20)
     try:
         in_parallel(options.jobs, work, sorted(runs, key=size))
@@ -361,7 +362,8 @@ def write_edif(design, library, options, folder):
     shutil.rmtree(verilog, ignore_errors=True)
     verilog.mkdir(parents=True)
     headers = {file.name: file for include in reversed(library.include_folders)
-               for file in include.glob("*.vh")}  # the first folder's counts
+               for file in include.glob("*.vh")}  # of two files with one name, that in the first
+                                                  # folder is used
     for file in [*headers.values(), *library.files_of(design.top)]:
         shutil.copy(file, verilog)
     run = Run(design, "edif", netlist=folder / f"{design.name}.edf")

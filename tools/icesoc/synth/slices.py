@@ -42,15 +42,15 @@ def occupied(sites, flip_flops, share):
 
 
 def map_sites(luts, memory, through):
-    """Sites of LUTs as map counts them, route-throughs included, two functions in some of them;
-    `memory` of the LUTs are RAM or shift registers."""
+    """Returns the number of LUT sites as map counts them, including route-throughs; some sites
+    contain two functions. `memory`: number of LUTs that are RAM or shift registers."""
     return memory + (1 - USUAL_PAIRING) * (luts - memory + through)
 
 
 def sites_for(luts):
-    """LUT6 sites for these sets of inputs: two share one if together they have five inputs at most.
-    Greedy, the partner with most inputs in common first; LUTs with nothing in common are left
-    apart, as map does."""
+    """Returns the number of LUT6 sites for these sets of inputs. Two functions share a site if
+    together they have at most five inputs. Greedy: the partner with most inputs in common is first;
+    LUTs without common inputs stay apart, as in map."""
     readers = {}
     for i, inputs in enumerate(luts):
         if len(inputs) <= SHARED_INPUTS:
@@ -78,20 +78,20 @@ def sites_for(luts):
 
 
 def through_sites(n, carry):
-    """Carry bits with an S that is not driven by a separate LUT: each takes a site as a
-    route-through."""
+    """Returns the number of carry bits whose S is not driven by a separate LUT: each takes a site
+    as a route-through."""
     return sum(bit >= 0 and n.driver_type(bit) not in LUT_INPUTS for bit in carry.bits("S"))
 
 
 def control_set(cell):
-    """Clock, enable and set or reset of a flip-flop."""
+    """Returns clock, enable and set or reset of a flip-flop."""
     resets = (cell.bit(port) for port in ("R", "S", "CLR", "PRE"))
     return (cell.bit("C"), cell.bit("CE"), next((b for b in resets if b != UNDEFINED), UNDEFINED))
 
 
 def slices_of(n):
-    """The estimate ("slices"); "low", the least for any placer; "high", above which one published
-    design of twenty lies; and the counts behind them."""
+    """Returns the estimate ("slices"); "low", the least for any placer; "high", which one published
+    design of twenty exceeds; and the counts they are computed from."""
     luts, sets = [], {}  # sets: control set -> [flip-flops fed by a separate LUT, others]
     memory = carry = through = wide = flip_flops = 0
     for cell in n.cells:

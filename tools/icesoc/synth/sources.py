@@ -18,8 +18,8 @@ PROPERTIES = {"FORMAL", "RULES", "COVER_POINTS"}  # code under these macros is n
 
 @functools.cache
 def tokens(text):
-    """The words and punctuation without properties; an include directive becomes the token `include
-    and the name."""
+    """Returns the words and punctuation of a text, without properties. An include directive becomes
+    the token `include and the name."""
     result = []
     branches = []  # conditions around a word: True: dropped; False: its other branch is
     condition = ""
@@ -43,7 +43,7 @@ def is_name(token):
 
 
 def closing(t, opened):
-    """The index after the parenthesis that closes the one at `opened`."""
+    """Returns the index after the parenthesis that closes the one at `opened`."""
     depth = 0
     for i in range(opened, len(t)):
         depth += {"(": 1, ")": -1}.get(t[i], 0)
@@ -91,7 +91,7 @@ class Library:
                     None)
 
     def all_tokens(self, file):
-        """Tokens of a file, with the tokens of included files after each include."""
+        """Returns the tokens of a file, with the tokens of included files after each include."""
         result = []
         for token in tokens(read(file)):
             is_include = bool(result) and result[-1] == "`include"
@@ -122,7 +122,7 @@ class Library:
                     current.instances.setdefault(t[k], []).append(token)
 
     def reach(self, top):
-        """The module and all it instantiates."""
+        """Returns the module and all modules that it instantiates."""
         if top not in self.modules:
             raise Stop(f"unknown module {top}")
         found, left = {top}, [top]
@@ -136,13 +136,13 @@ class Library:
         return sorted({self.modules[module].file for module in self.reach(top)})
 
     def all_files_of(self, top):
-        """The files of the module, and those that they include."""
+        """Returns the files of the module, and the files that they include."""
         names = sorted(set().union(*(self.modules[module].includes for module in self.reach(top))))
         return self.files_of(top) + [file for name in names if (file := self.included(name))]
 
     @functools.cache
     def hash_of(self, top):
-        """A hash that changes with any of these files."""
+        """Returns a hash that changes with any of these files."""
         return digest(map(read, self.all_files_of(top)))
 
     def module_at(self, top, path):
@@ -157,7 +157,7 @@ class Library:
         return module
 
     def files_along(self, top, path):
-        """File names of the modules along such a path, the top's included."""
+        """Returns the names of the files of the modules along such a path, including the top."""
         names = path.split(".") if path else []
         modules = [self.module_at(top, ".".join(names[:n])) for n in range(len(names) + 1)]
         return {self.modules[module].file.name for module in modules if module}
@@ -170,35 +170,38 @@ class Design:
     title: str = ""
     file: str = ""  # path of the module's file in the project
     parameters: dict = dataclasses.field(default_factory=dict)
-    limits: dict = dataclasses.field(default_factory=dict)  # "lut", "ff", "slices", "sites"
-    pads: dict = dataclasses.field(default_factory=dict)  # output port: ns from any pad, grade -2
-    paper: bool = False  # the paper has figures for it
-    orders: int = 0  # further orders of inputs and outputs for mapping, because a single clock
-                     # result is luck
+    limits: dict = dataclasses.field(default_factory=dict)  # greatest "lut", "ff", "slices",
+                                                            # "sites"
+    pads: dict = dataclasses.field(default_factory=dict)  # output port -> greatest delay from any
+                                                          # pad, ns, grade -2
+    paper: bool = False  # True: the paper has figures for the design
+    orders: int = 0  # number of further orders of inputs and outputs for mapping, because the clock
+                     # of a single order depends on chance
 
 
 @dataclasses.dataclass
 class Plan:
     chip: dict
-    paper: dict  # Table I: "lut", "ff", "slices"
+    paper: dict  # figures of Table I: "lut", "ff", "slices"
     designs: list
     simulated: dict  # design -> prefixes of the tests that run on its netlist; other designs are
                      # proven
-    xilinx: list  # designs of parts that only Xilinx's FPGAs have
+    xilinx: list  # designs with parts that only Xilinx FPGAs have
 
     def has(self, design, family):
         return family != "ecp5" or design.name not in self.xilinx
 
 
 def sentence_of(file, module):
-    """"// name: one sentence" at the head of a file, or the sentence of a converted core."""
+    """Returns the sentence "// name: one sentence" at the head of a file, or that of a converted
+    core."""
     begin = f"// {module}: "
     return next((line.removeprefix(begin) for line in read(file).split("\n", 8)[:8]
                  if line.startswith(begin)), "")
 
 
 def read_json(file):
-    """A file of ours; an exception contains its name."""
+    """Reads a JSON file of ours; an exception names the file."""
     try:
         return json.loads(file.read_text())
     except (OSError, ValueError) as error:

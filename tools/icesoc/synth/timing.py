@@ -12,10 +12,11 @@ from icesoc.synth import netlist
 from icesoc.synth.netlist import LUT_INPUTS
 from icesoc.synth.slices import Range
 
-# -2 over -3, about: DS162 has 0.26 for 0.21 ns (LUT), 0.53 for 0.45 (clock to out)
+# delay of grade -2 divided by that of -3, about: DS162 has 0.26 for 0.21 ns (LUT), 0.53 for 0.45
+# (clock to out)
 SLOW_GRADE = 1.2
 
-# ns, grade -3
+# delays, ns, grade -3
 CLOCK_TO_OUT, LUT, SETUP, ENABLE_SETUP, RESET_SETUP = 0.447, 0.205, 0.102, 0.322, 0.430
 CARRY_IN, CARRY_BIT, CARRY_OUT, WIDE_MUX = 0.172, 0.019, 0.180, 0.140
 RAM_CLOCK, RAM_SETUP, LUT_RAM_CLOCK, LUT_RAM_SETUP = 1.850, 0.400, 0.900, 0.300
@@ -23,7 +24,7 @@ MULTIPLIER_CLOCK, MULTIPLIER_SETUP, MULTIPLY, MULTIPLIER_ADD = 4.700, 1.500, 4.5
 # Fan-out and delay of a net: points between which it is interpolated.
 NET_DELAYS = ((0, 0.0), (1, 0.580), (2, 0.617), (5, 0.715), (16, 1.004), (26, 1.207), (88, 1.799))
 
-# input and output buffer of LVCMOS
+# delays of the input and output buffer of LVCMOS, ns
 PAD_IN, PAD_OUT = 1.222, 2.571
 
 # Ratio of published clock after routing to the estimate: median and 90 % range of `count` designs,
@@ -32,7 +33,8 @@ ROUTED = Range(median=1.22, low=0.92, high=1.57, count=11)
 
 
 def delay_range(ns):
-    """The range of a delay after routing, as text: nine of ten published longest paths."""
+    """Returns the range of a delay after routing, as text: nine of ten published longest paths lie
+    in it."""
     return f"{ns / ROUTED.high:.1f}-{ns / ROUTED.low:.1f}"
 
 
@@ -51,13 +53,13 @@ def is_combinational(type):
 
 
 def is_unclocked(cell):
-    """True for logic, including a multiplier without registers."""
+    """Returns whether a cell is logic, including a multiplier without registers."""
     return is_combinational(cell.type) or (cell.type.startswith("DSP48") and cell.bit("CLK") < 0)
 
 
 def is_read(address, output):
-    """True if a memory's output follows this port: DOA follows ADDRA, DPO DPRA0.., SPO A0..; none
-    follows the write port, nor a port other than an address."""
+    """Returns whether the output of a memory follows this port: DOA follows ADDRA, DPO DPRA0.., SPO
+    A0..; no output follows the write port, or a port that is not an address."""
     if address.startswith("ADDR"):
         return len(output) < 3 or address[-1] == output[2]
     if address.startswith("DPRA"):
@@ -66,7 +68,7 @@ def is_read(address, output):
 
 
 def is_read_only(port):
-    """True for an address port without writes: no path ends there."""
+    """Returns whether the port is an address without writes, at which no path ends."""
     return port in ("ADDRA", "ADDRB", "ADDRC") or port.startswith("DPRA")
 
 
@@ -89,8 +91,8 @@ def end_delay(type, port):
 
 
 def through_delay(cell, pin, i, to, o):
-    """The delay of a combinational cell from bit i of a pin to bit o of an output, None without
-    such a path."""
+    """Returns the delay of a combinational cell from bit i of a pin to bit o of an output; None if
+    there is no such path."""
     if cell.type.startswith("DSP48"):
         return MULTIPLIER_ADD if pin.port == "C" else MULTIPLY
     if cell.type != "CARRY4":
@@ -105,7 +107,7 @@ def through_delay(cell, pin, i, to, o):
 class Arrival(typing.NamedTuple):
     ns: float
     levels: int
-    cell: int    # driver of the bit
+    cell: int    # number of the cell that drives the bit
     before: int  # previous bit of the path, None at its start
     delay: float
 
@@ -119,16 +121,16 @@ class Analysis:
         self.nets = {bit: net_delay(len(readers)) for bit, readers in n.readers.items()}
 
     def at(self, bit):
-        """The latest Arrival at a bit; None if no path leads there."""
+        """Returns the latest Arrival at a bit; None if no path leads there."""
         if bit not in self.known:
-            self.known[bit] = None  # breaks a loop
+            self.known[bit] = None  # ends a loop
             self.known[bit] = self.arrive(bit)
         return self.known[bit]
 
     def net(self, bit, reader):
         """The delay of a net; none is needed from a LUT into the flip-flop, wide multiplexer or
         adjacent carry."""
-        if reader is None:  # an output pad
+        if reader is None:  # the bit leads to an output pad
             return net_delay(len(self.n.readers.get(bit, [])) + 1)
         source, to = self.n.driver_type(bit), self.n.cells[reader].type
         if source == "CARRY4" and to == "CARRY4":
@@ -183,7 +185,8 @@ class Analysis:
 
 
 def start_name(n, owners, bit):
-    """The register or memory that drives a bit; without a name, the name of its load."""
+    """Returns the name of the register or memory that drives a bit; if it has no name, the name of
+    its load."""
     return n.name_of(bit) or (f"(for) {owners[n.driver[bit]]}" if bit in n.driver else "")
 
 
@@ -196,7 +199,7 @@ def end_name(n, owners, index):
 
 
 def path_ends(cell):
-    """(port, bit) of each input at which a path may end."""
+    """Returns (port, bit) of each input at which a path may end."""
     memory = netlist.is_memory(cell.type)
     return [(pin.port, bit) for pin in cell.pins if not pin.output and pin.port != "C"
             and not (memory and is_read_only(pin.port)) for bit in pin.bits if bit >= 0]
@@ -289,5 +292,5 @@ def pads_of(n, owners):
 
 
 def slowest_pad(paths, port):
-    """The longest path, ns at grade -3, from a pad to an output port; 0 without one."""
+    """Returns the longest path from a pad to an output port, ns at grade -3; 0 if there is none."""
     return max((p["ns"] for p in paths if (p["kind"], p["port"]) == (PAD_TO_PAD, port)), default=0)

@@ -22,14 +22,14 @@ from icesoc.util.files import write
 from icesoc.util.lock import only_one
 from icesoc.util.tree import tree_state
 
-FAMILIES = ("xc6s", "xc7", "ecp5")  # the first is the one that figures, limits and page are of
+FAMILIES = ("xc6s", "xc7", "ecp5")  # the figures, the limits and the page are of the first family
 WHOLE_CHIP = "soc"
 STATE_OF = "bus hdl ip slice synth tools"
 PAGE = pathlib.Path(__file__).with_name("page.html")
 
 
 def rtl_of(o):
-    """The modules of platform, cores and generated files, in this order."""
+    """Returns the modules of platform, cores and generated files, in this order."""
     if not o.generated.is_dir():
         raise Stop(f"{o.generated} is not there: build first")
     rooms = sorted(folder for room in ("hdl", "ip") for folder in (o.source / room).iterdir()
@@ -94,7 +94,7 @@ def tell_cores(library, options, o, accepted, runs):
 
 
 def cores_of(rows, library, options, o):
-    """A row for each core of the chip; None if the chip was not synthesised."""
+    """Returns one row per core of the chip; None if the chip was not synthesised."""
     map = cores.read_map(o.generated / "map.regs.json")
     for row in rows:
         if row.design.name == WHOLE_CHIP and row.figures and map:
@@ -158,7 +158,7 @@ def run(o, libraries):
         return equivalent(plan, library, options, o)
     if o.core:
         for design in plan.designs:
-            design.orders = 0  # they are there for the median of clocks
+            design.orders = 0  # orders are only needed for the median of clocks
         runs = synthesise(plan, library, options, o) if o.design else []
         return tell_cores(library, options, o, accepted, runs)
     yosys = runner.version_of(o.yosys)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""browser: drives headless Chromium by its debugging pipe: opens pages, runs scripts in them,
-presses keys, takes pictures. Chromium is started only here."""
+"""browser: drives a headless Chromium through its debugging pipe: opens pages, runs scripts in
+them, presses keys, takes pictures. Only this module starts Chromium."""
 import base64
 import json
 import os
@@ -76,7 +76,7 @@ class Browser:
         return answer["result"]
 
     def note(self, event):
-        """Keeps what an event reports."""
+        """Records an event."""
         if event.get("method") == "Runtime.exceptionThrown":
             self.errors.append(event["params"]["exceptionDetails"])
         elif event.get("method") == "Log.entryAdded":
@@ -84,7 +84,7 @@ class Browser:
                 self.errors.append(entry)
 
     def pass_time(self, milliseconds):
-        """Lets the page's timers run for a time, without waiting for it."""
+        """Lets the page's timers run for this time, without waiting for it."""
         self.ask("Emulation.setVirtualTimePolicy", policy="pauseIfNetworkFetchesPending",
                  budget=milliseconds)
         while (event := self.receive()).get("method") != "Emulation.virtualTimeBudgetExpired":

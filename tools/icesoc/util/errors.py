@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""errors: exceptions that end a command of the tools early, and a part of their messages."""
+"""errors: exceptions that end a command of the tools, and a function for their messages."""
 import difflib
 
-SKIPPED = 77  # exit status of a command that needs a network and has none
+SKIPPED = 77  # exit status of a command that needs a network if there is none
 
 
 class Stop(Exception):
@@ -21,6 +21,6 @@ class Interrupted(BaseException):
 
 
 def nearest(word, words):
-    """Returns the end of a message about an unknown word."""
+    """Returns the end of a message about an unknown word: the most similar known word."""
     close = difflib.get_close_matches(word, list(words), 1, 0.5)
     return f"; did you mean {close[0]}?" if close else ""

@@ -73,14 +73,15 @@ def output(*words):
 
 
 def mirror():
-    """The Debian mirror that this machine uses."""
+    """Returns the Debian mirror that this machine uses."""
     found = output("apt-get", "indextargets", "--format", "$(REPO_URI)", "Created-By: Packages")
     debian = [uri.rstrip("/") for uri in found.split() if uri.rstrip("/").endswith("/debian")]
     return debian[0] if debian else "http://deb.debian.org/debian"
 
 
 def kept(url, checksum):
-    """The file of this address and checksum, in the cache."""
+    """Returns the file with this address and checksum in the cache, after downloading it if
+    necessary."""
     file = CACHE / "foreign" / checksum
     if not file.exists():
         print(f"Fetching {url.rsplit('/', 1)[1]} ...", flush=True)
@@ -114,7 +115,7 @@ def unpack(archive, folder, target, suffix=""):
 
 
 def packages(name, wanted, release="trixie"):
-    """The folder of these packages of a Debian release, unpacked in the cache."""
+    """Returns the folder with these packages of a Debian release, unpacked in the cache."""
     folder = CACHE / name
     if not (folder / "done").exists():
         print(f"Fetching {name} from Debian's {release}, kept apart from the system ...",
@@ -315,7 +316,7 @@ def main():
     thing = THINGS[options.thing]
     CACHE.mkdir(parents=True, exist_ok=True)
     with open(CACHE / "lock", "w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)  # two builds may need the same
+        fcntl.flock(lock, fcntl.LOCK_EX)  # two builds may need the same download
         try:
             thing(options.folder.absolute())
         except Unreachable as error:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""files: complete files and their digests."""
+"""files: writes files atomically, and computes digests of files."""
 import hashlib
 import pathlib
 

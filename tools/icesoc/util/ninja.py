@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""ninja: runs ninja with its progress as one line."""
+"""ninja: runs ninja and shows its progress in one line."""
 import os
 import re
 import subprocess
@@ -12,7 +12,8 @@ from icesoc.util.console import say
 from icesoc.util.errors import Stop
 from icesoc.util.process import end, start, wait
 
-# Beginnings of lines in which CMake, ninja, Verilator and its makefiles report on themselves.
+# Beginnings of lines in which CMake, ninja, Verilator and its makefiles report on themselves; they
+# are not shown.
 NOISE = ("ninja: Entering directory", "ninja: no work to do", "- Verilator: ", "- V e r i l a t",
          "Archive ar ", "-- GLOB", "-- Configuring", "-- Generating", "-- Build files")
 
@@ -46,7 +47,7 @@ class Line:
 
 
 def in_vhdl(match):
-    """Returns a place in Verilog, and in the VHDL that GHDL made it of."""
+    """Returns a place in Verilog, and the place in the VHDL from which GHDL made it."""
     try:
         lines = Path(match[1]).read_text(errors="replace").splitlines()
     except OSError:

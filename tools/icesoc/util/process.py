@@ -26,7 +26,8 @@ INTERRUPTS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 def hear_signals():
     def hear(number, _):
         for each in INTERRUPTS:
-            signal.signal(each, signal.SIG_IGN)  # one is enough: the program is being ended
+            signal.signal(each, signal.SIG_IGN)  # one signal is enough: the program is already
+                                                 # being ended
         raise Interrupted(number)
 
     for number in INTERRUPTS:
@@ -40,7 +41,8 @@ def tool(name):
 
 
 def start(words, env=None, **more):
-    """A process that ends with this one, in any case. `env`: additions to our environment."""
+    """Starts a process that ends together with this one, in any case. `env`: additions to our
+    environment."""
     words = [str(word) for word in words]
     if not shutil.which(words[0]):
         raise Stop(
@@ -51,7 +53,7 @@ def start(words, env=None, **more):
 
 
 def end(process, seconds=20):
-    """Ends a process that still runs."""
+    """Ends a process that is still running."""
     with contextlib.suppress(ProcessLookupError):
         process.terminate()
     try:
@@ -62,7 +64,8 @@ def end(process, seconds=20):
 
 
 def wait(process):
-    """Returns its exit status, as in a shell; an interrupt of this process ends it."""
+    """Waits for a process; returns its exit status as in a shell. An interrupt of this process ends
+    it."""
     try:
         status = process.wait()
     except BaseException:
@@ -85,7 +88,7 @@ def run(words, check=True, **more):
 
 
 def output(words, check=True, **more):
-    """A program's output; empty if it fails and `check` is false."""
+    """Returns the output of a program; empty if the program fails and `check` is false."""
     process = start(words, stdout=subprocess.PIPE, text=True, **more)
     try:
         text = process.communicate()[0]
@@ -110,7 +113,8 @@ def logged(words, log, failed, env=None, cwd=None):
 
 
 def until(condition, process, seconds=0.05):
-    """Waits until a condition holds, as long as a process runs. Returns the condition."""
+    """Waits until a condition holds, as long as a process runs. Returns the last value of the
+    condition."""
     while not (held := condition()) and process.poll() is None:
         time.sleep(seconds)
     return held or condition()

@@ -12,7 +12,8 @@
 #define BACKUP_KEY_WORDS 4U
 #define BACKUP_SLOTS 2U /* keys of a peer: the one in use and the next one */
 #define BACKUP_OTHERS 3U
-#define BACKUP_FLYING 0x464C5921U /* value of `flight` in flight; any other: on the ground */
+/* value of `flight` while the vehicle flies; any other value means that it is on the ground */
+#define BACKUP_FLYING 0x464C5921U
 
 typedef struct Backup_Slot {
     U32 key[BACKUP_KEY_WORDS];
@@ -33,7 +34,7 @@ typedef struct Backup_Vehicle {
     U32 unused[3];
 } Backup_Vehicle;
 
-/* An observer, another vehicle, or the group. */
+/* Keys of an observer, another vehicle, or the group. */
 typedef struct Backup_Other {
     Backup_Keys keys;
     U32 inverted; /* inverted address; 0 if the entry is unused */

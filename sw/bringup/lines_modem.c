@@ -12,7 +12,7 @@
 #include "lines.h"
 #include "timing.h"
 
-#define SETTLE_US 10U /* a line of 100 pF at a pull of 50 kOhm */
+#define SETTLE_US 10U /* settling time of a line of 100 pF with a pull of 50 kOhm, us */
 #define OUTPUT_CHECK \
     "the wire, the socket's contact and the pin's number (the modem's pull-ups, PR, must be on)"
 
@@ -32,7 +32,7 @@ static Levels levelsOf(const Pins* pins) {
     return l;
 }
 
-/* Drives one more pin, or releases it: level 2. */
+/* Drives an additional pin. Level 2 releases the pin. */
 static void set(U32 pin, U32 level) {
     Pins_set(&lines_enable, pin, level != 2U);
     Pins_set(&lines_value, pin, level == 1U);

@@ -49,7 +49,7 @@ static int isCalibrated(void) {
     return !(event & SYSTEM_EVENT_BUS_ERROR_MASK);
 }
 
-/* Writes back what waits, and discards what was read ahead. */
+/* Writes back buffered data, and discards data that was read ahead. */
 static void flush(void) {
     (void)Bus_read(MAP_SLOT_SYSTEM, SYSTEM_ID);
 }
@@ -133,7 +133,7 @@ static void testMasks(void) {
     }
 }
 
-/* Returns 1 if the places of `address` and 0 are the same. */
+/* Returns 1 if `address` and address 0 are the same place in memory. */
 static int isAlias(U32 address) {
     Bus_store(0, 0x1234U);
     flush();

@@ -18,17 +18,21 @@ namespace XBeeAT {
 
 class Broadcast {
 public:
-    // `keys`: keys of the group, the current one last; empty: unencrypted.
+    // `keys` are the group's keys, the current one last; without keys, calls are unencrypted.
     Broadcast(const Settings& settings, const LinkKeys& keys)
         : settings_(settings), key_(keys.empty() ? LinkKey{} : keys.back()) {}
     ~Broadcast() { explicit_bzero(key_.data(), key_.size()); }
 
     // The modem is ready, and a packet has `bytes` at most.
     void limitPacket(U32 bytes) { most_ = bytes - LINK_BROADCAST_OVERHEAD; }
-    void stop() { most_ = copies_ = 0; } // sends no further copies
-    U32 most() const { return most_; }   // bytes of a message; 0: the modem is not ready
+    void stop() { most_ = copies_ = 0; } // sends no more copies
+    U32 most() const {
+        return most_;
+    } // returns the largest message in bytes; 0 if the modem is
+      // not ready
     bool isBusy() const { return copies_ != 0; }
-    // Takes a message, unless busy. Returns false if the clock of this machine is before 2026.
+    // Accepts a message unless another one is being sent. Returns false if the clock of this
+    // machine is before 2026.
     bool take(const U8* message, U32 size, U32 now) {
         const int64_t number = settings_.quarters();
         if (number <= 0)
@@ -65,7 +69,7 @@ private:
     LinkKey key_;
     U8 packet_[LINK_MAX_FRAME];
     U32 size_ = 0, most_ = 0, number_ = 0, dueAt_ = 0;
-    unsigned copies_ = 0; // copies of the packet still to be sent
+    unsigned copies_ = 0; // number of copies of the packet that are still to be sent
 };
 
 } // namespace XBeeAT

@@ -25,19 +25,20 @@
 
 namespace XBeeAT {
 
-constexpr Ice::Short endpointType = 0x4158, wireType = 0x4159; // the second never on the air
+constexpr Ice::Short endpointType = 0x4158, wireType = 0x4159; // types of endpoints; the second one
+                                                               // is never sent
 inline const std::string protocolName = "xbee-at", wireName = "serial";
 constexpr Ice::Int defaultTimeoutMs = 30000; // setting a modem up takes seconds
 
 struct EndpointOptions {
     Settings serial;
-    int channel = 255; // logical, 255: any
+    int channel = 255; // channel of the link; 255: any channel
     Ice::Int timeoutMs = defaultTimeoutMs;
     std::string connectionId;
     bool compress = false;
 };
 
-// The key is in no message.
+// Checks a modem key. Error messages never contain the key.
 inline void checkModemKey(const std::string& key, const std::string& where) {
     if (key.size() > 32 || key.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos)
         throw Ice::EndpointParseException(

@@ -52,8 +52,8 @@ void icec_wakeCalls(Ice_CommunicatorPtr ic) {
             ic->os->wake(ic->osContext, c);
 }
 
-/* Ends the call `id` if it still waits: wakes the waiting task, or calls back. `is` is 0 without a
- * reply. */
+/* Ends the call `id` if it still waits for its reply: wakes the waiting task, or calls the
+ * callback. `is` is 0 without a reply. */
 static void finish(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id, Ice_Status status,
                    Ice_InputStreamPtr is) {
     static const Ice_Byte nothing[1] = {0};
@@ -82,7 +82,7 @@ void icec_loseConnection(Ice_CommunicatorPtr ic, int connection, Ice_Status stat
     int c;
     icec_lock(ic, ICE_LOCK_STATE);
     ic->connections[connection].state = ICE_CONNECTION_NONE;
-    icec_wakeCalls(ic); /* some may wait for the connection */
+    icec_wakeCalls(ic); /* some tasks may wait for this connection */
     icec_unlock(ic, ICE_LOCK_STATE);
     for (c = 0; c < ICE_CALLS; ++c) {
         Ice_Call* call = &ic->calls[c];
@@ -144,7 +144,7 @@ static void keepReply(Ice_Call* call, Ice_InputStreamPtr is) {
     is->communicator = ic;
 }
 
-/* Returns the call that waits for the reply `id`; 0: it timed out, or there never was one. */
+/* Returns the call that waits for the reply `id`; 0 if the call has timed out or does not exist. */
 static Ice_Call* waitingCall(Ice_CommunicatorPtr ic, int connection, Ice_Int id) {
     Ice_Call* call;
     for (call = ic->calls; call < ic->calls + ICE_CALLS; ++call)
@@ -157,7 +157,7 @@ void icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr i
     Ice_Int id = Ice_InputStream_readInt(is);
     Ice_Call* call;
     int isAsynchronous = 0;
-    icec_lock(ic, ICE_LOCK_STATE); /* prevents a time-out meanwhile */
+    icec_lock(ic, ICE_LOCK_STATE); /* prevents a time-out of the call during this */
     call = waitingCall(ic, connection, id);
     if (call && call->callback) {
         isAsynchronous = 1;

@@ -26,12 +26,13 @@ typedef struct XBeeATEndpoint {
     U16 address;      /* address of this side's modem, MY */
     U32 events;       /* events to be delivered, one bit each */
     Ice_Int size;     /* bytes of the pending message */
-    Ice_Byte* buffer; /* buffer of the waiting task; 0: the link keeps the message */
+    Ice_Byte* buffer; /* buffer of the waiting task; 0 while no task waits: the link then keeps
+                       * the message */
     Ice_Byte from;    /* channel of the pending message */
     Ice_Byte ownOpen; /* this side's channel is open */
 } XBeeATEndpoint;
 
-/* Makes `name` (always "xbee-at") known to the communicator. */
+/* Registers the transport with the communicator. `name` is always "xbee-at". */
 void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoint* self, Link* link,
                          U16 address, const XBeeATEndpoint_Port* port, void* context);
 

@@ -15,7 +15,7 @@
 #define RECEIVE 10U
 #define LIMIT 1000U /* time-out, units of 10 ms */
 #define LINE_BYTES 88U
-#define JUMPER_PORT 2U /* PC2: wired to ground, it proves that the vehicle is open */
+#define JUMPER_PORT 2U /* PC2: a jumper to ground confirms that the vehicle is open */
 #define JUMPER 2U
 
 static int isBreak(void) {
@@ -90,7 +90,7 @@ static void protect(void) {
     FLASH_OPTCR |= FLASH_OPTCR_LOCK;
 }
 
-/* Executes the line. Returns the answer. */
+/* Executes the command in a line. Returns the answer. */
 static const char* obey(const char* line) {
     const char *end, *answer = "ok\r\n";
     U8 key[LINK_KEY_BYTES], old[LINK_KEY_BYTES], address[2] = {0, 0}, call[4] = {0, 0, 0, 0};
@@ -157,7 +157,7 @@ void Provision_listen(void) {
     while (!tick())
         if (!isBreak()) {
             stop();
-            return; /* another program's byte, not a break */
+            return; /* this is a byte of another program, not a break */
         }
     while (isBreak() && ticks < LIMIT)
         ticks += tick();

@@ -19,7 +19,8 @@ constexpr uint32_t ifThenMask = 0x0600FC00; // ICI/IT bits of xPSR
 constexpr uint32_t clrexPage = 0x9FFFF000, pageBytes = 0x1000;
 constexpr uint16_t clrex[2] = {0xF3BF, 0x8F2F};
 
-// The default memory map forbids to execute devices and system (B3.1, table B3-1).
+// Returns whether the default memory map forbids execution, as it does for devices and system
+// (B3.1, table B3-1).
 bool isNeverExecuted(uint32_t address) {
     return (address >= 0x40000000 && address < 0x60000000) || address >= 0xA0000000;
 }
@@ -226,7 +227,8 @@ void CortexM3::enter(unsigned number) {
                         exceptions_.priorityOf(derived) < exceptions_.runningPriority();
         if (!possible)
             control_.reportHardFault(SystemControl::forced);
-        number = possible ? derived : unsigned(HardFault); // the frame is lost, as on the chip
+        number = possible ? derived : unsigned(HardFault); // the stacked frame is lost, as on the
+                                                           // chip
     }
     setReg(Sp, frame);
     setReg(Lr, handler ? returnHandler : process ? returnProcess : returnMain);
@@ -291,7 +293,7 @@ void CortexM3::leave() {
     pass(exitCycles);
 }
 
-// The fault of a buffered store: it waits for its priority.
+// Reports the fault of a buffered store, which becomes pending with its priority.
 void CortexM3::reportStoreFault(const std::string& text) {
     char where[40];
     std::snprintf(where, sizeof where, " (a store before 0x%08X)", expected_);
@@ -330,7 +332,7 @@ void CortexM3::onRaised(uint32_t number) {
     uc_emu_stop(uc_);
 }
 
-// Unicorn reports an unknown instruction and a jump to an even address alike.
+// For Unicorn, an unknown instruction and a jump to an even address are the same.
 void CortexM3::undefinedAt(uint32_t address) {
     if (!(reg(Xpsr) & thumb)) {
         synchronous_ = {UsageFault, SystemControl::invalidState, "a jump out of Thumb state"};

@@ -22,7 +22,8 @@ Stm32F2::Config configOf(uint32_t hclkHz, uint64_t seed, uint32_t oscillatorHz) 
     return {static_cast<unsigned>(hclkHz / pinHclkHz), hclkHz, seed, oscillatorHz};
 }
 
-// Names the current function, and the functions that return addresses on the stack belong to.
+// Returns the name of the current function, and of the functions to which return addresses on the
+// stack belong.
 std::string stackOf(Stm32F2& stm32) {
     const CortexM3& cpu = stm32.cpu();
     std::string text = "The program is in " + stm32.image()->functionAt(cpu.reg(CortexM3::Pc));
@@ -158,7 +159,7 @@ GdbStub::Target M3Machine::target() {
 void M3Machine::debug(GdbStub& stub, bool canGoBack) {
     powerOn();
     stub_ = &stub;
-    // Between two debuggers the program runs.
+    // Between two debuggers the program runs freely.
     auto mayWait = [&] { return poll_() && (!stub.hasServed() || stub.wantsStop()); };
     do {
         checkpoints_ = canGoBack ? std::make_unique<Checkpoints>() : nullptr;
@@ -192,7 +193,8 @@ CortexM3::Stop M3Machine::resume(bool singleStep) {
 }
 
 // Goes back to the last place before this one at which the processor can stop, or to the last
-// breakpoint: one copy finds it, a second one goes there. Returns if it does not exist.
+// breakpoint: one copy finds this place, and a second copy goes there. Returns if there is no such
+// place.
 void M3Machine::goBack(bool singleStep) {
     const uint64_t here = cpu().instructions();
     if (checkpoints_->isFirst(here))

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// soc_model: the simulator's innermost loop. Slow events are looked at only when they are due.
+// soc_model: the simulator's innermost loop. Slow events are checked only when they are due.
 
 #include "soc_model.h"
 #include "mcb_model.h"
@@ -75,7 +75,7 @@ void SocModel::timeModels() {
     top_->modem_cts_n_i = wires_.reaches(BoardWires::ModemCts) && line_.ctsN();
 }
 
-// Clocks until a model outside the chip is due, or a model at the platform pins.
+// Returns the clocks until a model outside the chip, or a model at the platform's pins, is due.
 QuietSpan::Clocks SocModel::mayBeQuiet() const {
     if (!skips_ || now() >= nextEvent_)
         return {};
@@ -86,7 +86,7 @@ QuietSpan::Clocks SocModel::mayBeQuiet() const {
     return {clocks, platform};
 }
 
-// Gives the chip its owed clocks.
+// Adds the clocks that have passed without evaluation to the chip.
 void SocModel::pay() {
     if (rested_)
         (void)span_.pass(rested_); // no tick of the baud rate is among them

@@ -22,7 +22,7 @@ public:
         flash_->powerOff();
         configure();
     }
-    // Takes the processor's outputs: chip select, PROGRAM_B.
+    // Sets the outputs of the processor: chip select and PROGRAM_B.
     void drive(bool isSelectLow, bool isProgramLow) {
         if (!flash_)
             return;
@@ -42,10 +42,10 @@ public:
     // Called when the FPGA has lost its configuration, and starts to load one.
     std::function<void()> onReconfigured;
 
-    // The processor is the master: a byte out and one in.
+    // Transfers a byte in both directions; the processor is the master.
     uint8_t transfer(uint8_t byte) { return flash_ ? flash_->transfer(byte) : 0xFF; }
-    // The FPGA is the master: whether its chip select is low, how many bytes it has sent since
-    // then, and each.
+    // State while the FPGA is the master: whether its chip select is low, the number of bytes sent
+    // since then, and the bytes.
     bool isReading() const { return current() != nullptr; }
     uint64_t bytesSent() const {
         const Spartan6Boot::Read* read = current();
@@ -83,7 +83,7 @@ private:
         return nullptr;
     }
     uint64_t clock() const { return (now_() - begunAt_) * Spartan6Boot::cclkHz / second; }
-    // The first nanosecond at which clock() has reached it.
+    // Returns the first nanosecond at which clock() has reached `clock`.
     uint64_t nsOf(uint64_t clock) const {
         return begunAt_ + (clock * second + Spartan6Boot::cclkHz - 1) / Spartan6Boot::cclkHz;
     }

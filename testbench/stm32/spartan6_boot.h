@@ -14,15 +14,15 @@
 
 struct Spartan6Boot {
     static constexpr uint32_t idCode = 0x04002093; // XC6SLX16
-    static constexpr uint32_t cclkHz = 2'000'000;  // ConfigRate's default
+    static constexpr uint32_t cclkHz = 2'000'000;  // default of ConfigRate
 
     // Starts at power-on, or when PROGRAM_B rises.
     void configure(const std::vector<uint8_t>& flash);
 
-    // Address in flash of the running bitstream; empty: DONE stays low.
+    // Address in flash of the running bitstream; empty while DONE is low.
     std::optional<uint32_t> running;
     bool isStuck = false; // the FPGA makes no further try
-    uint64_t clocks = 0;  // CCLK clocks that it took
+    uint64_t clocks = 0;  // CCLK clocks that the configuration took
     unsigned strikes = 0; // tries that failed
     // The reads of the flash, a try each: the address, and the clocks at which its chip select
     // falls and rises.

@@ -85,7 +85,8 @@ void LineKit::changed(unsigned port) {
     exchange();
 }
 
-// An XBee in reset drives nothing (xbee.h); without power it also pulls nothing.
+// Follows the modem's state. An XBee in reset drives nothing (xbee.h); without power it has no
+// pulls either.
 void LineKit::followModem() {
     const bool reset = !isModemFitted_ || !wires_.level(resetN, 0, now_);
     if (reset == inReset_ && now_)
@@ -95,7 +96,7 @@ void LineKit::followModem() {
     wires_.setOther(cts, reset ? Wires::None : Wires::Low, now_);
 }
 
-// Edges of NWE, with an echo if the line rings.
+// Passes edges of NWE on, with an echo if the line rings.
 void LineKit::pulseNwe(bool level) {
     const uint64_t bit = 1ull << nwe;
     for (int i = wires_.isRinging(nwe) ? 1 : 0; i >= 0; --i) {

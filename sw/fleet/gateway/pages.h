@@ -27,7 +27,8 @@ public:
     // that is not a browser sends no origin, and is allowed.
     std::string refusal(const std::shared_ptr<Ice::Connection>& connection) const;
 
-    // Returns the endpoints to listen at: those given, and one for browsers if the page needs it.
+    // Returns the endpoints at which to listen: the given endpoints, and an additional one for
+    // browsers if the page needs it.
     std::string endpoints(bool hasCertificate) const;
 
     // Adds a vehicle, with the adapter that browsers call.
@@ -42,7 +43,7 @@ public:
 private:
     const Options& o_;
     std::string host_, port_, secret_, protocol_;
-    std::vector<std::string> origins_;  // of its own page
+    std::vector<std::string> origins_;  // origins of the gateway's own page
     std::vector<std::string> vehicles_; // arguments for icesoc-page, such as uav1=wss:10002
     pid_t server_ = -1;
 };

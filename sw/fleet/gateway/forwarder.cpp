@@ -1,27 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// forwarder: the clients' queues, the order in which they are served, and the two lanes
-// (connections) to the vehicle.
+// forwarder: the two lanes to the vehicle, and the calls of the vehicle.
 
 #include "forwarder.h"
 #include "passed_proxies.h"
 
 #include <algorithm>
-#include <iostream>
 #include <iterator>
 
 namespace gateway {
-
-struct Client {
-    std::shared_ptr<Ice::Connection> connection;
-    std::string subject;
-    std::deque<std::shared_ptr<Request>> requests;
-    size_t underWay = 0;  // number of requests that may not have reached the vehicle yet
-    int lane = 0;         // lane on which these requests were sent
-    size_t objects = 0;   // number of objects that it has passed to the vehicle
-    bool hasLeft = false; // true if the client has disconnected and only its one-way requests
-                          // remain
-};
 
 namespace {
 
@@ -33,26 +20,8 @@ constexpr size_t longBytes = 512;  // size in bytes above which a call or reply 
 constexpr size_t mostUnderWay = 8; // requests of a lane
 // Bytes in flight, short lane and long lane; a single longer request is allowed.
 constexpr size_t mostBytesUnderWay[] = {1536, 8192};
-constexpr size_t mostUnconfirmed = 4;          // one-way requests after which a ping must confirm
-                                               // their arrival
-constexpr size_t mostQueued = size_t{1} << 18; // largest number of queued bytes of one subject
-constexpr size_t mostClients = 200;            // largest number of clients of one subject; each may
-                                               // queue at least one request
-constexpr size_t mostBlocked = 16;             // largest number of threads that wait for room for
-                                               // one subject
-constexpr size_t mostKnown = 1000;             // largest number of objects and operations that are
-                                               // remembered
-constexpr size_t requestCost = 100;            // fixed cost of a request when turns are computed,
-                                               // in addition to its bytes
-
-size_t costOf(const Request& request) {
-    return request.parameters.size() + requestCost;
-}
-
-std::exception_ptr unknown(const std::string& why) {
-    return std::make_exception_ptr(
-        Ice::UnknownException(__FILE__, __LINE__, "icesoc-gateway: " + why));
-}
+constexpr size_t mostUnconfirmed = 4; // one-way requests before a ping must confirm their
+                                      // arrival
 
 std::exception_ptr refusal(const Ice::Identity& maintained) {
     return unknown("'" + Ice::identityToString(maintained) +
@@ -61,24 +30,10 @@ std::exception_ptr refusal(const Ice::Identity& maintained) {
 
 } // namespace
 
-void Request::sendTo(const std::shared_ptr<Ice::ObjectPrx>& target, Response onResponse,
-                     Failure onError) const {
-    auto object = target->ice_identity(current.id)->ice_facet(current.facet);
-    object = object->ice_encodingVersion(current.encoding);
-    object = isOneway() ? object->ice_oneway() : object->ice_twoway();
-    const Parameters in{parameters.data(), parameters.data() + parameters.size()};
-    std::function<void(bool)> sent; // called when Ice has sent a one-way request, which has no
-                                    // other result
-    if (isOneway())
-        sent = [onResponse](bool) { onResponse(true, {}); };
-    object->ice_invokeAsync(current.operation, current.mode, in, std::move(onResponse),
-                            std::move(onError), std::move(sent), current.ctx);
-}
-
 Forwarder::Forwarder(const std::shared_ptr<Ice::ObjectPrx>& vehicle, std::chrono::seconds wait)
     : vehicle_(vehicle->ice_connectionCached(false)), wait_(wait) {
-} // without cached connection, Ice could
-  // return a connection that has been lost
+    // With a cached connection, Ice could return one that has been lost.
+}
 
 void Forwarder::setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter) {
     callbacks_ = std::move(adapter);
@@ -86,84 +41,19 @@ void Forwarder::setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter) {
 
 // ---- clients to vehicle ----
 
-std::shared_ptr<Client> Forwarder::clientOf(const Request& request) {
-    const Connection& from = request.current.con;
-    std::shared_ptr<Client>& client = clients_[from];
-    if (!client) {
-        client = std::make_shared<Client>();
-        client->connection = from;
-        client->subject = request.subject;
-        subjects_[request.subject].clients.insert(client);
-        from->setCloseCallback([this](const Connection& closed) { forget(closed); });
-    }
-    return client;
-}
-
-// Ends the turns of a client that has nothing more to send. Also ends the turns of its subject, if
-// no other client of the subject has anything to send.
-void Forwarder::restIfEmpty(const Client& client) {
-    if (!client.requests.empty())
-        return;
-    Subject& subject = subjects_[client.subject];
-    subject.turns.rest(&client);
-    if (std::all_of(subject.clients.begin(), subject.clients.end(),
-                    [](const auto& each) { return each->requests.empty(); }))
-        turns_.rest(client.subject);
-}
-
-// Removes a client that has disconnected and has nothing more to send.
-void Forwarder::dropIfOver(const std::shared_ptr<Client>& client) {
-    if (!client->hasLeft || !client->requests.empty())
-        return;
-    const auto subject = subjects_.find(client->subject);
-    if (subject == subjects_.end())
-        return;
-    subject->second.turns.remove(client.get());
-    subject->second.clients.erase(client);
-    if (subject->second.clients.empty() && subject->second.blocked == 0)
-        subjects_.erase(subject);
-    clients_.erase(client->connection);
-}
-
-// Drops the two-way requests of a client that has disconnected; its one-way requests are still
-// sent.
 void Forwarder::forget(const Connection& connection) {
     std::lock_guard<std::mutex> lock(mutex_);
-    const auto found = clients_.find(connection);
-    if (found == clients_.end())
+    if (!queues_.leave(connection))
         return;
-    const std::shared_ptr<Client> client = found->second;
-    auto& requests = client->requests;
-    const auto goes = [&](const std::shared_ptr<Request>& request) {
-        subjects_[client->subject].bytes -= request->isOneway() ? 0 : request->parameters.size();
-        return !request->isOneway();
-    };
-    requests.erase(std::remove_if(requests.begin(), requests.end(), goes), requests.end());
-    client->hasLeft = true;
-    restIfEmpty(*client);
-    dropIfOver(client);
-    for (auto owner = owners_.begin(); owner != owners_.end();) {
-        owner->second.erase(connection);
-        owner = owner->second.empty() ? owners_.erase(owner) : std::next(owner);
-    }
+    addressees_.leave(connection);
     room_.notify_all();
-}
-
-// Returns whether a request may wait here. The first request of a client always may, unless its
-// subject has too many clients. These include disconnected clients with waiting one-way requests,
-// so that a subject gains nothing by reconnecting.
-bool Forwarder::hasRoom(const Request& request) {
-    const bool isFirst = clientOf(request)->requests.empty();
-    const Subject& subject = subjects_[request.subject];
-    return (isFirst && subject.clients.size() <= mostClients) ||
-           subject.bytes + request.parameters.size() <= mostQueued;
 }
 
 void Forwarder::take(std::shared_ptr<Request> request) {
     {
         std::unique_lock<std::mutex> lock(mutex_);
-        if (!hasRoom(*request) && !stopped_) {
-            if (subjects_[request->subject].blocked == mostBlocked) {
+        if (!queues_.hasRoom(*request) && !stopped_) {
+            if (!queues_.block(request->subject)) {
                 lock.unlock();
                 if (request->isOneway()) // a one-way request has no reply: its loss is only noticed
                                          // when the connection closes
@@ -171,23 +61,16 @@ void Forwarder::take(std::shared_ptr<Request> request) {
                 throw Ice::UnknownException(__FILE__, __LINE__,
                                             "icesoc-gateway: '" + request->subject +
                                                 "' has too much waiting: at most " +
-                                                std::to_string(mostQueued) + " bytes");
+                                                std::to_string(ClientQueues::mostBytes) + " bytes");
             }
-            ++subjects_[request->subject].blocked;
-            room_.wait(lock, [&] { return stopped_ || hasRoom(*request); });
-            --subjects_[request->subject].blocked;
+            room_.wait(lock, [&] { return stopped_ || queues_.hasRoom(*request); });
+            queues_.unblock(request->subject);
         }
         if (stopped_)
             throw Ice::CommunicatorDestroyedException(__FILE__, __LINE__);
         if (holds_ && !lanes_[shortCalls].connection)
             throw Ice::ObjectNotExistException(__FILE__, __LINE__);
-        const std::shared_ptr<Client> client = clientOf(*request);
-        Subject& subject = subjects_[client->subject];
-        request->client = client;
-        subject.bytes += request->parameters.size();
-        client->requests.push_back(std::move(request));
-        subject.turns.wait(client.get());
-        turns_.wait(client->subject);
+        queues_.add(std::move(request));
     }
     send();
 }
@@ -201,8 +84,6 @@ int Forwarder::laneOf(const Request& request) const {
 
 // Returns whether a client's first request may be sent now.
 bool Forwarder::mayGo(const Client& client) const {
-    if (client.requests.empty())
-        return false;
     const Request& request = *client.requests.front();
     const int number = laneOf(request);
     const Lane& lane = lanes_[number];
@@ -214,62 +95,27 @@ bool Forwarder::mayGo(const Client& client) const {
 
 // Returns a lane that has waiting requests and no connection; -1 if none.
 int Forwarder::laneToConnect() const {
-    for (const auto& [connection, client] : clients_) {
-        if (client->requests.empty())
-            continue;
-        const int lane = lanes_[shortCalls].connection ? laneOf(*client->requests.front()) : 0;
+    const bool isConnected = lanes_[shortCalls].connection != nullptr;
+    int found = -1;
+    queues_.isAnyWaiting([&](const Client& client) {
+        const int lane = isConnected ? laneOf(*client.requests.front()) : int(shortCalls);
         if (!lanes_[lane].connection && !lanes_[lane].isConnecting)
-            return lane;
-    }
-    return -1;
-}
-
-std::shared_ptr<Request> Forwarder::pop(const std::shared_ptr<Client>& client) {
-    const std::shared_ptr<Request> request = client->requests.front();
-    client->requests.pop_front();
-    subjects_[client->subject].bytes -= request->parameters.size();
-    restIfEmpty(*client);
-    dropIfOver(client);
-    room_.notify_all();
-    return request;
+            found = lane;
+        return found >= 0;
+    });
+    return found;
 }
 
 // Returns the next request in turn if it may be sent now. The caller holds the mutex.
 std::shared_ptr<Request> Forwarder::nextRequest() {
-    std::shared_ptr<Client> next;
-    uint64_t least = 0;
-    for (const auto& [name, subject] : subjects_) {
-        std::shared_ptr<Client> first; // first client of the subject
-        uint64_t leastHere = 0;
-        for (const auto& client : subject.clients) {
-            if (!mayGo(*client))
-                continue;
-            const uint64_t after =
-                subject.turns.after(client.get(), costOf(*client->requests.front()));
-            if (!first || after < leastHere) {
-                first = client;
-                leastHere = after;
-            }
-        }
-        if (!first)
-            continue;
-        const uint64_t after = turns_.after(name, costOf(*first->requests.front()));
-        if (!next || after < least) {
-            next = first;
-            least = after;
-        }
-    }
-    if (!next)
+    auto request = queues_.popNext([this](const Client& client) { return mayGo(client); });
+    if (!request)
         return nullptr;
-    const size_t cost = costOf(*next->requests.front());
-    turns_.take(next->subject, cost);
-    subjects_[next->subject].turns.take(next.get(), cost);
-    const int lane = laneOf(*next->requests.front());
-    const auto request = pop(next);
-    request->lane = next->lane = lane;
-    ++next->underWay;
-    ++lanes_[lane].requests;
-    lanes_[lane].bytes += request->parameters.size();
+    room_.notify_all();
+    request->lane = request->client->lane = laneOf(*request);
+    ++request->client->underWay;
+    ++lanes_[request->lane].requests;
+    lanes_[request->lane].bytes += request->parameters.size();
     request->isCounted = true;
     return request;
 }
@@ -310,14 +156,14 @@ void Forwarder::send() {
         if (!request)
             break;
         sent_.insert(request);
-        const Verdict verdict = verdictOn(request);
+        const ObjectTypes::Verdict verdict = types_.verdictOn(request);
         const Connection connection = lanes_[shortCalls].connection;
         lock.unlock();
-        if (verdict == Verdict::Goes)
+        if (verdict == ObjectTypes::Verdict::Goes)
             sendOne(request);
-        else if (verdict == Verdict::IsAsked)
-            ask(connection, {request->current.id, request->current.facet});
-        else if (verdict == Verdict::IsRefused)
+        else if (verdict == ObjectTypes::Verdict::Asks)
+            ask(connection, ObjectTypes::objectOf(*request));
+        else if (verdict == ObjectTypes::Verdict::Refused)
             finish(request, false, [&] { fail({request}, refusal(request->current.id)); });
         lock.lock();
     }
@@ -325,18 +171,6 @@ void Forwarder::send() {
 }
 
 // ---- objects for maintenance: the gateway asks the vehicle once for the type of each object ----
-
-Forwarder::Verdict Forwarder::verdictOn(const std::shared_ptr<Request>& request) {
-    const Object object{request->current.id, request->current.facet};
-    const auto known = isMaintenance_.find(object);
-    if (request->mayMaintain || (known != isMaintenance_.end() && !known->second))
-        return Verdict::Goes;
-    if (known != isMaintenance_.end())
-        return Verdict::IsRefused;
-    Requests& waiting = asked_[object];
-    waiting.push_back(request);
-    return waiting.size() == 1 ? Verdict::IsAsked : Verdict::Waits;
-}
 
 void Forwarder::ask(const Connection& connection, const Object& object) {
     const auto failed = [this, object](std::exception_ptr why) {
@@ -371,12 +205,9 @@ void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
     Requests waiting;
     {
         std::lock_guard<std::mutex> lock(mutex_);
-        waiting.swap(asked_[object]);
-        asked_.erase(object);
-        if (isMaintenance_.size() >= mostKnown)
-            isMaintenance_.clear();
+        waiting = types_.answered(object);
         if (isKnown && lanes_[shortCalls].connection)
-            isMaintenance_[object] = isMaintenance;
+            types_.record(object, isMaintenance);
         for (const auto& request : waiting) {
             request->mayMaintain = !isMaintenance; // this request is sent without asking for the
                                                    // type again
@@ -399,10 +230,7 @@ void Forwarder::recordProxies(const Request& request) {
         return;
     const auto passed = passedProxies(request.parameters);
     std::lock_guard<std::mutex> lock(mutex_);
-    Client& client = *request.client;
-    for (const Ice::Identity& object : passed)
-        if (!client.hasLeft && client.objects < mostKnown)
-            client.objects += owners_[object].insert(client.connection).second;
+    addressees_.record(*request.client, passed);
 }
 
 // Sends a request on its lane. It is called only by the thread that is in send().
@@ -525,7 +353,7 @@ void Forwarder::closed(int number, const Connection& connection) {
             lane.isConfirming = false;
             refuses = holds_ && number == shortCalls;
             if (number == shortCalls) {
-                isMaintenance_.clear(); // the next vehicle may have other objects
+                types_.clear();
                 lanes_[longCalls].isMissing = false;
             }
         }
@@ -555,37 +383,13 @@ void Forwarder::connect(int lane) {
     }
 }
 
-// Fails requests. Prints the number of one-way requests, because their clients receive no error.
-void Forwarder::fail(const Requests& requests, std::exception_ptr why) {
-    size_t oneways = 0;
-    for (const auto& request : requests) {
-        oneways += request->isOneway();
-        request->failed(why);
-    }
-    if (oneways == 0)
-        return;
-    const auto report = [oneways](const std::string& reason) {
-        std::cerr << "gateway: one-way calls that were not sent: " + std::to_string(oneways) +
-                         " (" + reason + ")\n";
-    };
-    try {
-        std::rethrow_exception(why);
-    } catch (const Ice::UnknownException& e) {
-        report(e.unknown);
-    } catch (const std::exception& e) {
-        report(e.what());
-    }
-}
-
 // Fails the waiting requests that arrived before `due`.
 void Forwarder::failWaiting(std::chrono::steady_clock::time_point due, std::exception_ptr why) {
     Requests out;
     {
         std::lock_guard<std::mutex> lock(mutex_);
-        const auto clients = clients_; // pop removes disconnected clients
-        for (const auto& [connection, client] : clients)
-            while (!client->requests.empty() && client->requests.front()->since < due)
-                out.push_back(pop(client));
+        out = queues_.popOlder(due);
+        room_.notify_all();
     }
     fail(out, why);
 }
@@ -675,18 +479,7 @@ void Forwarder::takeCallback(std::shared_ptr<Request> request) {
     Connection addressee;
     {
         std::lock_guard<std::mutex> lock(mutex_);
-        const auto owner = owners_.find(current.id);
-        if (owner != owners_.end()) {
-            if (owner->second.size() == 1) // with several owners, the client to call is ambiguous
-                addressee = *owner->second.begin();
-        } else {
-            std::set<Connection> callers;
-            for (const auto& each : sent_)
-                if (each->client && !each->isOneway())
-                    callers.insert(each->current.con);
-            if (callers.size() == 1)
-                addressee = *callers.begin();
-        }
+        addressee = addressees_.of(current.id, sent_);
     }
     const auto isMissing = [request](const Ice::Current& at) {
         request->failed(std::make_exception_ptr(

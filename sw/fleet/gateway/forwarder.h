@@ -3,8 +3,7 @@
 // forwarder: passes the requests of many clients to the vehicle, and the vehicle's requests back to
 // them.
 //
-// Bytes are shared evenly (turns.h) among the subjects (certificates, or hosts without one), and
-// the share of each subject evenly among its connections. There are two connections to the vehicle,
+// The clients' requests wait in queues (client_queues.h). There are two connections to the vehicle,
 // because on one connection a short message waits for the long ones before it: a lane for short
 // calls, and a lane for calls that are long or have long replies. Few requests are in flight on
 // each. A one-way request counts until a reply to a later request shows that it has arrived. Each
@@ -12,53 +11,18 @@
 
 #pragma once
 
-#include "turns.h"
+#include "addressees.h"
+#include "client_queues.h"
+#include "object_types.h"
 
-#include <Ice/Ice.h>
 #include <array>
-#include <chrono>
 #include <condition_variable>
 #include <deque>
-#include <map>
-#include <memory>
 #include <mutex>
-#include <set>
 
 namespace gateway {
 
-using Parameters = std::pair<const Ice::Byte*, const Ice::Byte*>; // an encapsulation: its first
-                                                                  // byte, and the end
-using Response = std::function<void(bool, const Parameters&)>;
-using Failure = std::function<void(std::exception_ptr)>;
-
-struct Client;
-
-// A client's request, which is kept after its dispatch has returned.
-struct Request {
-    Request(const Parameters& in, Response onResponse, Failure onError, const Ice::Current& current)
-        : parameters(in.first, in.second), response(std::move(onResponse)),
-          failed(std::move(onError)), current(current) {}
-    // Sends the request to `target`, an object of any identity. Throws the exceptions that Ice
-    // throws at once.
-    void sendTo(const std::shared_ptr<Ice::ObjectPrx>& target, Response onResponse,
-                Failure onError) const;
-    bool isOneway() const { return current.requestId == 0; }
-
-    std::vector<Ice::Byte> parameters;
-    Response response;
-    Failure failed;
-    Ice::Current current;
-    std::chrono::steady_clock::time_point since = std::chrono::steady_clock::now();
-    std::string subject;      // subject of the client's certificate; without a certificate, the
-                              // client's host
-    bool mayMaintain = false; // true if the client may call objects for maintenance
-    std::shared_ptr<Client> client;
-    int lane = 0;           // lane on which the request was sent
-    bool isCounted = false; // true while the request counts as in flight on its lane: until it has
-                            // arrived
-};
-
-// Holds the clients' requests until their turn.
+// Passes requests in both directions. Its functions may be called by any thread.
 class Forwarder {
 public:
     // Creates a forwarder. `vehicle` is a proxy with the vehicle's endpoint; `wait` is the longest
@@ -82,17 +46,14 @@ public:
     // they no longer wait.
     void hold();
     unsigned session() const; // number of the current connection; 0 without one
-    void refuseWaiting(); // fails waiting requests with ObjectNotExistException Fails requests in
-                          // flight that are older than
-                          // `age`: it is unknown whether they were executed.
+    void refuseWaiting();     // fails waiting requests with ObjectNotExistException
+    // Fails requests in flight that are older than `age`: it is unknown whether they were executed.
     void giveUp(std::chrono::milliseconds age);
     void failLateRequests(); // fails requests that have waited too long; to be called periodically
     void stop();             // fails all waiting requests
 
 private:
-    using Connection = std::shared_ptr<Ice::Connection>;
-    using Requests = std::vector<std::shared_ptr<Request>>;
-    using Object = std::pair<Ice::Identity, std::string>; // identity and facet of an object
+    using Object = ObjectTypes::Object;
     enum { shortCalls, longCalls, lanes };
     struct Lane {
         Connection connection;
@@ -103,25 +64,13 @@ private:
                                                        // chosen or in flight
         bool isConfirming = false;
     };
-    struct Subject {
-        Turns<const Client*> turns;
-        std::set<std::shared_ptr<Client>> clients;
-        size_t bytes = 0, blocked = 0; // queued bytes of a subject; its blocked threads
-    };
-    std::shared_ptr<Client> clientOf(const Request& request);
     void forget(const Connection& connection);
-    void dropIfOver(const std::shared_ptr<Client>& client);
-    void restIfEmpty(const Client& client);
-    bool hasRoom(const Request& request);
     int laneOf(const Request& request) const;
     bool mayGo(const Client& client) const;
     int laneToConnect() const;
     std::shared_ptr<Request> nextRequest();
-    std::shared_ptr<Request> pop(const std::shared_ptr<Client>& client);
     void release(Request& request);
     void send();
-    enum class Verdict { Goes, Waits, IsAsked, IsRefused };
-    Verdict verdictOn(const std::shared_ptr<Request>& request);
     void ask(const Connection& connection, const Object& object);
     void answered(const Object& object, bool isKnown, bool isMaintenance, std::exception_ptr why);
     void recordProxies(const Request& request);
@@ -133,7 +82,6 @@ private:
     void opened(int lane, const Connection& connection);
     void closed(int lane, const Connection& connection);
     void failWaiting(std::chrono::steady_clock::time_point due, std::exception_ptr why);
-    static void fail(const Requests& requests, std::exception_ptr why);
     void failAll(std::exception_ptr why);
 
     const std::shared_ptr<Ice::ObjectPrx> vehicle_;
@@ -141,21 +89,13 @@ private:
     std::shared_ptr<Ice::ObjectAdapter> callbacks_;
     mutable std::mutex mutex_; // guards all members below
     std::condition_variable room_;
-    Turns<std::string> turns_; // order in which subjects are served
-    std::map<std::string, Subject> subjects_;
-    std::map<Connection, std::shared_ptr<Client>> clients_;
-    std::map<Ice::Identity, std::set<Connection>> owners_; // clients that own each object that the
-                                                           // vehicle may call
+    ClientQueues queues_{[this](const Connection& closed) { forget(closed); }};
+    Addressees addressees_;
+    ObjectTypes types_;
     std::array<Lane, lanes> lanes_;
     std::set<std::shared_ptr<Request>> sent_;    // requests without a reply so far
-    std::deque<std::shared_ptr<Request>> ready_; // requests that were chosen and may be
-                                                 // sent
-    std::map<Object, Requests> asked_;           // requests that wait until their object's
-                                                 // type is known
-    std::map<Object, bool> isMaintenance_;       // whether an object is for maintenance;
-                                                 // valid for this session
-    std::set<std::pair<Ice::Identity, std::string>> longReplies_; // objects and operations that had
-                                                                  // long replies
+    std::deque<std::shared_ptr<Request>> ready_; // requests chosen, which may be sent
+    std::set<std::pair<Ice::Identity, std::string>> longReplies_; // operations with long replies
     bool isSending_ = false, stopped_ = false, holds_ = false;
     unsigned connections_ = 0; // number of connections that were made to the vehicle so far
 };

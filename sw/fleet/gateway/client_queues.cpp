@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+//
+// client_queues: the waiting requests by client and by subject.
+
+#include "client_queues.h"
+
+#include <algorithm>
+
+namespace gateway {
+
+namespace {
+
+constexpr size_t requestCost = 100; // fixed cost of a request in a turn, in addition to its bytes
+
+size_t costOf(const Client& client) {
+    return client.requests.front()->parameters.size() + requestCost;
+}
+
+} // namespace
+
+std::shared_ptr<Client> ClientQueues::clientOf(const Request& request) {
+    const Connection& from = request.current.con;
+    std::shared_ptr<Client>& client = clients_[from];
+    if (!client) {
+        client = std::make_shared<Client>();
+        client->connection = from;
+        client->subject = request.subject;
+        subjects_[request.subject].clients.insert(client);
+        from->setCloseCallback([this](const Connection& closed) { onClosed_(closed); });
+    }
+    return client;
+}
+
+// Ends the turns of a client that has nothing more to send. Also ends the turns of its subject, if
+// no other client of the subject has anything to send.
+void ClientQueues::restIfEmpty(const Client& client) {
+    if (!client.requests.empty())
+        return;
+    Subject& subject = subjects_[client.subject];
+    subject.turns.rest(&client);
+    if (std::all_of(subject.clients.begin(), subject.clients.end(),
+                    [](const auto& each) { return each->requests.empty(); }))
+        turns_.rest(client.subject);
+}
+
+// Removes a client that has disconnected and has nothing more to send.
+void ClientQueues::dropIfOver(const std::shared_ptr<Client>& client) {
+    if (!client->hasLeft || !client->requests.empty())
+        return;
+    const auto subject = subjects_.find(client->subject);
+    if (subject == subjects_.end())
+        return;
+    subject->second.turns.remove(client.get());
+    subject->second.clients.erase(client);
+    if (subject->second.clients.empty() && subject->second.blocked == 0)
+        subjects_.erase(subject);
+    clients_.erase(client->connection);
+}
+
+std::shared_ptr<Client> ClientQueues::leave(const Connection& connection) {
+    const auto found = clients_.find(connection);
+    if (found == clients_.end())
+        return nullptr;
+    std::shared_ptr<Client> client = found->second;
+    auto& requests = client->requests;
+    const auto goes = [&](const std::shared_ptr<Request>& request) {
+        subjects_[client->subject].bytes -= request->isOneway() ? 0 : request->parameters.size();
+        return !request->isOneway();
+    };
+    requests.erase(std::remove_if(requests.begin(), requests.end(), goes), requests.end());
+    client->hasLeft = true;
+    restIfEmpty(*client);
+    dropIfOver(client);
+    return client;
+}
+
+bool ClientQueues::hasRoom(const Request& request) {
+    const bool isFirst = clientOf(request)->requests.empty();
+    const Subject& subject = subjects_[request.subject];
+    return (isFirst && subject.clients.size() <= mostClients) ||
+           subject.bytes + request.parameters.size() <= mostBytes;
+}
+
+bool ClientQueues::block(const std::string& subject) {
+    size_t& blocked = subjects_[subject].blocked;
+    if (blocked == mostBlocked)
+        return false;
+    ++blocked;
+    return true;
+}
+
+void ClientQueues::add(std::shared_ptr<Request> request) {
+    const std::shared_ptr<Client> client = clientOf(*request);
+    Subject& subject = subjects_[client->subject];
+    request->client = client;
+    subject.bytes += request->parameters.size();
+    client->requests.push_back(std::move(request));
+    subject.turns.wait(client.get());
+    turns_.wait(client->subject);
+}
+
+bool ClientQueues::isAnyWaiting(const MayGo& condition) const {
+    return std::any_of(clients_.begin(), clients_.end(), [&](const auto& each) {
+        return !each.second->requests.empty() && condition(*each.second);
+    });
+}
+
+std::shared_ptr<Request> ClientQueues::pop(const std::shared_ptr<Client>& client) {
+    std::shared_ptr<Request> request = client->requests.front();
+    client->requests.pop_front();
+    subjects_[client->subject].bytes -= request->parameters.size();
+    restIfEmpty(*client);
+    dropIfOver(client);
+    return request;
+}
+
+// Returns the client of a subject with the next turn, among those that may send now.
+std::shared_ptr<Client> ClientQueues::firstOf(const Subject& subject, const MayGo& mayGo) const {
+    std::shared_ptr<Client> first;
+    uint64_t least = 0;
+    for (const auto& client : subject.clients) {
+        if (client->requests.empty() || !mayGo(*client))
+            continue;
+        const uint64_t after = subject.turns.after(client.get(), costOf(*client));
+        if (!first || after < least) {
+            first = client;
+            least = after;
+        }
+    }
+    return first;
+}
+
+std::shared_ptr<Request> ClientQueues::popNext(const MayGo& mayGo) {
+    std::shared_ptr<Client> next;
+    uint64_t least = 0;
+    for (const auto& [name, subject] : subjects_) {
+        const std::shared_ptr<Client> first = firstOf(subject, mayGo);
+        if (!first)
+            continue;
+        const uint64_t after = turns_.after(name, costOf(*first));
+        if (!next || after < least) {
+            next = first;
+            least = after;
+        }
+    }
+    if (!next)
+        return nullptr;
+    const size_t cost = costOf(*next);
+    turns_.take(next->subject, cost);
+    subjects_[next->subject].turns.take(next.get(), cost);
+    return pop(next);
+}
+
+Requests ClientQueues::popOlder(std::chrono::steady_clock::time_point due) {
+    Requests out;
+    const auto clients = clients_; // pop removes disconnected clients
+    for (const auto& [connection, client] : clients)
+        while (!client->requests.empty() && client->requests.front()->since < due)
+            out.push_back(pop(client));
+    return out;
+}
+
+} // namespace gateway

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+//
+// request: sends a request to its object, or fails it.
+
+#include "request.h"
+
+#include <iostream>
+
+namespace gateway {
+
+void Request::sendTo(const std::shared_ptr<Ice::ObjectPrx>& target, Response onResponse,
+                     Failure onError) const {
+    auto object = target->ice_identity(current.id)->ice_facet(current.facet);
+    object = object->ice_encodingVersion(current.encoding);
+    object = isOneway() ? object->ice_oneway() : object->ice_twoway();
+    const Parameters in{parameters.data(), parameters.data() + parameters.size()};
+    std::function<void(bool)>
+        sent; // called when Ice has sent a one-way request, which has no other result
+    if (isOneway())
+        sent = [onResponse](bool) { onResponse(true, {}); };
+    object->ice_invokeAsync(current.operation, current.mode, in, std::move(onResponse),
+                            std::move(onError), std::move(sent), current.ctx);
+}
+
+std::exception_ptr unknown(const std::string& why) {
+    return std::make_exception_ptr(
+        Ice::UnknownException(__FILE__, __LINE__, "icesoc-gateway: " + why));
+}
+
+void fail(const Requests& requests, std::exception_ptr why) {
+    size_t oneways = 0;
+    for (const auto& request : requests) {
+        oneways += request->isOneway();
+        request->failed(why);
+    }
+    if (oneways == 0)
+        return;
+    const auto report = [oneways](const std::string& reason) {
+        std::cerr << "gateway: one-way calls that were not sent: " + std::to_string(oneways) +
+                         " (" + reason + ")\n";
+    };
+    try {
+        std::rethrow_exception(why);
+    } catch (const Ice::UnknownException& e) {
+        report(e.unknown);
+    } catch (const std::exception& e) {
+        report(e.what());
+    }
+}
+
+} // namespace gateway

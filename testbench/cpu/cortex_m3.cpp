@@ -46,22 +46,22 @@ CortexM3::Stop CortexM3::run(bool singleStep) {
         }
         if (unsigned number = exceptions_.deliverable())
             enter(number);
-        if (staleCode_)
+        if (flashWrites_.isStale())
             for (uint32_t base : {0u, config_.flashBase})
                 uc_ctl_remove_cache(uc_, base, base + config_.flashBytes - 1);
-        staleCode_ = false;
+        flashWrites_.translated();
         updateAttention();
         raised_ = 0;
         uc_err error = uc_emu_start(uc_, pc_ | 1, 0, 0, 0);
         uc_reg_read(uc_, UC_ARM_REG_PC, &pc_);
-        settleFlash();
+        flashWrites_.undo(memory_.flash());
         handleUnicorn(error);
     }
 }
 
 void CortexM3::updateAttention() {
-    attention_ = stopAsked_ || resetAsked_ || failure_ || synchronous_.number || staleCode_ ||
-                 exceptions_.deliverable() != 0;
+    attention_ = stopAsked_ || resetAsked_ || failure_ || synchronous_.number ||
+                 flashWrites_.isStale() || exceptions_.deliverable() != 0;
 }
 
 void CortexM3::setSynchronous(uint32_t address, unsigned number, uint32_t cfsrBits,
@@ -92,8 +92,7 @@ void CortexM3::onInstruction(uint32_t address) {
         return;
     if (masksChanged_)
         updateMasks(address);
-    if (!stores_.empty())
-        settleFlash();
+    flashWrites_.undo(memory_.flash());
     if (store_.bytes && cycles() >= store_.due)
         drainStore();
     bool inUnit = skipped_ != 0 && address > executing_ && address < unitEnd_;
@@ -117,7 +116,7 @@ void CortexM3::onInstruction(uint32_t address) {
             boundaries_[1] = instructions_;
         }
         stepped_ = stepped_ || (limit_ && instructions_ >= limit_);
-        if (cycles() < flashFree_ && isFlash(address) && !attention_)
+        if (cycles() < flashFree_ && memory_.isFlash(address) && !attention_)
             waitForFlash();
         if (attention_ || stepped_) {
             uc_emu_stop(uc_);
@@ -187,10 +186,10 @@ const Instruction& CortexM3::instructionAt(uint32_t address) {
             readMemory(address, halves, 2);
         return decodeInstruction(halves[0], halves[1]);
     };
-    uint32_t offset = address >= config_.flashBase ? address - config_.flashBase : address;
+    const uint32_t offset = memory_.flashOffset(address);
     if (offset >= config_.flashBytes)
         return scratch_ = decode();
-    Instruction& i = decoded_[offset >> 1];
+    Instruction& i = flashWrites_.decodedAt(offset);
     if (i.bytes == 0)
         i = decode();
     return i;
@@ -233,13 +232,6 @@ void CortexM3::waitForFlash() {
     updateAttention();
 }
 
-// Restores the flash bytes that libunicorn has overwritten without calling the bus.
-void CortexM3::settleFlash() {
-    for (auto s = stores_.rbegin(); s != stores_.rend(); ++s)
-        std::memcpy(flash_.get() + s->offset, s->was, s->bytes);
-    stores_.clear();
-}
-
 // BASEPRI has four implemented bits. A write to BASEPRI_MAX is ignored if these four bits are 0.
 void CortexM3::fixBasepri() {
     constexpr uint8_t basepriMax = 18;
@@ -255,21 +247,7 @@ void CortexM3::updateMasks(uint32_t address) {
         failure_ = std::make_exception_ptr(NotModelled("unprivileged code (CONTROL.nPRIV)"));
     exceptions_.setMasks(reg(Primask), reg(Basepri), reg(Faultmask));
     attention_ = attention_ || exceptions_.deliverable();
-    bool masked =
-        reg(Primask) || reg(Faultmask) || (reg(Basepri) && reg(Basepri) <= watchedPriority_);
-    if (masked && !masked_) {
-        maskedSince_ = cycles();
-        maskedAt_ = executing_;
-    } else if (!masked && masked_ && cycles() - maskedSince_ > longest_.cycles) {
-        longest_ = {cycles() - maskedSince_, maskedAt_, address};
-    }
-    masked_ = masked;
-}
-
-void CortexM3::countMasked(uint8_t priority) {
-    watchedPriority_ = priority;
-    longest_ = Masked();
-    masked_ = false;
+    masked_.update(reg(Primask) || reg(Faultmask), reg(Basepri), cycles(), executing_, address);
 }
 
 void CortexM3::setInterrupt(unsigned number, bool high) {

@@ -5,6 +5,10 @@
 
 #pragma once
 
+#include "cpu_memory.h"
+#include "flash_writes.h"
+#include "instruction.h"
+#include "masked_time.h"
 #include "system_control.h"
 #include <cstdint>
 #include <exception>
@@ -15,137 +19,6 @@
 #include <string>
 #include <unicorn/unicorn.h>
 #include <vector>
-
-// A Thumb-2 instruction for the CPU model: its length, its cycles, and whether it stops. Source:
-// the tables of the ARMv7-M Architecture Reference Manual, chapter A5. Loads take 2 cycles even if
-// the pipeline would hide one. Divisions and long products take the middle of the range in the
-// TRM, because the real number depends on their operands.
-struct Instruction {
-    enum Kind : uint8_t {
-        Plain,
-        If,        // IT: executed as one unit with the next `conditional` instructions
-        Sleep,     // WFI
-        Barrier,   // DSB, DMB: wait for the write buffer
-        Masks,     // CPS or MSR: may change PRIMASK, BASEPRI, FAULTMASK or CONTROL
-        Exclusive, // LDREX: opens the exclusive monitor
-        Refused    // WFE, SEV, YIELD: not supported, because the model has no event register
-    };
-    static constexpr uint8_t noBase = 15;
-    uint8_t bytes = 2;       // 2 or 4
-    uint8_t cycles = 1;      // cycles by table 3-1 of the Cortex-M3 TRM r2p1, without the refill
-                             // after a taken branch
-    uint8_t conditional = 0; // number of conditional instructions after an IT, 1..4
-    Kind kind = Plain;
-    // Alignment check of an access (A3.2.1): base register, and the address bits that must be zero.
-    uint8_t base = noBase, alignment = 0;
-    uint8_t special = 0; // number of the special register of an MSR (SYSm)
-};
-
-// Cycles of refilling the pipeline after a taken branch (TRM: P is 1..3).
-constexpr unsigned refillCycles = 2;
-
-inline unsigned ones(unsigned value) {
-    return static_cast<unsigned>(__builtin_popcount(value));
-}
-
-inline Instruction narrowInstruction(uint16_t op) {
-    Instruction i;
-    auto takes = [&](unsigned cycles) {
-        i.cycles = static_cast<uint8_t>(cycles);
-        return i;
-    };
-    if ((op & 0xFF00) == 0xBF00) { // IT and hints
-        if (op & 0xF) {
-            i.kind = Instruction::If;
-            i.conditional = static_cast<uint8_t>(4 - __builtin_ctz(op & 0xF));
-        } else if (op == 0xBF30) {
-            i.kind = Instruction::Sleep;
-        } else if (op == 0xBF10 || op == 0xBF20 || op == 0xBF40) {
-            i.kind = Instruction::Refused;
-        }
-        return i;
-    }
-    if ((op & 0xFFE8) == 0xB660) { // CPS
-        i.kind = Instruction::Masks;
-        return i;
-    }
-    if ((op & 0xF600) == 0xB400) // PUSH, POP
-        return takes(1 + ones(op & 0x1FF));
-    switch (op >> 12) {
-    case 4:
-        return takes(op & 0x0800 ? 2 : 1); // LDR literal
-    case 5:
-        return takes(2); // address with a register offset
-    case 6:
-    case 7:
-    case 8:
-    case 9:
-        return takes(op & 0x0800 ? 2 : 1); // address with an immediate offset; a store goes to the
-                                           // write buffer
-    case 12:                               // LDM, STM
-        i.base = static_cast<uint8_t>(op >> 8 & 7);
-        i.alignment = 3;
-        return takes(1 + ones(op & 0xFF));
-    default:
-        return i;
-    }
-}
-
-inline unsigned wideCycles(uint16_t first, uint16_t second) {
-    if ((first & 0xFE40) == 0xE800) // LDM, STM
-        return 1 + ones(second);
-    if ((first & 0xFFF0) == 0xE8D0 && (second & 0xFFE0) == 0xF000) // TBB, TBH
-        return 2;
-    if ((first & 0xFE40) == 0xE840) // LDRD, STRD, and exclusive accesses
-        return (first & 0x0120) ? 3 : 2;
-    if ((first & 0xFE00) == 0xF800) { // one register is transferred
-        bool load = first & 0x0010, registerOffset = !(first & 0x0080) && !(second & 0x0800);
-        return load || registerOffset ? 2 : 1;
-    }
-    if ((first & 0xFF80) == 0xFB00) // MUL; MLA, MLS
-        return second >> 12 == 15 ? 1 : 2;
-    if ((first & 0xFF80) == 0xFB80) // SMULL, UMULL 3..5; SDIV, UDIV 2..12; SMLAL, UMLAL 4..7
-        return (first & 0x0070) == 0x10 || (first & 0x0070) == 0x30 ? 7 : first & 0x0040 ? 6 : 4;
-    return 1;
-}
-
-// Sets the alignment check of LDM, STM, LDRD, STRD, LDREX, STREX and similar instructions. Their
-// offsets are multiples of the alignment; SP is always aligned.
-inline void decodeAligned(Instruction& i, uint16_t first, uint16_t second) {
-    const bool isTable = (first & 0xFFF0) == 0xE8D0 && (second & 0xFFE0) == 0xF000; // TBB, TBH
-    const bool isMultiple = !(first & 0x0040), isDouble = !isMultiple && (first & 0x0120);
-    const bool isShort = !isMultiple && !isDouble && (first & 0x0080); // byte, halfword
-    if (isTable)
-        return;
-    if (!isMultiple && !isDouble && (first & 0x0010))
-        i.kind = Instruction::Exclusive;
-    const uint8_t base = first & 0xF;
-    i.alignment = !isShort ? 3 : (second & 0xF0) == 0x50 ? 1 : 0;
-    i.base = base == 13 ? Instruction::noBase : base;
-}
-
-// Decodes the instruction in `first`, the halfword at its address, and `second`, the next halfword.
-inline Instruction decodeInstruction(uint16_t first, uint16_t second) {
-    if (first >> 11 < 0x1D)
-        return narrowInstruction(first);
-    Instruction i;
-    i.bytes = 4;
-    i.cycles = static_cast<uint8_t>(wideCycles(first, second));
-    if ((first & 0xFFE0) == 0xF380 && (second & 0xD000) == 0x8000) { // MSR
-        i.kind = Instruction::Masks;
-        i.cycles = 2;
-        i.special = static_cast<uint8_t>(second);
-    }
-    if (first == 0xF3AF && (second & 0xFF00) == 0x8000) // hints
-        i.kind = (second & 0xFF) == 3                      ? Instruction::Sleep
-                 : (second & 0xFF) && (second & 0xFF) <= 4 ? Instruction::Refused
-                                                           : Instruction::Plain;
-    if ((first & 0xFE00) == 0xE800)
-        decodeAligned(i, first, second);
-    if (first == 0xF3BF && (second & 0xFFE0) == 0x8F40)
-        i.kind = Instruction::Barrier;
-    return i;
-}
 
 // CpuBus is everything around the processor. Addresses are as the processor sees them.
 class CpuBus {
@@ -194,14 +67,16 @@ public:
 
     // Read and write flash and RAM, without side effects. Return false if part of the range is not
     // memory.
-    bool readMemory(uint32_t address, void* data, uint32_t bytes) const;
+    bool readMemory(uint32_t address, void* data, uint32_t bytes) const {
+        return memory_.read(address, data, bytes);
+    }
     bool writeMemory(uint32_t address, const void* data, uint32_t bytes);
     void loadFlash(uint32_t address, const std::vector<uint8_t>& bytes);
     // Read and write for a debugger. Memory is accessed directly; registers and windows by bus
     // accesses, as by the processor.
     bool debugRead(uint32_t address, void* data, uint32_t bytes);
     bool debugWrite(uint32_t address, const void* data, uint32_t bytes);
-    uint8_t* flash() { return flash_.get(); }
+    uint8_t* flash() { return memory_.flash(); }
     // Reports that bytes of flash have changed; called by the bus.
     void flashChanged(uint32_t offset, uint32_t bytes);
     // Blocks instruction fetches from flash for this many cycles; called by the bus.
@@ -258,14 +133,10 @@ public:
     unsigned currentException() const;
     Exceptions& exceptions() { return exceptions_; }
 
-    // Longest time, in cycles, in which the masks blocked interrupts of `priority` and lower, since
-    // the last call; and the end of that time.
-    struct Masked {
-        uint64_t cycles = 0;
-        uint32_t from = 0, to = 0; // addresses of the instructions that masked and unmasked
-    };
-    void countMasked(uint8_t priority);
-    const Masked& longestMasked() const { return longest_; }
+    // Measures the longest time, since this call, in which the masks block interrupts of `priority`
+    // and below.
+    void countMasked(uint8_t priority) { masked_.start(priority); }
+    const MaskedTime::Longest& longestMasked() const { return masked_.longest(); }
 
     std::set<uint32_t> breakpoints; // breakpoint addresses, with bit 0 clear
     std::string lastFault;          // text of the last fault, for a message to the user
@@ -279,7 +150,6 @@ public:
 
 private:
     friend struct UnicornCalls;
-    void map(uint32_t base, uint32_t bytes, void* host, uint32_t rights);
     void onInstruction(uint32_t address);
     void execute(uint32_t address, const Instruction& i);
     void onRaised(uint32_t number);
@@ -289,10 +159,6 @@ private:
     uint32_t onRead(uint32_t address, unsigned bytes);
     void onWrite(uint32_t address, unsigned bytes, uint32_t value);
     void onFlashWrite(uint32_t offset, unsigned bytes, uint32_t value);
-    bool isFlash(uint32_t address) const {
-        return address < config_.flashBytes || address - config_.flashBase < config_.flashBytes;
-    }
-    void settleFlash();
     void waitForFlash();
     void passWaited();
     bool mayExecute(uint32_t address, const Instruction& i);
@@ -303,7 +169,6 @@ private:
     // (B3.5.1).
     bool isMpuOff() const { return exceptions_.runningPriority() < 0; }
     bool isSplit(uint32_t address, unsigned bytes);
-    bool isBitBand(uint32_t address) const;
     uint32_t readBit(uint32_t address);
     void writeBit(uint32_t address, uint32_t value);
     bool onGuarded(uint32_t address, unsigned bytes, bool write);
@@ -327,10 +192,9 @@ private:
     CpuBus& bus_;
     Config config_;
     uc_engine* uc_ = nullptr;
-    std::unique_ptr<uint8_t[], void (*)(void*)> flash_, ram_;
-    std::vector<Instruction> decoded_; // decoded flash, one element per halfword; `bytes` is 0 if
-                                       // the halfword is not decoded yet
-    Instruction scratch_;              // decoded instruction at an address outside flash
+    CpuMemory memory_;
+    FlashWrites flashWrites_;
+    Instruction scratch_; // decoded instruction at an address outside flash
     struct MappedWindow {
         CortexM3* cpu;
         uint32_t base;
@@ -365,21 +229,7 @@ private:
     } store_;
     std::exception_ptr failure_;
     uint64_t instructions_ = 0, sleeping_ = 0, waited_ = 0;
-    // Bytes before a store to flash. libunicorn performs the store by itself; the model restores
-    // these bytes, and the bus then applies the write.
-    struct FlashStore {
-        uint32_t offset;
-        unsigned bytes;
-        uint8_t was[8];
-    };
-    std::vector<FlashStore> stores_; // stores of the current instruction
-    bool staleCode_ = false;         // true if libunicorn has translated code that differs from
-                                     // flash
     uint64_t flashFree_ = 0;
     uint64_t limit_ = 0, boundaries_[2] = {0, 0};
-    uint8_t watchedPriority_ = 0xFF;
-    bool masked_ = false;
-    uint64_t maskedSince_ = 0;
-    uint32_t maskedAt_ = 0;
-    Masked longest_;
+    MaskedTime masked_;
 };

@@ -3,6 +3,7 @@
 // cpu_accesses: loads and stores of CortexM3 outside of RAM, with wait cycles, the store buffer and
 // faults; and accesses by a debugger.
 
+#include "bit_band.h"
 #include "cortex_m3.h"
 #include "unicorn_calls.h"
 #include <cstdio>
@@ -82,33 +83,24 @@ uint32_t CortexM3::guardedAccess(uint32_t address, unsigned bytes, Access access
     return 0;
 }
 
-// Returns whether the address is a bit-band alias: one word for each bit of RAM and of the
-// peripherals (B3.1, TRM 3.7).
-bool CortexM3::isBitBand(uint32_t address) const {
-    return address >> 25 == 0x22000000 >> 25 || address >> 25 == 0x42000000 >> 25;
-}
-
 uint32_t CortexM3::readBit(uint32_t address) {
-    const uint32_t offset = address & 0x1FFFFFF, at = (address & 0xF0000000) + offset / 128 * 4;
-    const unsigned bit = offset / 4 % 32;
+    const BitBand at(address);
     uint32_t word = 0;
-    if (address < 0x40000000)
-        (void)(onGuarded(at, 4, false) || readMemory(at, &word, 4));
+    if (at.isRam())
+        (void)(onGuarded(at.word, 4, false) || readMemory(at.word, &word, 4));
     else
-        word = onRead(at, 4);
-    return word >> bit & 1;
+        word = onRead(at.word, 4);
+    return at.get(word);
 }
 
 void CortexM3::writeBit(uint32_t address, uint32_t value) {
-    const uint32_t offset = address & 0x1FFFFFF, at = (address & 0xF0000000) + offset / 128 * 4;
-    const uint32_t mask = 1u << offset / 4 % 32;
+    const BitBand at(address);
     uint32_t word = 0;
-    if (address >= 0x40000000) {
-        word = onRead(at, 4);
-        onWrite(at, 4, value & 1 ? word | mask : word & ~mask);
-    } else if (!onGuarded(at, 4, true) && readMemory(at, &word, 4)) {
-        word = value & 1 ? word | mask : word & ~mask;
-        writeMemory(at, &word, 4);
+    if (!at.isRam()) {
+        onWrite(at.word, 4, at.set(onRead(at.word, 4), value));
+    } else if (!onGuarded(at.word, 4, true) && readMemory(at.word, &word, 4)) {
+        word = at.set(word, value);
+        writeMemory(at.word, &word, 4);
     }
 }
 
@@ -124,7 +116,7 @@ bool CortexM3::isSplit(uint32_t address, unsigned bytes) {
 }
 
 uint32_t CortexM3::onRead(uint32_t address, unsigned bytes) {
-    if (isBitBand(address))
+    if (BitBand::isAlias(address))
         return readBit(address);
     if (isSplit(address, bytes)) {
         uint32_t value = 0;
@@ -140,7 +132,7 @@ uint32_t CortexM3::onRead(uint32_t address, unsigned bytes) {
 }
 
 void CortexM3::onWrite(uint32_t address, unsigned bytes, uint32_t value) {
-    if (isBitBand(address))
+    if (BitBand::isAlias(address))
         return writeBit(address, value);
     if (isSplit(address, bytes)) {
         for (unsigned done = 0, size; done < bytes; done += size) {
@@ -164,24 +156,17 @@ void CortexM3::onWrite(uint32_t address, unsigned bytes, uint32_t value) {
 
 // Called before libunicorn stores to flash. Only the result of the bus counts.
 void CortexM3::onFlashWrite(uint32_t offset, unsigned bytes, uint32_t value) {
-    settleFlash();
+    flashWrites_.undo(memory_.flash());
     if (failure_ || synchronous_.number)
         return;
     drainStore();
     store(config_.flashBase + offset, bytes, [&] { bus_.writeFlash(offset, bytes, value); });
-    FlashStore store{offset, bytes, {}};
-    std::memcpy(store.was, flash_.get() + offset, bytes);
-    stores_.push_back(store);
+    flashWrites_.keep(memory_.flash(), offset, bytes);
 }
 
 void CortexM3::flashChanged(uint32_t offset, uint32_t bytes) {
-    const uint32_t first = offset >= 2 ? offset / 2 - 1 : 0; // a 32-bit instruction may begin one
-                                                             // halfword earlier
-    for (uint32_t at = first; at < (offset + bytes + 1) / 2; ++at) {
-        staleCode_ = staleCode_ || decoded_[at].bytes;
-        decoded_[at].bytes = 0;
-    }
-    attention_ = attention_ || staleCode_;
+    flashWrites_.changed(offset, bytes);
+    attention_ = attention_ || flashWrites_.isStale();
 }
 
 bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {

@@ -5,7 +5,6 @@
 
 #include "cortex_m3.h"
 #include "unicorn_calls.h"
-#include <cstdlib>
 #include <cstring>
 #include <utility>
 
@@ -30,14 +29,6 @@ void check(uc_err error, const char* what) {
         throw std::runtime_error(std::string("libunicorn: ") + what + ": " + uc_strerror(error));
 }
 
-uint8_t* pages(uint32_t bytes) {
-    void* at = std::aligned_alloc(4096, bytes);
-    if (!at)
-        throw std::bad_alloc();
-    std::memset(at, 0, bytes);
-    return static_cast<uint8_t*>(at);
-}
-
 } // namespace
 
 int UnicornCalls::registerId(int number) {
@@ -52,16 +43,14 @@ int UnicornCalls::registerId(int number) {
 }
 
 CortexM3::CortexM3(CpuBus& bus, const Config& config, const std::vector<Window>& windows)
-    : bus_(bus), config_(config), flash_(pages(config.flashBytes), std::free),
-      ram_(pages(config.ramBytes), std::free), decoded_(config.flashBytes / 2),
-      control_(exceptions_, config.calibration) {
-    for (Instruction& i : decoded_)
-        i.bytes = 0;
+    : bus_(bus), config_(config),
+      memory_({config.flashBase, config.flashBytes}, {config.ramBase, config.ramBytes}),
+      flashWrites_(config.flashBytes), control_(exceptions_, config.calibration) {
     check(uc_open(UC_ARCH_ARM, static_cast<uc_mode>(UC_MODE_THUMB | UC_MODE_MCLASS), &uc_), "open");
     check(uc_ctl_set_cpu_model(uc_, UC_CPU_ARM_CORTEX_M3), "Cortex-M3");
     for (uint32_t base : {0u, config.flashBase})
-        map(base, config.flashBytes, flash_.get(), UC_PROT_ALL);
-    map(config.ramBase, config.ramBytes, ram_.get(), UC_PROT_ALL);
+        check(uc_mem_map_ptr(uc_, base, config.flashBytes, UC_PROT_ALL, memory_.flash()), "flash");
+    check(uc_mem_map_ptr(uc_, config.ramBase, config.ramBytes, UC_PROT_ALL, memory_.ram()), "RAM");
     check(uc_mem_map(uc_, clrexPage, pageBytes, UC_PROT_EXEC), "memory");
     check(uc_mem_write(uc_, clrexPage, clrex, sizeof clrex), "memory");
     std::vector<Window> all = windows;
@@ -97,36 +86,16 @@ CortexM3::~CortexM3() {
     uc_close(uc_);
 }
 
-void CortexM3::map(uint32_t base, uint32_t bytes, void* host, uint32_t rights) {
-    check(uc_mem_map_ptr(uc_, base, bytes, rights, host), "memory");
-}
-
-bool CortexM3::readMemory(uint32_t address, void* data, uint32_t bytes) const {
-    auto inside = [&](uint32_t base, uint32_t size) {
-        return address >= base && uint64_t(address) + bytes <= uint64_t(base) + size;
-    };
-    const uint8_t* at = inside(config_.ramBase, config_.ramBytes)
-                            ? ram_.get() + (address - config_.ramBase)
-                        : inside(config_.flashBase, config_.flashBytes)
-                            ? flash_.get() + (address - config_.flashBase)
-                        : inside(0, config_.flashBytes) ? flash_.get() + address
-                                                        : nullptr;
-    if (at)
-        std::memcpy(data, at, bytes);
-    return at != nullptr;
-}
-
 bool CortexM3::writeMemory(uint32_t address, const void* data, uint32_t bytes) {
-    if (address >= config_.ramBase &&
-        uint64_t(address) + bytes <= uint64_t(config_.ramBase) + config_.ramBytes)
+    if (memory_.isInRam(address, bytes))
         return uc_mem_write(uc_, address, data, bytes) == UC_ERR_OK;
     uint8_t was;
     if (address >= config_.ramBase || !readMemory(address, &was, 1) ||
         !readMemory(address + bytes - 1, &was, 1))
         return false;
     // Writes to flash directly, as a programmer does.
-    const uint32_t offset = address >= config_.flashBase ? address - config_.flashBase : address;
-    std::memcpy(flash_.get() + offset, data, bytes);
+    const uint32_t offset = memory_.flashOffset(address);
+    std::memcpy(memory_.flash() + offset, data, bytes);
     flashChanged(offset, bytes);
     return true;
 }
@@ -170,7 +139,8 @@ void CortexM3::reset() {
     synchronous_.number = 0;
     store_.bytes = 0;
     raised_ = skipped_ = unitEnd_ = expected_ = 0;
-    masksChanged_ = masked_ = false;
+    masksChanged_ = false;
+    masked_.reset();
     clearExclusive();
     setReg(Xpsr, thumb);
     for (int r : {Primask, Basepri, Faultmask, Control})

@@ -21,8 +21,8 @@ struct UnicornCalls {
                            void* user) {
         CortexM3& m3 = cpu(user);
         const auto at = static_cast<uint32_t>(address);
-        m3.onFlashWrite(at >= m3.config_.flashBase ? at - m3.config_.flashBase : at,
-                        static_cast<unsigned>(size), static_cast<uint32_t>(value));
+        m3.onFlashWrite(m3.memory_.flashOffset(at), static_cast<unsigned>(size),
+                        static_cast<uint32_t>(value));
     }
     static uint64_t read(uc_engine*, uint64_t offset, unsigned size, void* user) {
         auto& window = *static_cast<CortexM3::MappedWindow*>(user);

@@ -52,3 +52,20 @@ protected:
     Ice::CommunicatorHolder ic_{plain()};
     std::shared_ptr<RadioTest::UavPrx> echo_;
 };
+
+// Returns the reason of a call's failure; empty if it succeeds.
+inline std::string whyFails(const std::function<void()>& call) {
+    try {
+        call();
+        return "";
+    } catch (const Ice::UnknownException& e) {
+        return e.unknown;
+    } catch (const Ice::Exception& e) {
+        return e.ice_id();
+    }
+}
+
+inline void expectRefusal(const std::function<void()>& call, const std::string& why) {
+    const std::string said = whyFails(call);
+    EXPECT_NE(said.find(why), std::string::npos) << said;
+}

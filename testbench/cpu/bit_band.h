@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+//
+// bit_band: aliases of single bits of RAM and peripherals, one word per bit (B3.1, TRM 3.7).
+
+#pragma once
+
+#include <cstdint>
+
+// The bit that an alias stands for.
+struct BitBand {
+    static bool isAlias(uint32_t address) {
+        return address >> 25 == 0x22000000 >> 25 || address >> 25 == 0x42000000 >> 25;
+    }
+    explicit BitBand(uint32_t alias)
+        : word((alias & 0xF0000000) + (alias & 0x1FFFFFF) / 128 * 4),
+          bit((alias & 0x1FFFFFF) / 4 % 32) {}
+    bool isRam() const { return word < 0x40000000; }
+    uint32_t get(uint32_t value) const { return value >> bit & 1; }
+    uint32_t set(uint32_t value, uint32_t to) const {
+        return to & 1 ? value | 1u << bit : value & ~(1u << bit);
+    }
+
+    const uint32_t word; // address
+    const unsigned bit;
+};

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: MIT
+//
+// gateway_rights_test: who may call what through icesoc-gateway: objects for maintenance, rights by
+// certificate, and the addressee of the vehicle's calls.
+
+#include "gateway_rig.h"
+#include <IceSSL/IceSSL.h>
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <unistd.h>
+
+namespace {
+
+// Maintained has the type of objects for maintenance.
+struct Maintained : Ice::Object {
+    bool ice_isA(std::string id, const Ice::Current&) const override {
+        return id == "::IceSoC::Maintenance";
+    }
+    std::string ice_id(const Ice::Current&) const override { // the gateway itself sends ice_ping
+        ++calls;
+        return ice_staticId();
+    }
+    mutable std::atomic<int> calls{0};
+};
+
+// Heard answers each call with the same number.
+struct Heard : RadioTest::Listener {
+    explicit Heard(int result) : answer(result) {}
+    int heard(int, const Ice::Current&) override {
+        ++calls;
+        return answer;
+    }
+    const int answer;
+    std::atomic<int> calls{0};
+};
+
+TEST_F(Gateway, MaintenanceIsReachedAtItsOwnDoor) {
+    start({"--maintenance", "127.0.0.1:0"});
+    ASSERT_TRUE(gateway_->hear("maintenance at port ")) << said();
+    ASSERT_TRUE(gateway_->hear("\n"));
+    const int door = std::atoi(said().c_str() + said().rfind("port ") + 5);
+    const auto call = [&](const std::string& name, int at) {
+        return [=] { ic_->stringToProxy(name + ":" + endpoint(at))->ice_id(); };
+    };
+    const auto servant = std::make_shared<Maintained>();
+    for (const std::string name : {"keys", "update", "fpga", "x/any", "faceted"}) {
+        const auto id = Ice::stringToIdentity(name);
+        const std::string facet = name == "faceted" ? "f" : "";
+        world_.uav->addFacet(servant, id, facet);
+        const std::string proxy = name + (facet.empty() ? "" : " -f f");
+        for (int turn = 0; turn < 2; ++turn) // in the first turn the gateway asks the object, in
+                                             // the second it uses the cached answer
+            expectRefusal(call(proxy, port_), "'" + name + "' is for maintenance");
+        EXPECT_EQ(whyFails(call(proxy, door)), "");
+        const auto oneway = ic_->stringToProxy(proxy + " -o:" + endpoint());
+        std::vector<Ice::Byte> out;
+        oneway->ice_invoke("ice_id", Ice::OperationMode::Normal, {6, 0, 0, 0, 1, 1}, out);
+    }
+    EXPECT_EQ(whyFails(call("echo", door)), "");
+    EXPECT_EQ(whyFails(call("echo", port_)), "");
+    EXPECT_EQ(whyFails(call("missing", port_)), "::Ice::ObjectNotExistException");
+    EXPECT_EQ(servant->calls, 5) << "calls on the maintenance endpoint";
+}
+
+// ---- the vehicle's calls ----
+
+// Both programs have an object with this name, and the vehicle calls it while it serves one of the
+// two programs.
+TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
+    start();
+    struct Program {
+        Program(const std::string& at, int answer)
+            : ic(plain()), heard(std::make_shared<Heard>(answer)) {
+            adapter = ic->createObjectAdapter("");
+            adapter->add(heard, Ice::stringToIdentity("listener"));
+            adapter->activate();
+            echo = Ice::uncheckedCast<RadioTest::UavPrx>(ic->stringToProxy("echo:" + at));
+            echo->ice_getConnection()->setAdapter(adapter);
+        }
+        Ice::CommunicatorHolder ic;
+        std::shared_ptr<Heard> heard;
+        std::shared_ptr<Ice::ObjectAdapter> adapter;
+        std::shared_ptr<RadioTest::UavPrx> echo;
+    };
+    Program one(endpoint(), 1), two(endpoint(), 10), idle(endpoint(), 100);
+    one.echo->ice_ping();
+    two.echo->ice_ping();
+    for (int turn = 0; turn < 2; ++turn) {
+        EXPECT_EQ(one.echo->callBack(3), 3);
+        EXPECT_EQ(two.echo->callBack(3), 30);
+    }
+    EXPECT_EQ(one.heard->calls, 6);
+    EXPECT_EQ(two.heard->calls, 6);
+    EXPECT_EQ(idle.heard->calls, 0);
+    // A program passes a proxy of the object, as if the vehicle were to call it later.
+    const auto passes = [](const Program& program, const std::string& operation) {
+        Ice::OutputStream out(program.ic.communicator());
+        out.startEncapsulation();
+        out.write(0);
+        out.write(std::shared_ptr<Ice::ObjectPrx>(
+            program.adapter->createProxy(Ice::stringToIdentity("listener"))));
+        out.endEncapsulation();
+        std::vector<Ice::Byte> in, result;
+        out.finished(in);
+        try {
+            program.echo->ice_invoke(operation, Ice::OperationMode::Normal, in, result);
+        } catch (const Ice::LocalException&) { // the operation has no such parameter
+        }
+    };
+    passes(idle, "ice_ping"); // allowed for every client, because ice_ping passes no objects
+    EXPECT_EQ(two.echo->callBack(1), 10);
+    passes(one, "fetch");
+    EXPECT_EQ(two.echo->callBack(1), 1) << "only one has passed this object";
+    passes(two, "fetch");
+    EXPECT_THROW(two.echo->callBack(1), Ice::Exception) << "it could be either object";
+    EXPECT_EQ(idle.heard->calls, 0);
+}
+
+// With TLS the subject of a client's certificate is known; the certificates are made by `./icesoc
+// key FILE --certificate`.
+TEST_F(Gateway, ACertificateSaysWhoAsks) {
+    const std::string folder = testing::TempDir() + "gateway_tls." + std::to_string(getpid());
+    std::filesystem::create_directories(folder + "/others");
+    for (const std::string name : {"gateway", "pilot", "observer", "others/pilot"})
+        ASSERT_EQ(std::system((ICESOC " key " + folder + "/" + name + ".pem --certificate >" +
+                               folder + "/said")
+                                  .c_str()),
+                  0);
+    std::ofstream(folder + "/rights")
+        << R"([{"who": "CN=pilot", "identities": ["*"], "operations": ["*"]},
+               {"who": "CN=observer", "identities": ["echo"], "operations": ["fetch"]}])";
+    const std::string authority = folder + "/authority.pem";
+    start({"--rights", folder + "/rights", "--IceSSL.CAs=" + authority,
+           "--IceSSL.CertFile=" + folder + "/gateway.pem"},
+          "ssl -h 127.0.0.1 -p 0");
+    const auto call = [&](const std::string& name, bool repeats) {
+        Ice::registerIceSSL();
+        std::map<std::string, std::string> properties = {
+            {"Ice.Plugin.IceSSL", "IceSSL:createIceSSL"},
+            {"Ice.RetryIntervals", "-1"},
+            {"IceSSL.CAs", authority}};
+        if (!name.empty())
+            properties["IceSSL.CertFile"] = folder + "/" + name + ".pem";
+        Ice::CommunicatorHolder ic(program(properties));
+        auto echo = Ice::uncheckedCast<RadioTest::UavPrx>(
+            ic->stringToProxy("echo:ssl -h 127.0.0.1 -t 1800000 -p " + std::to_string(port_)));
+        return whyFails([&] {
+            if (repeats)
+                echo->repeat(1, {1, 2});
+            else
+                echo->fetch(1);
+        });
+    };
+    EXPECT_EQ(call("pilot", true), "");
+    EXPECT_EQ(call("observer", false), "");
+    EXPECT_NE(call("observer", true).find("'CN=observer' has no right to call repeat of 'echo'"),
+              std::string::npos);
+    EXPECT_NE(call("", false), "") << "without a certificate";
+    EXPECT_NE(call("others/pilot", false), "") << "a certificate of another authority";
+    std::filesystem::remove_all(folder);
+}
+
+TEST_F(Gateway, RightsSayWhoMayCallWhat) {
+    const std::string rights = testing::TempDir() + "gateway_rights.json";
+    std::ofstream(rights)
+        << R"([{"who": "", "identities": ["ec*"], "operations": ["repeat", "note*"]}])";
+    start({"--rights", rights});
+    expectAnswer();
+    EXPECT_EQ(echo_->noted(), 0);
+    EXPECT_EQ(whyFails([&] { echo_->ice_ping(); }), "");
+    expectRefusal([&] { echo_->fetch(1); }, "has no right to call fetch of 'echo'");
+    expectRefusal([&] { ic_->stringToProxy("other:" + endpoint())->ice_ping(); }, "has no right");
+}
+
+} // namespace

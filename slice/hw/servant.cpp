@@ -220,9 +220,8 @@ void listenerFunctions(Writer& w, const Block& b, const Listener& l) {
     w.function(
         servantSignature(*b.interface, *l.operation, operationName(*b.interface, *l.operation)), {},
         [&] {
-            w.line("(void)current;");
             w.line("Hw_Listener_set(&((" + coreType(b) + " *)self)->" + l.name + ", " +
-                   cParameter(*l.operation, p) + ");");
+                   cParameter(*l.operation, p) + ", current);");
             w.line("return ICE_OK;");
         });
     for (size_t i = l.first; i < l.first + l.count; ++i)

@@ -10,9 +10,22 @@ void Hw_Listener_init(Hw_Listener* self) {
     memset(self, 0, sizeof *self);
 }
 
-void Hw_Listener_set(Hw_Listener* self, const Ice_ObjectPrx* proxy) {
+void Hw_Listener_set(Hw_Listener* self, const Ice_ObjectPrx* proxy, const Ice_Current* current) {
     U8 next = (U8)(self->count + 1U);
-    self->proxies[next & 1U] = *proxy;
+    Ice_ObjectPrx* stored = self->proxies + (next & 1U);
+    int connection = 0;
+    U16 generation = 0; /* not a fixed proxy */
+    if (!Ice_ObjectPrx_isNull(proxy) && proxy->endpointsSize == 2 && /* no endpoints, no adapter */
+        Ice_Connection_createProxy(current->communicator, current->connection, "listener",
+                                   stored) == ICE_OK) {
+        connection = stored->connection;
+        generation = stored->generation;
+    }
+    *stored = *proxy;
+    if (generation) {
+        stored->connection = connection;
+        stored->generation = generation;
+    }
     self->count = next;
 }
 

@@ -13,6 +13,8 @@ typedef struct Hw_Listener {
 
 /* Makes a listener without a proxy. */
 void Hw_Listener_init(Hw_Listener* self);
-void Hw_Listener_set(Hw_Listener* self, const Ice_ObjectPrx* proxy);
+/* Stores the proxy that a call passed. A proxy without endpoints is called over the connection of
+ * that call, until the connection ends. */
+void Hw_Listener_set(Hw_Listener* self, const Ice_ObjectPrx* proxy, const Ice_Current* current);
 /* Copies the proxy. Returns 0 if no listener is set. */
 int Hw_Listener_get(const Hw_Listener* self, Ice_ObjectPrx* proxy);

@@ -176,6 +176,16 @@ with Ice.initialize(data) as ic:
         if not watcher.came.acquire(timeout=60):
             sys.exit("events: %r, %d finished" % (watcher.peaks, watcher.finished_calls))
     expect("events", (watcher.peaks, watcher.finished_calls), ([(1, 2005)], 2))
+    # A listener without endpoints is called over the connection of the call that passed it.
+    nearby = ic.createObjectAdapter("")
+    scaler.ice_getConnection().setAdapter(nearby)
+    scaler.watch(Demo.WatcherPrx.uncheckedCast(nearby.addWithUUID(watcher).ice_oneway()))
+    scaler.shift([4, 3000], 5)
+    for _ in range(2):
+        if not watcher.came.acquire(timeout=60):
+            sys.exit("events: %r, %d finished" % (watcher.peaks, watcher.finished_calls))
+    expect("events over the call's connection", (watcher.peaks, watcher.finished_calls),
+           ([(1, 2005), (1, 3005)], 3))
     thrown = fails(Demo.Overflow, scaler.shift, [0, 1, 32000], 1000)
     expect("Overflow", (thrown.index, thrown.code), (2, 42))
     fails(Ice.UnknownException, scaler.shift, [0] * 101, 1)

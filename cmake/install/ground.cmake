@@ -53,6 +53,17 @@ add_custom_command(OUTPUT ${objects}
 install(FILES ${objects} DESTINATION ${SHARE}/gen COMPONENT ${component})
 list(APPEND installable ${objects})
 
+# icesoc-page: the page of the gateway, with Ice for JavaScript, which is GPL-2.0.
+install(FILES ${tools}/web/__init__.py ${tools}/web/bridge.py ${tools}/web/live.py
+  ${tools}/web/common.css ${tools}/web/common.js
+  DESTINATION ${SHARE}/tools/icesoc/web COMPONENT ${component})
+file(GLOB parts CONFIGURE_DEPENDS ${tools}/web/flight/*)
+install(FILES ${parts} DESTINATION ${SHARE}/tools/icesoc/web/flight COMPONENT ${component})
+install(FILES ${CMAKE_BINARY_DIR}/page/ice.js DESTINATION ${SHARE}/page COMPONENT ${component})
+install(PROGRAMS ${here}/ground/icesoc-page DESTINATION ${CMAKE_INSTALL_BINDIR}
+  COMPONENT ${component})
+list(APPEND installable page_ice)
+
 install(FILES ${top}/sw/vehicle/Autopilot.ice ${top}/sw/hw/registers/Registers.ice
   ${top}/sw/update/Update.ice DESTINATION ${SHARE}/slice COMPONENT ${component})
 install(FILES ${top}/testbench/status/sim_status.toml ${top}/sw/update/slots_header.toml
@@ -79,6 +90,9 @@ icesoc_manual(${component} icesoc-call DEPENDS ${tools}/cli/installed.py
     ${tools}/cli/commands/call.py
   PURPOSE "call any operation of a vehicle's objects"
   COMMAND ${PYTHON} -m icesoc.cli.installed)
+icesoc_manual(${component} icesoc-page DEPENDS ${here}/ground/icesoc-page ${tools}/web/live.py
+  PURPOSE "server of the page on which a browser calls the vehicles of a gateway"
+  COMMAND ${PYTHON} ${here}/ground/icesoc-page)
 icesoc_manual(${component} icesoc-pack-update DEPENDS ${pack_update}
   PURPOSE "pack and sign firmware, bitstreams and lists of keys"
   COMMAND ${pack_update})

@@ -134,6 +134,26 @@ class Cases(Script):
                  env={"ICESOC_VEHICLES": "vehicles.conf"})
         self.has("vehicle 'uav9': expected one of uav1")
 
+    def test_page(self):
+        """The gateway's page: its files, and a call as its browser makes it. The files of the page
+        do not come from the tree."""
+        self.install("icesoc-ground", "icesoc-sim", "icesoc-slice2c")
+        port, page = free_port(), free_port()
+        write("page.sh", "#!/bin/bash\nset -e\n"
+              f"icesoc-gateway -d $1 -g 20 -l 127.0.0.1:{port} --page 127.0.0.1:{page} &\n"
+              "trap 'kill $!' EXIT\n"
+              f"until true 2>/dev/null >/dev/tcp/127.0.0.1/{page}; do sleep 0.1; done\n"
+              f"python3 {HERE}/page.py 127.0.0.1:{page}\n")
+        self.use("icesoc-sim", "--image", IMAGE, "--size", "96x64", "--guard", "20", "--out",
+                 "flight", "--", "bash", "page.sh", "{device}")
+        self.has("^objects: uav .*hwengine1", "^shell: icesoc-call --gateway 'ws -h 127.0.0.1 -p ",
+                 "^isAlive: True$", "objects.js [0-9]{4,} bytes")
+        library = self.prefix / "share/icesoc/page/ice.js"
+        if not library.stat().st_size:
+            return print("without Ice for JavaScript, which could not be fetched")
+        self.has("ice.js [0-9]{6} bytes")
+        self.assertIn("GPL-2.0", library.read_text().partition("\n")[0])
+
     @contextlib.contextmanager
     def server(self, program):
         port = free_port()

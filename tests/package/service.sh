@@ -1,9 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# service: uses the gateway's service on a machine that machine.sh has prepared: Python, C++ and
-# icesoc-call call a simulated vehicle through it, with a key. Then upgrades the packages, which
-# keeps keys, rights and settings and restarts the service; removes and purges them.
+# service: uses the gateway's service on a machine that machine.sh has prepared: Python, C++,
+# icesoc-call and the gateway's page call a simulated vehicle through it, with a key. Then upgrades
+# the packages, which keeps keys, rights and settings and restarts the service; removes and purges
+# them.
 # Run as root, with systemd running (boot.sh). Usage: service.sh [FOLDER]    as machine.sh
 set -eu
 here=$(cd "${1:-.}" && pwd)
@@ -29,13 +30,14 @@ udevadm test /sys/class/tty/tty 2>&1 | tee udev.log | grep -q "icesoc-modem-A1B2
     { cat udev.log && fail "the rule makes no name"; }
 
 step "the service does not start without a key"
-echo 'ICESOC_OPTIONS="-d /run/icesoc-modem -g 20 -l 127.0.0.1:11093"' >/etc/icesoc/uav1.conf
+options="-d /run/icesoc-modem -g 20 -l 127.0.0.1:11093 --page 127.0.0.1:11094"
+echo "ICESOC_OPTIONS=\"$options\"" >/etc/icesoc/uav1.conf
 chmod 640 /etc/icesoc/uav1.conf
 systemd-analyze verify --man=no icesoc-gateway@uav1.service
 systemctl start icesoc-gateway@uav1
 ! systemctl is-active -q icesoc-gateway@uav1 || fail "the service runs without a key"
 
-step "Python, C++ and icesoc-call, by the service"
+step "Python, C++, icesoc-call and a page, by the service"
 umask 077
 od -An -tx1 -N16 /dev/urandom | tr -d ' ' >/etc/icesoc/uav1.key
 umask 022
@@ -57,6 +59,7 @@ done
 python3 "$1/call.py" uav1
 ./ping "hwengine1:tcp -h 127.0.0.1 -p 11093" 1
 echo "icesoc-call: $(icesoc-call uav.isAlive 7)"
+python3 "$1/page.py" 127.0.0.1:11094
 systemctl show -P User -P DynamicUser -P NoNewPrivileges -P ProtectSystem icesoc-gateway@uav1
 END
 rm -rf device ended service
@@ -79,6 +82,7 @@ bash by_service "$here" "$simulator" >log 2>&1 || {
 grep "^corners: 1" log
 grep "it is a ::Autopilot" log
 grep "^icesoc-call: true" log
+grep "^isAlive: True" log
 grep "^strict" log
 
 step "upgrade keeps keys, rights and settings, and restarts the service"

@@ -35,9 +35,9 @@ import time
 import webbrowser
 from http import HTTPStatus
 
+import places
+
 from icesoc.call import objects
-from icesoc.regs.model import Block, Wrong
-from icesoc.util import record
 from icesoc.util.errors import Stop
 from icesoc.web import bridge
 
@@ -55,14 +55,14 @@ FILES = {  # path: MIME type, file
     "/objects.js": ("text/javascript", HERE + "/flight/objects.js"),
     "/common.css": ("text/css", HERE + "/common.css"),
     "/common.js": ("text/javascript", HERE + "/common.js")}
-STATUS = record.of_tree("testbench/status/sim_status.toml")
+STATUS = places.record_of("testbench/status/sim_status.toml")
 SCHEMA = HERE + "/../cli/flight.schema.json"
 # The page loads only from its server, and no other page may frame it.
 POLICY = ("connect-src 'self'%s; default-src 'self'; "
           "img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
           "worker-src blob:; "  # timers of Ice for JavaScript
           "frame-ancestors 'none'; base-uri 'none'; form-action 'none'")
-COMMAND = "./icesoc call"
+COMMAND = "icesoc-call" if places.IS_INSTALLED else "./icesoc call"
 COUNTERS = ("ns", "cycles", "bytesUp", "bytesDown", "packets", "lost", "wallNs")
 WRITTEN = 2
 
@@ -109,8 +109,14 @@ def picture(folder, address):
 def blocks_by_slot(registers):
     """Returns [(slot, name, its block or None)]; `registers`: file that lists the blocks'
     *.regs.json, one a line."""
-    with open(registers) as paths:
-        found = [Block.read(path, is_built=True) for path in filter(None, paths.read().split("\n"))]
+    # Imported here, since the installed page of a gateway has no registers.
+    from icesoc.regs.model import Block, Wrong
+    try:
+        with open(registers) as paths:
+            found = [Block.read(path, is_built=True)
+                     for path in filter(None, paths.read().split("\n"))]
+    except Wrong as wrong:
+        raise ValueError(wrong) from None
     blocks = {block.name: block for block in found}
     slots = []
     for constant in blocks["map"].constants:
@@ -236,6 +242,7 @@ class Page(http.server.BaseHTTPRequestHandler):
     names: tuple = ()  # of this host
     vehicles: list = []  # of a gateway
     secret = ""  # its cookie
+    is_https = False
 
     def do_GET(self):
         port = self.server.socket.getsockname()[1]
@@ -276,7 +283,7 @@ class Page(http.server.BaseHTTPRequestHandler):
             vehicle.policy(host) for vehicle in self.vehicles))
         if self.vehicles and path == "/":
             self.send_header("Set-Cookie", f"icesoc-{port}={self.secret}; Path=/; HttpOnly; "
-                             "SameSite=Strict")
+                             "SameSite=Strict" + "; Secure" * self.is_https)
         self.send_header("X-Content-Type-Options", "nosniff")
         self.send_header("Connection", "close")
         self.end_headers()
@@ -313,7 +320,7 @@ class Server(http.server.ThreadingHTTPServer):
         pass  # the client has gone, or is not worth waiting for
 
 
-def server_at(host, port, certificate):
+def server_at(host, port, certificate, program):
     """Returns the server; with a certificate, of https."""
     kind = type("Server", (Server, ), {"address_family": socket.getaddrinfo(host, port)[0][0]})
     server = kind((host, port), Page)
@@ -322,8 +329,8 @@ def server_at(host, port, certificate):
         try:
             context.load_cert_chain(certificate)
         except (OSError, ssl.SSLError):
-            sys.exit(f"icesoc-live: error: '{certificate}': expected a PEM file with a certificate "
-                     "and its key; ./icesoc key FILE --certificate makes one")
+            sys.exit(f"{program}: error: '{certificate}': expected a PEM file with a certificate "
+                     "and its key")
         # The handshake is made by the thread of the connection.
         server.socket = context.wrap_socket(server.socket, server_side=True,
                                             do_handshake_on_connect=False)
@@ -341,48 +348,61 @@ def place(text):
     return host.strip("[]"), port_number(port)
 
 
-def main():
+def options(program, build):
+    """Returns the parser of the command line. build: folder of the installed vehicle, which has no
+    flights; None in the source tree."""
+    def of_flight(text):
+        return argparse.SUPPRESS if build else text
+
     parser = argparse.ArgumentParser(
-        prog="icesoc-live",
-        description="Serves the page that shows a mission as it runs, on 127.0.0.1.")
-    parser.add_argument("--dir", default="",
-                        help="folder of the mission: status, calls.jsonl, before.png")
-    parser.add_argument("--registers",
-                        help="file that lists the *.regs.json of all blocks; map.regs.json assigns "
-                        "blocks to slots")
-    parser.add_argument("--build", help="build folder of the vehicle; default: that of --registers")
+        prog=program, description="Serves the page on which a browser calls the vehicles of a "
+        "gateway; icesoc-gateway --page starts this program." if build else
+        "Serves the page that shows a mission as it runs, on 127.0.0.1.")
+    parser.add_argument("--dir", default="", help=of_flight(
+        "folder of the mission: status, calls.jsonl, before.png"))
+    parser.add_argument("--registers", help=of_flight(
+        "file that lists the *.regs.json of all blocks; map.regs.json assigns blocks to slots"))
+    parser.add_argument("--build", default=build, help=of_flight(
+        "build folder of the vehicle; default: that of --registers"))
     parser.add_argument("--vehicle", type=Vehicle, action="append", default=[],
-                        help="NAME=ws:PORT or NAME=wss:PORT: a vehicle of the gateway that started "
-                        "this program")
+                        help="NAME=ws:PORT or NAME=wss:PORT: a vehicle of the gateway; can be "
+                        "repeated")
     parser.add_argument("--listen", type=place, help="HOST:PORT of the page, opened by this HOST; "
                         "default: 127.0.0.1 and --port")
     parser.add_argument("--certificate", help="PEM file with certificate and key, for https")
-    parser.add_argument("--gateway", type=place, help="HOST:PORT of a gateway to call instead of "
-                        "the flight's")
-    parser.add_argument("--port", type=port_number, default=0, help="0: any that is free")
+    parser.add_argument("--gateway", type=place, help=of_flight(
+        "HOST:PORT of a gateway to call instead of the flight's"))
+    parser.add_argument("--port", type=port_number, default=0, help="port; default: any free port")
     parser.add_argument("--open", action="store_true", help="open the page in a browser")
     parser.add_argument("--try", dest="only_try", action="store_true",
-                        help="only look whether the page can be served")
+                        help="only check whether the page can be served")
+    return parser
+
+
+def main(program="icesoc-live", build=None):
+    parser = options(program, build)
     words = parser.parse_args()
     if not words.vehicle and not (words.dir and words.registers):
-        parser.error("the arguments --dir and --registers are required for the page of a flight")
+        parser.error("--vehicle is required" if build else
+                     "the arguments --dir and --registers are required for the page of a flight")
     host, port = words.listen or ("127.0.0.1", words.port)
     Page.names = ("127.0.0.1", "localhost", "[::1]") if host in ("127.0.0.1", "localhost", "::1") \
         else (f"[{host}]" if ":" in host else host, )
     Page.folder, Page.gateway, Page.vehicles = words.dir, words.gateway, words.vehicle
     Page.secret = os.environ.get("ICESOC_PAGE_SECRET", "")
+    Page.is_https = bool(words.certificate)
     try:
         Page.slots = blocks_by_slot(words.registers) if words.registers else []
         Page.build = words.build or os.path.dirname(os.path.dirname(os.path.abspath(
             words.registers)))
-    except (OSError, ValueError, KeyError, Wrong) as error:
-        sys.exit(f"icesoc-live: error: cannot read '{words.registers}': {error}")
+    except (OSError, ValueError, KeyError) as error:
+        sys.exit(f"{program}: error: cannot read '{words.registers}': {error}")
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: os._exit(0))
     try:
-        server = server_at(host, port, words.certificate)
+        server = server_at(host, port, words.certificate, program)
     except OSError as error:
-        sys.exit(f"icesoc-live: error: cannot listen on {host}: {error.strerror or error}: is the "
+        sys.exit(f"{program}: error: cannot listen on {host}: {error.strerror or error}: is the "
                  "port taken? PORT=0 takes any that is free")
     if not words.only_try:
         shown = f"[{host}]" if ":" in host else host

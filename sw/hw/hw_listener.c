@@ -14,7 +14,7 @@ void Hw_Listener_set(Hw_Listener* self, const Ice_ObjectPrx* proxy, const Ice_Cu
     U8 next = (U8)(self->count + 1U);
     Ice_ObjectPrx* stored = self->proxies + (next & 1U);
     int connection = 0;
-    U16 generation = 0; /* not a fixed proxy */
+    U16 generation = 0;                                              /* not a fixed proxy */
     if (!Ice_ObjectPrx_isNull(proxy) && proxy->endpointsSize == 2 && /* no endpoints, no adapter */
         Ice_Connection_createProxy(current->communicator, current->connection, "listener",
                                    stored) == ICE_OK) {

@@ -16,7 +16,7 @@ static void Clock_start(void) {
     while (!(RCC_CR & RCC_CR_HSERDY))
         ;
     /* The PLL makes 1 MHz * 240 / 2 = 120 MHz, and / 5 = 48 MHz for the random number generator. */
-    RCC_PLLCFGR = BOARD_HSE_MHZ | 240UL << 6 | 0UL << 16 | 1UL << 22 | 5UL << 24;
+    RCC_PLLCFGR = BOARD_HSE_HZ / 1000000UL | 240UL << 6 | 0UL << 16 | 1UL << 22 | 5UL << 24;
     RCC_CR |= RCC_CR_PLLON;
     while (!(RCC_CR & RCC_CR_PLLRDY))
         ;

@@ -30,7 +30,7 @@ struct Options {
     double delayMs = 0, duration = 0;
     uint64_t seed = testSeed(), bootMs = 50;
     bool verbose = false;
-    std::string trace;
+    std::string trace, modem = "s1";
 };
 
 struct Modem {
@@ -44,14 +44,16 @@ struct Modem {
     }
 };
 
-// Parses "MY=1" into a parameter; throws CLI::ValidationError with the reason.
-void setParameter(std::map<std::string, uint32_t>& set, const std::string& text) {
+// Parses "MY=1" into a parameter of this modem; throws CLI::ValidationError with the reason.
+void setParameter(std::map<std::string, uint32_t>& set, const std::string& profile,
+                  const std::string& text) {
     std::string letters = text.substr(0, text.find('='));
     std::string digits = text.substr(std::min(letters.size() + 1, text.size()));
-    auto parameter = xbeeParameters().find(letters);
+    const auto known = xbeeParameters(xbeeProfile(profile));
+    auto parameter = known.find(letters);
     char* end = nullptr;
     unsigned long value = std::strtoul(digits.c_str(), &end, 16);
-    if (parameter == xbeeParameters().end())
+    if (parameter == known.end())
         throw CLI::ValidationError("'" + text + "'", "unknown parameter " + letters);
     if (digits.empty() || *end)
         throw CLI::ValidationError("'" + text + "'", "give it as in MY=1A2B, in hex");
@@ -63,12 +65,13 @@ void setParameter(std::map<std::string, uint32_t>& set, const std::string& text)
 }
 
 void power(Modem& modem, RfChannel& air, const std::string& name, const Settings& settings,
-           uint64_t bootMs, std::map<std::string, uint32_t> set) {
+           const Options& o, std::map<std::string, uint32_t> set) {
     XBee::Options options;
     options.name = name;
-    options.bootNs = bootMs * 1'000'000;
+    options.profile = o.modem;
+    options.bootNs = o.bootMs * 1'000'000;
     for (auto& text : settings.set)
-        setParameter(set, text);
+        setParameter(set, o.modem, text);
     options.set = std::move(set);
     modem.xbee = std::make_unique<XBee>(modem.line, air, options);
     if (!settings.link.empty()) {
@@ -139,6 +142,9 @@ void addSettings(CLI::App& app, const std::string& name, Settings& settings) {
 void describe(CLI::App& app, Options& o) {
     addSettings(app, "a", o.a);
     addSettings(app, "b", o.b);
+    app.add_option("--modem", o.modem, "Both modems: series 1 (s1), S2C (s2c) or XBee 3 (xb3)")
+        ->check(CLI::IsMember({"s1", "s2c", "xb3"}))
+        ->capture_default_str();
     auto chance = [&app](const char* option, double& value, const char* what) {
         app.add_option(option, value, what)->check(CLI::Range(0.0, 1.0))->capture_default_str();
     };
@@ -189,8 +195,8 @@ int main(int argc, char** argv) {
         if (!o.trace.empty())
             air.weather.trace = std::make_shared<RfTrace>(o.trace);
         Modem a, b;
-        power(a, air, "a", o.a, o.bootMs, {{"MY", 1}, {"DL", 2}});
-        power(b, air, "b", o.b, o.bootMs, {{"MY", 2}, {"DL", 1}});
+        power(a, air, "a", o.a, o, {{"MY", 1}, {"DL", 2}});
+        power(b, air, "b", o.b, o, {{"MY", 2}, {"DL", 1}});
         run(air, *a.xbee, *b.xbee, o.duration);
     } catch (const CLI::Error& error) {
         fmt::print(stderr, "icesoc-xbee: {}\n", error.what());

@@ -4,16 +4,13 @@
 
 #include "xbee.h"
 #include "xbee_crypt.h"
-#include "xbee_parameters.h"
 #include <algorithm>
 #include <cstddef>
 
 namespace {
 
-constexpr size_t inputBytes = 202, outputBytes = 202;
-// Bytes held when CTS is deasserted (17 before the buffer is full) and asserted again (34 free).
-constexpr size_t ctsOff = inputBytes - 17, ctsOn = inputBytes - 34;
-constexpr size_t packetBytes = 100, packetBytesEncrypted = 95;
+constexpr size_t outputBytes = 202;
+constexpr size_t legacyBytes = 100, legacyBytesEncrypted = 95; // packets with C8
 constexpr uint64_t msNs = 1'000'000, resetNs = 200;
 // Processing time of the modem for each packet that it sends (before carrier sense) or has received
 // (before the next one). With this and the time on the air, full packets leave at 80 kb/s and,
@@ -23,16 +20,17 @@ constexpr uint64_t plusWindowNs = 1000 * msNs; // the three characters must arri
 
 } // namespace
 
-XBee::Parameters XBee::factory() {
+XBee::Parameters XBee::factory() const {
     Parameters values;
-    for (auto& [letters, parameter] : xbeeParameters())
+    for (auto& [letters, parameter] : table_)
         values[letters] = parameter.factory;
     return values;
 }
 
 XBee::XBee(SerialLine& line, RfChannel& channel, Options options)
-    : line_(line), channel_(channel), options_(std::move(options)), written_(factory()),
-      mac_(channel, *this) {
+    : line_(line), channel_(channel), options_(std::move(options)),
+      profile_(xbeeProfile(options_.profile)), table_(xbeeParameters(profile_)),
+      written_(factory()), mac_(channel, *this) {
     for (auto& [letters, value] : options_.set)
         written_.at(letters) = value;
     writtenKey_ = options_.key;
@@ -49,7 +47,7 @@ XBee::~XBee() {
 }
 
 double XBee::baud() const {
-    return xbeeBaud(active_.at("BD"));
+    return xbeeBaud(profile_, active_.at("BD"));
 }
 uint64_t XBee::serial() const {
     return uint64_t(active_.at("SH")) << 32 | active_.at("SL");
@@ -110,7 +108,7 @@ void XBee::stopSending() {
 }
 
 void XBee::store(uint8_t byte) {
-    if (input_.size() >= inputBytes)
+    if (input_.size() >= profile_.inputBytes)
         ++counters_.overflow;
     else
         input_.push_back(byte);
@@ -121,6 +119,8 @@ void XBee::updateCts() {
     size_t held = input_.size();
     for (auto& queued : apiQueue_)
         held += queued.packet.bytes.size();
+    const uint32_t ctsOff = profile_.hasLegacyMode ? active_.at("FT") : profile_.threshold;
+    const uint32_t ctsOn = ctsOff - profile_.release;
     bool cts = cts_ ? held < ctsOff : held <= ctsOn;
     if (active_.at("D7") != 1)
         cts = true;
@@ -206,12 +206,20 @@ void XBee::setRounds(RfPacket& packet) const {
     packet.copies = packet.isBroadcast() && rr ? rr + 2 : 1;
 }
 
+// Returns the most data that one packet carries.
+size_t XBee::packetBytes() const {
+    const bool encrypts = active_.at("EE");
+    if (profile_.hasLegacyMode && active_.at("C8") & 1)
+        return encrypts ? legacyBytesEncrypted : legacyBytes;
+    return encrypts ? profile_.encryptedBytes : profile_.packetBytes;
+}
+
 void XBee::sendPackets(uint64_t now) {
     if (inFlight_ || mode_ == Mode::Off)
         return;
     if (!apiQueue_.empty())
         return sendApiPacket(now);
-    size_t most = active_.at("EE") ? packetBytesEncrypted : packetBytes;
+    const size_t most = packetBytes();
     size_t count = 0;
     if (input_.size() >= most)
         count = most;

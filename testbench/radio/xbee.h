@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee: model of an XBee 802.15.4 (series 1) modem: command mode, packetizing, buffers, flow
-// control, API frames, encryption, reset. Facts and limits: docs/modem.md.
+// xbee: model of an XBee modem with 802.15.4 firmware (xbee_profile.h): command mode, packetizing,
+// buffers, flow control, API frames, encryption, reset. Facts and limits: docs/modem.md.
 //
 // Time is in nanoseconds. advance(now) handles due events; nextEvent() returns the next time. The
 // serial side is a SerialLine (pins or a pty), the radio side an RfChannel.
@@ -11,6 +11,7 @@
 #include "mac.h"
 #include "rf_packet.h"
 #include "serial_line.h"
+#include "xbee_parameters.h"
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -21,6 +22,7 @@ class XBee : public Mac::Modem, private SerialClient {
 public:
     struct Options {
         std::string name = "xbee";
+        std::string profile = "s1";          // modem: s1, s2c or xb3
         uint64_t bootNs = 50'000'000;        // time of the boot, 50..500 ms depending on the
                                              // modem's firmware
         std::map<std::string, uint32_t> set; // parameters with values that differ from the factory
@@ -60,6 +62,7 @@ public:
 
     const std::string& name() const { return options_.name; }
     uint32_t parameter(const std::string& letters) const { return active_.at(letters); }
+    const XBeeProfile& profile() const { return profile_; }
     double baud() const;
     const std::string& key() const { return key_; } // 32 hex digits; "" if no key was set
     bool inCommandMode() const { return mode_ == Mode::Command; }
@@ -81,7 +84,8 @@ private:
     void framingError(uint64_t now) override;
     bool nextToHost(uint8_t& byte) override;
 
-    static Parameters factory();
+    Parameters factory() const;
+    size_t packetBytes() const;
     void boot(uint64_t now);
     void stopSending();
     void store(uint8_t byte);
@@ -121,6 +125,8 @@ private:
     SerialLine& line_;
     RfChannel& channel_;
     Options options_;
+    const XBeeProfile& profile_;
+    const std::map<std::string, XBeeParameter> table_; // limits of the parameters
     Parameters written_, pending_, active_; // parameters saved by WR; set by commands but not
                                             // applied yet; in effect
     Mode mode_ = Mode::Off;

@@ -4,12 +4,11 @@
 // escaped.
 
 #include "xbee.h"
-#include "xbee_parameters.h"
 
 namespace {
 
 constexpr uint8_t delimiter = 0x7E, escape = 0x7D, escapeXor = 0x20;
-constexpr size_t longestFrame = 3 + 120;
+constexpr size_t longestHead = 23; // more bytes of a frame than of its data
 
 bool mustEscape(uint8_t byte) {
     return byte == delimiter || byte == escape || byte == 0x11 || byte == 0x13;
@@ -40,6 +39,7 @@ void XBee::apiByte(uint8_t byte, uint64_t now) {
     }
     frame_.push_back(escaped_ ? byte ^ escapeXor : byte);
     escaped_ = false;
+    const size_t longestFrame = longestHead + profile_.packetBytes;
     size_t length = frame_.size() >= 2 ? size_t(frame_[0]) << 8 | frame_[1] : longestFrame;
     if (frame_.size() >= 2 && (length == 0 || length > longestFrame)) {
         inFrame_ = false;
@@ -70,9 +70,10 @@ void XBee::apiFrame(const Bytes& frame, uint64_t now) {
 
 void XBee::apiSend(const Bytes& frame, uint64_t now) {
     size_t address = frame[0] == 0x00 ? 8 : 2, head = 2 + address + 1;
-    size_t most = active_.at("EE") ? 95 : 100;
-    if (frame.size() <= head || frame.size() - head > most) {
+    if (frame.size() <= head || frame.size() - head > packetBytes()) {
         ++counters_.badFrames;
+        if (frame.size() > head && frame[1] && profile_.tooLongStatus)
+            apiReply({0x89, frame[1], profile_.tooLongStatus});
         return;
     }
     RfPacket packet = addressed();
@@ -131,9 +132,9 @@ void XBee::apiCommand(const Bytes& frame, uint64_t now) {
         if (answer[4] == 0 && frame[0] == 0x08)
             apply();
     } else if (known) {
-        unsigned bytes = xbeeParameters().at(letters).highest > 0xFFFF ? 4
-                         : xbeeParameters().at(letters).highest > 0xFF ? 2
-                                                                       : 1;
+        unsigned bytes = table_.at(letters).highest > 0xFFFF ? 4
+                         : table_.at(letters).highest > 0xFF ? 2
+                                                             : 1;
         while (bytes--)
             answer.push_back(static_cast<uint8_t>(parameter->second >> (8 * bytes)));
     } else if (isRefused || order(letters, now).empty()) {

@@ -3,7 +3,6 @@
 // xbee: command mode.
 
 #include "xbee.h"
-#include "xbee_parameters.h"
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -50,15 +49,16 @@ void XBee::commandByte(uint8_t byte, uint64_t now) {
 }
 
 bool XBee::setParameter(const std::string& letters, uint32_t value) {
-    auto found = xbeeParameters().find(letters);
-    if (found == xbeeParameters().end() || !found->second.writable ||
-        value < found->second.lowest || value > found->second.highest)
+    auto found = table_.find(letters);
+    if (found == table_.end() || !found->second.writable || value < found->second.lowest ||
+        value > found->second.highest)
         return false;
-    if (letters == "BD" && value > 7 && value < 0x80)
+    if (letters == "BD" && value > profile_.highestCode && value < profile_.lowestRate)
         return false;
-    if (letters == "BD" && value > 7)
-        value = static_cast<uint32_t>(std::lround(xbeeBaud(value))); // rounded to the nearest
-                                                                     // possible rate
+    if (letters == "BD" && value > profile_.highestCode)
+        value =
+            static_cast<uint32_t>(std::lround(xbeeBaud(profile_, value))); // rounded to the nearest
+                                                                           // possible rate
     pending_[letters] = value;
     if (letters == "EC" || letters == "EA")
         active_[letters] = value;
@@ -85,7 +85,7 @@ std::string XBee::order(const std::string& letters, uint64_t now) {
     } else if (letters == "RE") {
         pending_ = factory();
         for (auto& [own, value] : options_.set)
-            if (!xbeeParameters().at(own).writable)
+            if (!table_.at(own).writable)
                 pending_[own] = value; // the serial number stays
         key_.clear();
     } else if (letters == "FR") {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee_parameters: the modem's parameters: factory values and limits, after the XBee 802.15.4
-// manual.
+// xbee_parameters: the parameters of each modem: factory values and limits, after Digi's manuals.
 
 #pragma once
 
+#include "xbee_profile.h"
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -14,7 +15,8 @@ struct XBeeParameter {
     bool writable;
 };
 
-inline const std::map<std::string, XBeeParameter>& xbeeParameters() {
+// Parameters of the series 1; xbeeParameters adds the differences of the others.
+inline const std::map<std::string, XBeeParameter>& xbeeParametersOfS1() {
     static const std::map<std::string, XBeeParameter> table = {
         {"MY", {0, 0, 0xFFFF, true}},     // 16-bit address of this modem; FFFE and FFFF disable it
         {"DH", {0, 0, 0xFFFFFFFF, true}}, // destination, high word; 0 with DL <= FFFF: 16-bit
@@ -46,12 +48,27 @@ inline const std::map<std::string, XBeeParameter>& xbeeParameters() {
     return table;
 }
 
-// Returns the baud rate for a value of BD. Above 7, it is 16 MHz / 16 divided by the nearest
-// integer.
-inline double xbeeBaud(uint32_t bd) {
-    static const double rates[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 1e6 / 9};
-    if (bd < 8)
+inline std::map<std::string, XBeeParameter> xbeeParameters(const XBeeProfile& profile) {
+    std::map<std::string, XBeeParameter> table = xbeeParametersOfS1();
+    table["BD"].highest = profile.highestRate;
+    table["RN"].highest = profile.highestRn;
+    if (!profile.hasLegacyMode)
+        return table;
+    table["C8"] = {0, 0, 3, true}; // bit 0: packets as short as those of the series 1
+    table["FT"] = {profile.threshold, 17, profile.inputBytes - 12, true}; // bytes held when CTS is
+                                                                          // deasserted
+    return table;
+}
+
+// Returns the rate of a BD value in baud. Rates other than the codes are the nearest that the
+// modem's clock gives: on the series 1, 16 MHz / 16 divided by an integer.
+inline double xbeeBaud(const XBeeProfile& profile, uint32_t bd) {
+    static const double rates[] = {1200,  2400,   4800,   9600,   19200, 38400,
+                                   57600, 115200, 230400, 460800, 921600};
+    if (bd <= profile.highestCode && !(profile.dividesMegahertz && bd == 7))
         return rates[bd];
-    unsigned divisor = static_cast<unsigned>(1e6 / bd + 0.5);
-    return 1e6 / (divisor ? divisor : 1);
+    const double rate = bd == 7 ? rates[7] : bd;
+    if (!profile.dividesMegahertz)
+        return rate;
+    return 1e6 / std::max(1u, static_cast<unsigned>(1e6 / rate + 0.5));
 }

@@ -60,10 +60,11 @@ RfWeather weatherOf(const Flight::Options& o) {
     return weather;
 }
 
-XBee::Options modem(const char* name, uint16_t guard) {
+XBee::Options modem(const char* name, const Flight::Options& o) {
     XBee::Options options;
     options.name = name;
-    options.set["GT"] = guard;
+    options.profile = o.modem;
+    options.set["GT"] = o.guard;
     return options;
 }
 
@@ -115,9 +116,9 @@ std::string defaultFirmware() {
 
 Flight::Flight(const Options& options)
     : o_(options), frame_(pictureFor(o_)), key_(keyOf(o_.key, 1)), weather_(weatherOf(o_)),
-      air_(o_.seed), ground_(air_, modem("ground", o_.guard), prepared(o_, frame_), "", o_.replayed,
+      air_(o_.seed), ground_(air_, modem("ground", o_), prepared(o_, frame_), "", o_.replayed,
                              headOf(o_), [this] { return isWanted(); }),
-      soc_(air_, modem("uav", o_.guard)), events_(o_.out + "/events.jsonl"),
+      soc_(air_, modem("uav", o_)), events_(o_.out + "/events.jsonl"),
       pace_(o_.speed == "real"  ? 1
             : o_.speed == "max" ? 0
                                 : std::stod(o_.speed)) {
@@ -174,7 +175,7 @@ void Flight::placePicture(SocModel& soc, const Frame& frame) {
 
 void Flight::callFollowers() {
     if (o_.vehicles > 1) {
-        XBee::Options options = modem("observer", o_.guard);
+        XBee::Options options = modem("observer", o_);
         options.set["MY"] = Station::second;
         std::shared_ptr<ReplayedLine> replayed;
         if (o_.replayed)
@@ -204,7 +205,7 @@ void Flight::callFollower(unsigned address, const std::vector<uint8_t>& otherKey
     if (!otherKey.empty())
         config.key = otherKey;
     config.seed = o_.seed + followers_.size() + 2;
-    followers_.push_back(std::make_unique<Follower>(air_, modem("follower", o_.guard), config));
+    followers_.push_back(std::make_unique<Follower>(air_, modem("follower", o_), config));
     SocModel& soc = followers_.back()->soc;
     soc.fsmc().onWord = [this, &soc](uint32_t at, uint32_t value, bool isWrite) {
         countStarts(soc, at, value, isWrite);

@@ -63,7 +63,7 @@ public:
         // (tools/icesoc/cli/flight.schema.json).
         std::string image, size = "320x240", out = ".", speed = "real", cpu = "host",
                            firmware = defaultFirmware(), key, observer, trouble, modem_key, pins,
-                           trace, flash, fpga_flash;
+                           trace, flash, fpga_flash, modem = "s1";
         uint16_t guard = 1000;
         unsigned vehicles = 1;
         int gdb = -1;
@@ -72,9 +72,9 @@ public:
         bool camera = false, wire = false, every_clock = false, quiet = false;
         NLOHMANN_DEFINE_TYPE_INTRUSIVE_WITH_DEFAULT(Options, image, size, out, speed, cpu, firmware,
                                                     key, observer, trouble, modem_key, pins, trace,
-                                                    flash, fpga_flash, guard, vehicles, gdb, loss,
-                                                    interference, distance, duration, from, to,
-                                                    seed, camera, wire, every_clock, quiet)
+                                                    flash, fpga_flash, modem, guard, vehicles, gdb,
+                                                    loss, interference, distance, duration, from,
+                                                    to, seed, camera, wire, every_clock, quiet)
         nlohmann::json flight; // description, stored in the recording
         std::vector<std::string> command;
         std::shared_ptr<ReplayedLine> replayed; // flight to replay, if any

@@ -41,16 +41,19 @@ public:
     };
     // The guard time of the tests' modems; the default, a second, would be idle time.
     static constexpr uint16_t guardMs = 20;
-    static XBee::Options uavModem() {
+    static XBee::Options uavModem(const std::string& profile = "s1") {
         XBee::Options options;
         options.name = "uav";
+        options.profile = profile;
         options.set = {{"GT", guardMs}};
         return options;
     }
-    // `address` is the address of its modem.
-    Ground(RfChannel& air, uint64_t seed, uint32_t address = 0) : random_(seed), link_(new Link) {
+    // `address` is the address of its modem, `profile` the kind of modem.
+    Ground(RfChannel& air, uint64_t seed, uint32_t address = 0, const std::string& profile = "s1")
+        : random_(seed), link_(new Link) {
         XBee::Options options;
         options.name = "ground";
+        options.profile = profile;
         options.set = {{"BD", 7}, {"MY", address}, {"DL", 1}};
         modem_ = std::make_unique<XBee>(line_, air, options);
         start();
@@ -165,7 +168,8 @@ private:
 
 // A vehicle's chip, its ground station, and the air between them.
 struct GroundAndChip {
-    explicit GroundAndChip(uint64_t seed = testSeed()) : air(seed), ground(air, seed + 5) {
+    explicit GroundAndChip(uint64_t seed = testSeed(), const std::string& modem = "s1")
+        : air(seed), ground(air, seed + 5, 0, modem), soc(air, Ground::uavModem(modem)) {
         uav_guardMs = Ground::guardMs; // the variable of the host build
         soc.onTime([this](uint64_t now) { return ground.advance(now); });
     }
@@ -180,5 +184,5 @@ struct GroundAndChip {
 
     RfChannel air;
     Ground ground;
-    SocModel soc{air, Ground::uavModem()};
+    SocModel soc;
 };

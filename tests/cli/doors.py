@@ -157,7 +157,7 @@ MISTAKES = {
     "./icesoc run --key no.key": "./icesoc key",
     "./icesoc run --again Makefile": "cannot read the flight",
     "./icesoc run --again tools/icesoc/cli/flight.schema.json":
-    "is not a flight: expected version 3",
+    "is not a flight: expected version 4",
     "./icesoc contract": "contract: expected a command: diff, from-rdl",
     "./icesoc contract dif": "contract has no command 'dif'; did you mean diff?",
     "./icesoc bench --only airr": "no bench is named 'airr': simulator, air",

@@ -21,6 +21,7 @@ protected:
     // Settings differ from: quick guard times, addresses 1 and 2.
     void power(Settings forA = {}, Settings forB = {}) {
         XBee::Options optionsA, optionsB;
+        optionsA.profile = optionsB.profile = profile;
         optionsA.set = {{"MY", 1}, {"DL", 2}, {"GT", 10}, {"SL", 0xA}};
         optionsB.set = {{"MY", 2}, {"DL", 1}, {"GT", 10}, {"SL", 0xB}};
         for (auto& [letters, value] : forA)
@@ -76,6 +77,7 @@ protected:
         Bytes bytes;
         RfChannel::Outcome outcome;
     };
+    std::string profile = "s1"; // both modems', since power()
     bool perfect = true; // RfWeather's, since power()
     uint64_t now = 0;
     RfChannel air{testSeed()};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// board_test: the firmware flies through the kit's generated pins; a swapped pair, a wrong
-// alternate function, a bank without supply or a wrong place in the constraints makes a flight
-// fail.
+// board_test: the firmware flies through the kit's generated pins, with each modem on sale; a
+// swapped pair, a wrong alternate function, a bank without supply or a wrong place in the
+// constraints makes a flight fail.
 
 #include "ground.h"
 #include "m3_machine.h"
@@ -111,41 +111,73 @@ TEST(BoardFlight, TheKitAnswersACallThroughItsGeneratedPins) {
     EXPECT_TRUE(answersACall({}, enough));
 }
 
-TEST(BoardFlight, TwoDataWiresInEachOthersPlacesAreNoBoard) {
+// A board on which no call is answered: what is wrong with it.
+struct WrongBoard {
+    const char* name;
+    void (*spoil)(Board& board);
+    friend void PrintTo(const WrongBoard& wrong, std::ostream* out) { *out << wrong.name; }
+};
+const WrongBoard wrongBoards[] = {
+    {"TwoDataWiresInEachOthersPlaces",
+     [](Board& board) { board.wires = swapped(board.wires, " E12 ", " E13 "); }},
+    {"TwoAddressPlacesSwappedInTheConstraints", // A0 and A1
+     [](Board& board) { board.ucf = swapped(board.ucf, "\"K15\"", "\"K16\""); }},
+    {"ASignalOnAnotherAlternateFunction",
+     [](Board& board) { board.wires = with(board.wires, "PD4 12 FSMC_NOE", "PD4 11 FSMC_NOE"); }},
+    {"ABankWithoutSupply",
+     [](Board& board) {
+         const std::regex bank1("( [B-T][0-9]+) 3.3\n");
+         board.wires = std::regex_replace(board.wires, bank1, "$1 0\n");
+     }},
+    {"NoWireForTheModemsData",
+     [](Board& board) { board.wires = with(board.wires, "DOUT - - MODEM_RXD N9 3.3\n", ""); }},
+    {"AnotherBallForTheInterrupt", [](Board& board) {
+         board.ucf = with(board.ucf, "NET \"irq_o\" LOC = \"K11\"", "NET \"irq_o\" LOC = \"T14\"");
+     }}};
+
+class BoardFlights : public testing::TestWithParam<WrongBoard> {};
+INSTANTIATE_TEST_SUITE_P(With, BoardFlights, testing::ValuesIn(wrongBoards),
+                         [](const auto& each) { return each.param.name; });
+
+TEST_P(BoardFlights, AnswerNoCall) {
     Board board;
-    board.wires = swapped(board.wires, " E12 ", " E13 ");
+    GetParam().spoil(board);
     EXPECT_FALSE(answersACall(board, enough));
 }
 
-TEST(BoardFlight, TwoAddressPlacesSwappedInTheConstraintsAreNoBoard) {
-    Board board;
-    board.ucf = swapped(board.ucf, "\"K15\"", "\"K16\""); // A0 and A1
-    EXPECT_FALSE(answersACall(board, enough));
-}
+// The mission through the kit's pins with each modem: set-up by the controller's AT commands, a
+// parameter, the picture's result and telemetry.
+class ModemFlights : public testing::TestWithParam<const char*> {};
+INSTANTIATE_TEST_SUITE_P(With, ModemFlights, testing::Values("s1", "s2c", "xb3"),
+                         [](const auto& each) { return std::string(each.param); });
 
-TEST(BoardFlight, ASignalOnAnotherAlternateFunctionDoesNotLeaveTheChip) {
-    Board board;
-    board.wires = with(board.wires, "PD4 12 FSMC_NOE", "PD4 11 FSMC_NOE");
-    EXPECT_FALSE(answersACall(board, enough));
-}
-
-TEST(BoardFlight, ABankWithoutSupplyIsNoBoard) {
-    Board board;
-    const std::regex bank1("( [B-T][0-9]+) 3.3\n");
-    board.wires = std::regex_replace(board.wires, bank1, "$1 0\n");
-    EXPECT_FALSE(answersACall(board, enough));
-}
-
-TEST(BoardFlight, TheModemsDataNeedsItsWire) {
-    Board board;
-    board.wires = with(board.wires, "DOUT - - MODEM_RXD N9 3.3\n", "");
-    EXPECT_FALSE(answersACall(board, enough));
-}
-
-TEST(BoardFlight, TheInterruptNeedsItsBall) {
-    Board board;
-    board.ucf = with(board.ucf, "NET \"irq_o\" LOC = \"K11\"", "NET \"irq_o\" LOC = \"T14\"");
-    EXPECT_FALSE(answersACall(board, enough));
+TEST_P(ModemFlights, CarryTheMission) {
+    GroundAndChip flight(testSeed(), GetParam());
+    flight.soc.reset(true);
+    flight.provide(48, 32, [](uint32_t i) { return static_cast<uint8_t>(i % 7 ? 0 : 200); });
+    auto mission = flight.ground.calling({{"hwengine1", "ice_ping", 2},
+                                          {"hwengine1", "setParameterA", 0, {30, 0}},
+                                          {"hwengine1", "startProcessing"},
+                                          {"hwengine1", "getResult"},
+                                          {"uav", "isAlive", 0, {7, 0}}});
+    uint64_t upNs = 0;
+    M3Machine machine(flight.soc, {FIRMWARE_ELF, 120'000'000, Ground::guardMs}, [&] {
+        upNs = !upNs && flight.ground.isUp() ? flight.soc.now() : upNs;
+        return !mission() && flight.within(10);
+    });
+    machine.run();
+    EXPECT_TRUE(flight.soc.wires().isStraight());
+    ASSERT_EQ(flight.ground.replies.size(), 5u);
+    for (const auto& [id, status] : flight.ground.replies)
+        EXPECT_EQ(status, 0) << id;
+    const XBee& modem = flight.soc.modem();
+    EXPECT_STREQ(modem.profile().name, GetParam());
+    EXPECT_EQ(modem.baud(), 250'000);
+    EXPECT_EQ(modem.parameter("AP"), 1u);
+    EXPECT_EQ(modem.counters().refused, 0u);
+    EXPECT_EQ(modem.counters().overflow, 0u);
+    RecordProperty("upMs", static_cast<int>(upNs / 1'000'000));
+    RecordProperty("ms", static_cast<int>(flight.soc.now() / 1'000'000));
 }
 
 TEST(BoardFlight, AnotherOscillatorIsNamed) {

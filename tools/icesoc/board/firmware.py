@@ -52,10 +52,9 @@ def header(board: Board):
         " * do not edit.",
         " */", "#pragma once", "",
         f'#define BOARD_NAME "{board.name}"', "",
-        "/* Oscillator, MHz, and the bits of RCC_CR that start it. */",
-        f"#define BOARD_HSE_MHZ {mcu['hse_hz'] // 1_000_000}UL",
-        f"#define BOARD_HSE_ON {START[mcu.get('hse', 'crystal')]}",
+        "/* Oscillator, Hz, the bits of RCC_CR that start it, and the FPGA's clock, Hz. */",
         f"#define BOARD_HSE_HZ {mcu['hse_hz']}UL",
+        f"#define BOARD_HSE_ON {START[mcu.get('hse', 'crystal')]}",
         f"#define BOARD_FPGA_HZ {board.facts['fpga']['clock_hz']}UL",
         "",
         "/* Ports (0: A) and pins of the FPGA's interrupt, and of the jumper of Board_isWired. */"]

@@ -19,7 +19,7 @@ from icesoc.util.console import say
 from icesoc.util.errors import Stop, nearest
 from icesoc.util.schema import limits, problems
 
-VERSION = 3
+VERSION = 4
 FIELDS = [
     Option("image", FILE, "picture for the camera: PNG, JPEG or PGM",
            "/usr/share/xplanet/images/earth.jpg"),
@@ -52,6 +52,8 @@ FIELDS = [
         "send the picture through the pins of the camera core instead of writing it to memory"
     ),
     Option("wire", SWITCH, "connect by a serial cable instead of modems and air"),
+    Option("modem", one_of("s1", "s2c", "xb3"),
+           "modems of vehicle and ground station: XBee series 1, S2C or XBee 3", "s1"),
     Option("pins", FILE,
            "script that drives the input pins of cores (docs/simulation.md); outputs are logged "
            "in OUT/pins.log", ""),

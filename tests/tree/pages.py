@@ -4,12 +4,10 @@
 
     pages.py TREE
 
-A link leads to a file of the repository, and to a heading of it where it names one, a path in
-backquotes exists, an empty line ends a table, docs/architecture.md lists every page of docs/, and
-README.md has the same figures as docs/figures.md and synth/baseline.json. Exit status 1, and a
-line for each that does not hold.
+A link leads to a file of the repository, and to an existing heading if it names one. A path in
+backquotes exists. An empty line ends a table. docs/architecture.md lists every page of docs/. Exit
+status 1, and a line for each fault. The figures of pages are compared by icesoc.site.figures.
 """
-import json
 import os
 import re
 import subprocess
@@ -59,39 +57,6 @@ def check(tree, page, files):
                 yield f"{page}:{number}: {path} does not exist"
 
 
-def stale(tree):
-    """Yields a line for each figure of README.md that differs from the one of the page or file that
-    a command writes."""
-    readme, figures, baseline, utilisation = (open(os.path.join(tree, page)).read() for page in (
-        "README.md", "docs/figures.md", "synth/baseline.json", "docs/utilisation.md"))
-    table1 = json.loads(baseline)["designs"]["table1"]
-    sites = re.search(r"it\s+is\s+about\s+(\d+)", utilisation)[1]
-    low, high = map(float, re.search(r"LUT sites by map \| [\d.]+ \| ([\d.]+) to ([\d.]+)",
-                                     utilisation).groups())
-    mapped = re.search(r"the\s+slices\s+at\s+(\d+ to \d+)", utilisation)[1]
-
-    def row(name):
-        found = re.search(rf"^\| {re.escape(name)} \| (.*) \|$", figures, re.M)
-        return found.group(1) if found else "0"
-
-    def count(name):
-        return int(row(name).split()[0].replace(",", ""))
-
-    hostile = count("hostile packets")
-    firmware, bitstream = (count(f"new {what}: power losses, in each operation and later")
-                           for what in ("firmware", "bitstream"))
-    unlinked = count("minimal.all without --gc-sections")
-    ram = count("full: RAM with all objects and all stacks, including the main stack")
-    if f" {ram:,} of the" not in " ".join(readme.split()):
-        yield f"README.md: the last command that measured wrote {ram:,} bytes of RAM"
-    for said in (f"{count('minimal.all')}; {unlinked} without `--gc-sections`",
-                 f"{sites} ({int(sites) * low:.0f} to {int(sites) * high:.0f}) / {table1['ff']} / "
-                 f"{table1['slices']} ({mapped})",
-                 f"0 of {hostile:,}", f"0 of {firmware}; 0 of {bitstream}"):
-        if f"| {said} |" not in readme:
-            yield f"README.md: the last command that measured wrote {said}"
-
-
 def main(words):
     if len(words) != 1 or words[0].startswith("-"):
         sys.exit(__doc__)
@@ -104,8 +69,6 @@ def main(words):
     wrong += [f"docs/architecture.md: its index has no {page}" for page in pages
               if re.match(r"docs/(?!architecture|index)[^/]*$", page)
               and f"({os.path.basename(page)})" not in index]
-    if "docs/figures.md" in files:  # the small tree of a test has none
-        wrong += stale(tree)
     print("\n".join(wrong))
     return 1 if wrong else 0
 

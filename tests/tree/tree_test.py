@@ -5,10 +5,12 @@
 Usage: tree_test.py CASE WORK-FOLDER BUILD-FOLDER
 """
 import os
+import shutil
 import sys
 import tempfile
 from pathlib import Path
 
+from icesoc.site import figures
 from script import TREE, Script, append, fresh, main, write
 
 WORK, BUILD = map(Path, sys.argv[2:4])
@@ -69,6 +71,29 @@ class Cases(Script):
                 self.ask(BUILD / "tests/regress/regress", "--source", tree, "--tree", "bus hdl")
                 states.add(self.said)
         self.assertEqual(len(states), 1, "the copy has another state")
+
+    def test_figures_differ(self):
+        """A figure that differs from its source is reported with both values, and `correct` writes
+        it; a picture without its text is reported."""
+        with tempfile.TemporaryDirectory() as copy:
+            for name in [*figures.PLACES, "docs/figures.md", "synth/baseline.json"]:
+                Path(copy, name).parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy(TREE / name, Path(copy, name))
+            page = Path(copy, "README.md")
+            right = page.read_text()
+            page.write_text(right.replace("| 5378; ", "| 5379; ").replace(" / 755 / ", " / 75 / "))
+            wrong = list(figures.differences(copy))
+            self.assertIn("README.md: minimal is 5379, but 5378 in its source", wrong)
+            self.assertIn("README.md: table1.ff is 75, but 755 in its source", wrong)
+            self.assertEqual(list(figures.correct(copy)), ["README.md"])
+            self.assertEqual(page.read_text(), right)
+            picture = figures.PICTURE.format("utilisation")
+            text = figures.text_of(Path(copy, picture))
+            shutil.copy(TREE / "docs/pictures/mission.png", Path(copy, picture))
+            self.assertTrue(all(line.startswith(picture) and "found no such text" in line
+                                for line in figures.differences(copy)))
+            figures.put_text(Path(copy, picture), text)
+            self.assertEqual(list(figures.differences(copy)), [])
 
     def test_files(self):
         """The list of a model's Verilog files is enough to elaborate its top, and the list of C

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // rig: the other end of the ground's serial port: a modem on a pty, the air, and a UAV made of a
-// modem and a link layer. Its thread follows the machine clock, but waits for an engine that
-// keeps step: if many tests run at once, time passes slowly and no time-out is early.
+// modem and a link layer. Simulated time runs several times as fast as the machine clock. It waits
+// for an engine that keeps step: on a busy machine, time passes slowly and no time-out is early.
 
 #pragma once
 
@@ -120,7 +120,7 @@ public:
         while (!with([&] { return isLate = now_ > end, done(); })) {
             if (isLate)
                 return false;
-            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            std::this_thread::sleep_for(pause);
         }
         return true;
     }
@@ -130,7 +130,7 @@ public:
     void pass(double time) {
         const double end = seconds() + time;
         while (seconds() < end)
-            std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            std::this_thread::sleep_for(pause);
     }
     bool isReadable(int fd) {
         return until([fd] {
@@ -155,6 +155,7 @@ public:
     uint64_t ns() const { return now_; }
 
     static constexpr uint32_t guardMs = 20;
+    static constexpr std::chrono::microseconds pause{300}; // between two looks of a test
     RfChannel air, elsewhere; // a modem in one of them is out of reach of a modem in the other
     PtyLine pty, otherPty;
     std::unique_ptr<XBee> ground, other; // `other` is null until it is placed
@@ -176,13 +177,14 @@ private:
         using Steady = std::chrono::steady_clock;
         constexpr uint64_t longestNs = 1'000'000; // ns; longest time between two steps of the
                                                   // models
+        constexpr uint64_t speed = 8;             // simulated time over the machine clock
         for (auto last = Steady::now(); !stop_;) {
             waiting_ = Steady::now();
             step_.wait(now_);
             {
                 std::lock_guard<std::mutex> lock(mutex_);
                 auto now = Steady::now();
-                now_ += std::min(static_cast<uint64_t>((now - last).count()), longestNs);
+                now_ += std::min(speed * static_cast<uint64_t>((now - last).count()), longestNs);
                 last = now;
                 clock_.set(now_);
                 air.advance(now_);
@@ -194,7 +196,7 @@ private:
                     step();
                 uav.advance(now_);
             }
-            std::this_thread::sleep_for(std::chrono::microseconds(300));
+            std::this_thread::sleep_for(std::chrono::microseconds(50));
         }
     }
 

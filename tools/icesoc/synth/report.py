@@ -235,6 +235,9 @@ def entries(report):
                 more |= {"peer": report.plan.paper[key],
                          "ratio": round(f[key] / report.plan.paper[key], 3)}
             add(key, f[key], unit, more)
+        if row.design.paper:  # the pages repeat it
+            sites = sites_of_map(f)
+            add("sites", sites, f"LUT sites, estimated; as mapped {slices.SITES_OF_MAP.of(sites)}")
         goal = report.plan.chip["mhz"]
         if f["mhz"]:
             add("clock", round(f["mhz"], 1),

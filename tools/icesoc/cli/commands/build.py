@@ -9,6 +9,7 @@ from pathlib import Path
 from icesoc.cli.build_folder import BuildFolder, configured
 from icesoc.cli.command import DEFAULTS, GROUPS, command
 from icesoc.cli.options import BUILD, FOLDER, JOBS, UCOS2, WORDS, Option
+from icesoc.site.figures import put_text
 from icesoc.util.browser import Browser
 from icesoc.util.console import say
 from icesoc.util.errors import Stop
@@ -92,13 +93,30 @@ def small(path):
     raise Stop(f"{path} has 100 KB with eight colours: show less of it")
 
 
+# Returns the text in the window, in the order of the page.
+VISIBLE = """(() => {
+    const texts = [], nodes = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+    for (let node; node = nodes.nextNode();) {
+        const box = document.createRange();
+        box.selectNodeContents(node);
+        const place = box.getBoundingClientRect();
+        if (place.width && place.bottom > 0 && place.top < innerHeight)
+            texts.push(node.textContent);
+    }
+    return texts.join(' ').replace(/\\s+/g, ' ');
+})()"""
+
+
 def shoot(path, width, height, address):
-    """Saves a picture of a page, with the state of its timers after three seconds."""
+    """Saves a picture of a page, with the state of its timers after three seconds, and with the
+    text that it shows."""
     with Browser(width=width, height=height) as browser:
         browser.open(address)
         browser.pass_time(3000)
         browser.shoot(path)
+        text = browser.run(VISIBLE)
     small(path)
+    put_text(path, text)
 
 
 # Script that calls an operation of the vision core with the form of the page.

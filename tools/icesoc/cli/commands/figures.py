@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""build figures: measures what README.md and docs/ show, and writes their figures and pictures."""
+import json
+import re
+import shutil
+from pathlib import Path
+
+from icesoc.cli import choices
+from icesoc.cli.command import command
+from icesoc.cli.options import WORDS, Option
+from icesoc.mutants import run as mutants
+from icesoc.site import figures
+from icesoc.util.console import say
+from icesoc.util.process import run
+
+STEPS = ["bench", "synth", "regress", "pictures", "pages"]
+# The seeded fault of the regression page's picture, and the tests that its run selects.
+FAULT, FOUND_BY = "fsmc/lanes_ignored", r"fsmc_(post|memory)$|^test_fsmc_bridge"
+TREE = Path("build/figures/tree")
+
+
+@choices.expecting("a step")
+def steps(values=None):  # pylint: disable=unused-argument
+    return STEPS
+
+
+def regress_with_fault():
+    """Runs tests of the FSMC bridge on a copy of the tree with a seeded fault."""
+    mutants.prepare(TREE)
+    fault, = mutants.bugs(FAULT)
+    planted = fault.planted(TREE)
+    for file, text in planted.items():
+        shutil.copy2(TREE / file, f"{TREE / file}.orig")
+        (TREE / file).write_text(text)
+    try:
+        run(["./icesoc", "regress", "--name", FOUND_BY], cwd=TREE, check=False)
+    finally:
+        for file in planted:
+            mutants.restore(TREE / file)
+
+
+def figures_of_synth(report):
+    """Returns the estimated LUT sites of Table I, and the ranges of sites and slices."""
+    found = {}
+    entries = {entry["name"]: entry for entry in json.loads(report.read_text())["entries"]}
+    for name, design in ("table1", "table1"), ("flown", "table1_flown"):
+        for kind, low, high in ("sites", "low", "high"), ("slices", "less", "more"):
+            if entry := entries.get(f"{design} {kind}"):
+                first, last = re.search(r"(\d+)-(\d+)", entry["unit"]).groups()
+                found |= {f"{name}.{kind}": str(entry["value"]), f"{name}.{low}": first,
+                          f"{name}.{high}": last}
+    return found
+
+
+@command("build figures", [
+    Option("steps", WORDS, f"what to do: {', '.join(STEPS)}", STEPS, positional=True,
+           choices=steps)], make="figures", brief="build figures pages",
+         examples=[
+             "build figures",
+             "build figures synth pictures pages",
+             "build figures pages"])
+def build_figures(values):
+    """make the figures and pictures of README.md and docs/ from one run
+
+    Runs `bench`, `synth` and a regression with a seeded fault, one after the other, takes the
+    pictures of their pages and of two flights, and writes the figures into the pages. `synth`
+    accepts its figures, since the pages show those. `make test NAME=tree.figures` compares the
+    pages and pictures with their sources.
+    """
+    for step in STEPS:
+        if step not in values.steps:
+            continue
+        say(f"build figures: {step}")
+        if step == "bench":
+            run(["./icesoc", "bench"])
+        elif step == "synth":
+            run(["./icesoc", "synth", "accept"])
+        elif step == "regress":
+            regress_with_fault()
+        elif step == "pictures":
+            run(["./icesoc", "build", "pictures", "mission", "live", "utilisation"])
+            if (TREE / "build/regress/report.html").exists():
+                run(["./icesoc", "build", "pictures", "regression", "--from", TREE / "build"])
+        else:
+            report = Path("build/synth/report.json")
+            for page in figures.correct(".", figures_of_synth(report) if report.exists() else {}):
+                say(f"{page}: figures updated")
+            wrong = list(figures.differences("."))
+            print("\n".join(wrong))
+            return 1 if wrong else 0
+    return 0

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: MIT
+"""figures: the figures that pages and pictures repeat, each with its source.
+
+The sources are docs/figures.md (written by `bench`), synth/baseline.json (written by `synth
+accept`), and the pictures of pages: the text that a picture shows is in its PNG file. `build
+figures` writes the figures into the pages, and `make test NAME=tree.figures` compares them.
+
+    figures TREE    prints a line for each figure that differs; exit status 1 if there is one
+"""
+import json
+import re
+import struct
+import sys
+import zlib
+from pathlib import Path
+
+KEYWORD = b"Description"  # PNG's keyword for such a text
+
+PICTURE = "docs/pictures/{}.png"
+
+# Page or picture: texts in it, in which a name in braces stands for a figure. A name that has no
+# source must have the same figure wherever it stands.
+PLACES = {
+    "README.md": [
+        "| {minimal}; {unlinked} without `--gc-sections` |",
+        "| {table1.sites} ({table1.low} to {table1.high}) / {table1.ff} / {table1.slices} "
+        "({table1.less} to {table1.more}) |",
+        "API frames (`make synth DESIGN=table1_flown`) | {flown.sites} ({flown.low} to {flown.high}) / {flown.ff} / {flown.slices} "
+        "({flown.less} to {flown.more}) |",
+        "(`make test NAME=CallBytes`) | {air.key}; {air.clear} | MAVLink 2: {mav.key}; {mav.clear} |",
+        "| 0 of {hostile} |",
+        "| 0 of {firmware}; 0 of {bitstream} |",
+        "have {full} bytes in the vehicle",
+        "(link {full.link}, IceC {full.icec}, FSMC {full.fsmc}, radio {full.radio}, "
+        "crypto {full.crypto}, endpoint {full.endpoint})",
+        "occupies {ram} of the chip's"],
+    "docs/utilisation.md": [
+        "content takes {table1.lut} LUTs, {table1.ff} flip-flops and about {table1.slices} slices",
+        "Counted in this way it is about {table1.sites},",
+        "put the sites at {table1.low} to {table1.high} and the slices at {table1.less} to "
+        "{table1.more}.",
+        "It takes {flown.sites} LUT sites ({flown.low} to {flown.high}), {flown.ff} flip-flops and "
+        "{flown.slices} slices ({flown.less} to {flown.more})",
+        "four cores takes {soc.lut} LUTs, {soc.ff} flip-flops and {soc.dsp} DSP blocks",
+        "(median {soc.mhz}) for the chip"],
+    "docs/hw-mapping.md": ["({soc.lut} LUTs, {soc.ff} flip-flops)"],
+    PICTURE.format("utilisation"): [
+        "{soc.lut} LUT ", " {soc.ff} FF ", " {soc.slices} slices ", " {soc.mhz} MHz ",
+        "flip-flops {table1.ff} ", "LUTs of the netlist {table1.lut} ",
+        "LUT sites, map's average pairing (estimate; as mapped {table1.low}-{table1.high}) "
+        "{table1.sites} ",
+        "slices (estimate; as mapped {table1.less}-{table1.more}) {table1.slices} "],
+    PICTURE.format("regression"): ["{run.failed} failed", " of {run.plan} requirements"],
+    "docs/regression.md": ["{run.failed} tests fail, and ", " of {run.plan} requirements are red"],
+}
+
+
+def text_of(picture):
+    """Returns the text that a PNG file contains; empty if it has none."""
+    data, at = Path(picture).read_bytes(), 8
+    while at < len(data):
+        size, kind = struct.unpack(">I4s", data[at:at + 8])
+        content = data[at + 8:at + 8 + size]
+        if kind == b"zTXt" and content.startswith(KEYWORD + b"\0"):
+            return zlib.decompress(content[len(KEYWORD) + 2:]).decode("utf-8")
+        at += size + 12
+    return ""
+
+
+def put_text(picture, text):
+    """Puts a text into a PNG file, after its header."""
+    data = Path(picture).read_bytes()
+    chunk = b"zTXt" + KEYWORD + b"\0\0" + zlib.compress(text.encode("utf-8"), 9)
+    header = 8 + 12 + 13  # signature, and the header's chunk
+    Path(picture).write_bytes(
+        data[:header] + struct.pack(">I", len(chunk) - 4) + chunk
+        + struct.pack(">I", zlib.crc32(chunk)) + data[header:])
+
+
+def content(tree, place):
+    """Returns the text of a page or of a picture."""
+    path = Path(tree, place)
+    return text_of(path) if place.endswith(".png") else path.read_text()
+
+
+def rows(tree):
+    """Returns the first number of each row of docs/figures.md that has one column of figures, and
+    the limit of a row, if it has one, as `limit of NAME`."""
+    found = {}
+    for name, value, limit in re.findall(
+            r"^\| ([^|]+) \| ([\d,.]+) [^|]*\| (?:limit ([\d.]+))?[^|]*\|$",
+            Path(tree, "docs/figures.md").read_text(), re.M):
+        found[name] = value.replace(",", "")
+        if limit:
+            found[f"limit of {name}"] = limit
+    return found
+
+
+def values(tree):
+    """Returns the figures that have a source, as text without separators of thousands."""
+    measured = rows(tree)
+    designs = json.loads(Path(tree, "synth/baseline.json").read_text())["designs"]
+    found = {f"{name}.{key}": str(designs[design][key])
+             for name, design in (("table1", "table1"), ("flown", "table1_flown"), ("soc", "soc"))
+             for key in ("lut", "ff", "slices", "dsp", "mhz")}
+    clear = "setParameterA and its reply on the air, in the clear; limit: MAVLink 2"
+    key = "the same with a key; limit: MAVLink 2, signed"
+    for name, row in {
+            "air.clear": clear, "mav.clear": f"limit of {clear}",
+            "air.key": key, "mav.key": f"limit of {key}",
+            "minimal": "minimal.all", "unlinked": "minimal.all without --gc-sections",
+            "hostile": "hostile packets",
+            "firmware": "new firmware: power losses, in each operation and later",
+            "bitstream": "new bitstream: power losses, in each operation and later",
+            "ram": "full: RAM with all objects and all stacks, including the main stack"}.items():
+        if row in measured:
+            found[name] = measured[row]
+    layers = {f"full.{layer}": measured[f"full.{layer}"]
+              for layer in ("link", "icec", "fsmc", "radio", "crypto", "endpoint")
+              if f"full.{layer}" in measured}
+    return {**found, **layers, "full": str(sum(map(int, layers.values())))}
+
+
+def pattern(text):
+    """Returns a place's text as a regular expression, and the names of its figures."""
+    names = re.findall(r"\{([\w.]+)\}", text)
+    parts = [re.escape(part).replace(r"\ ", r"\s+") for part in re.split(r"\{[\w.]+\}", text)]
+    return re.compile(r"([\d,]+(?:\.\d+)?)".join(parts)), names
+
+
+def differences(tree, places=None):
+    """Yields a line for each figure that differs from its source or from the place before."""
+    known = {name: (value, "its source") for name, value in values(tree).items()}
+    for place, texts in (places or PLACES).items():
+        contained = content(tree, place)
+        for text in texts:
+            regular, names = pattern(text)
+            if not (found := regular.search(contained)):
+                yield f"{place}: expected '{text}', found no such text"
+                continue
+            for name, shown in zip(names, found.groups()):
+                value, where = known.setdefault(name, (shown.replace(",", ""), place))
+                if float(shown.replace(",", "")) != float(value):
+                    yield f"{place}: {name} is {shown}, but {value} in {where}"
+
+
+def correct(tree, given=None):
+    """Writes the figures into the pages: `given`, then those of the sources. Pictures are left."""
+    known = {**values(tree), **(given or {})}
+    for place, texts in PLACES.items():
+        if place.endswith(".png"):
+            continue
+        page = Path(tree, place)
+        was = now = page.read_text()
+        for text in texts:
+            regular, names = pattern(text)
+            if not (found := regular.search(now)):
+                continue
+            for group in range(len(names), 0, -1):
+                shown, value = found[group], known.get(names[group - 1])
+                if value is not None and float(value) != float(shown.replace(",", "")):
+                    new = f"{int(value):,}" if "," in shown and "." not in value else value
+                    now = now[:found.start(group)] + new + now[found.end(group):]
+        if now != was:
+            page.write_text(now)
+            yield place
+
+
+def main(words):
+    if len(words) != 1 or words[0].startswith("-"):
+        sys.exit(__doc__)
+    wrong = list(differences(words[0]))
+    if wrong:
+        print(*wrong, "./icesoc build figures pages  # writes the pages", sep="\n")
+        print("./icesoc build figures synth pictures pages  # also retakes pictures of pages")
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -6,6 +6,8 @@ Usage: commands_test.py commands_... work-folder build-folder
 """
 import os
 import re
+import signal
+import subprocess
 from pathlib import Path
 
 from project import BUILD, REGRESS, TREE, Project, append, edit, git, main, write
@@ -134,6 +136,7 @@ class Cases(Project):
         self.assertEqual(self.said.count("100% tests passed"), 2)  # run a second time with
                                                                    # sanitizers
         self.unchanged_tests_are_left_out()
+        self.a_stopped_run_keeps_its_results()
         write("leak", "")
         self.bad("test SEED=7", "test_s.Sane")
         Path("leak").unlink()
@@ -188,6 +191,34 @@ class Cases(Project):
         self.good("test SEED=7")
         self.assertEqual(self.said.count("100% tests passed"), 2)
         Path("note").unlink()
+
+    def a_stopped_run_keeps_its_results(self):
+        """Ctrl-C during `make test`: junit.xml contains the finished tests, their passes count, and
+        no process is left."""
+        tests = Path("tests/room/CMakeLists.txt")
+        before = tests.read_text()
+        append(tests, 'add_test(NAME script.Waits COMMAND sh -c '
+                      '"[ -e ../../go ] || { sleep 1234 & wait; }")\n')
+        run = subprocess.Popen(["make", "-s", "-C", TREE, "test", "SEED=9", "TESTS=4"],
+                               env={**os.environ, "ICESOC_TREE": str(self.work), "MAKEFLAGS": ""},
+                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                               start_new_session=True)
+        said, ended = "", 0
+        for line in run.stdout:
+            said += line
+            ended += " Test " in line and " sec" in line
+            if ended == 4:
+                break
+        os.killpg(run.pid, signal.SIGINT)
+        self.said = said + run.communicate(timeout=60)[0]
+        self.has("^stopped after [4-9] of [0-9]+: [3-9] passed, [01] failed")
+        left = ["pgrep", "--session", str(run.pid), "--runstates", "D,I,R,S,T,t"]
+        self.assertEqual(subprocess.run(left, stdout=subprocess.PIPE).stdout, b"", self.said)
+        self.has("<testcase name=.test_a.One", file="build/main/junit.xml")
+        self.lacks("script.Waits", file="build/main/junit.xml")
+        write("build/main/go", "")
+        self.bad("test SEED=9", "value 9 is not 7", "^build/main: [3-9] tests have passed with the")
+        tests.write_text(before)
 
     def elsewhere(self):
         """A core outside the tree is passed to one command; all later commands know it."""

@@ -104,11 +104,6 @@ def seeded(values=None):
     return names
 
 
-@expecting("a sanitizer")
-def sanitizers(values=None):
-    return ["address", "thread"]
-
-
 def blocks(values=None):
     """Returns the folders of tests, in the form that --block takes."""
     found = {path.parent.name for folder in ("tests", "ip")

@@ -35,6 +35,7 @@ PLACES = {
         "crypto {full.crypto}, endpoint {full.endpoint})",
         "occupies {ram} of the chip's"],
     "docs/utilisation.md": [
+        "with these, Table I's content takes {table1.through}. ",
         "content takes {table1.lut} LUTs, {table1.ff} flip-flops and about {table1.slices} slices",
         "Counted in this way it is about {table1.sites},",
         "put the sites at {table1.low} to {table1.high} and the slices at {table1.less} to "
@@ -42,11 +43,13 @@ PLACES = {
         "It takes {flown.sites} LUT sites ({flown.low} to {flown.high}), {flown.ff} flip-flops and "
         "{flown.slices} slices ({flown.less} to {flown.more})",
         "four cores takes {soc.lut} LUTs, {soc.ff} flip-flops and {soc.dsp} DSP blocks",
-        "(median {soc.mhz}) for the chip"],
+        "the chip's is {soc.slowest} to {soc.fastest} MHz (median {soc.mhz})"],
     "docs/hw-mapping.md": ["({soc.lut} LUTs, {soc.ff} flip-flops)"],
     PICTURE.format("utilisation"): [
-        "{soc.lut} LUT ", " {soc.ff} FF ", " {soc.slices} slices ", " {soc.mhz} MHz ",
+        "{soc.lut} LUT ", " {soc.ff} FF ", " {soc.slices} slices ",
+        " {soc.mhz} MHz 100 are wanted; the netlist's orders have {soc.slowest} to {soc.fastest} ",
         "flip-flops {table1.ff} ", "LUTs of the netlist {table1.lut} ",
+        "LUTs and route-throughs, before map pairs them {table1.through} ",
         "LUT sites, map's average pairing (estimate; as mapped {table1.low}-{table1.high}) "
         "{table1.sites} ",
         "slices (estimate; as mapped {table1.less}-{table1.more}) {table1.slices} "],

@@ -24,6 +24,15 @@ GUARDED: dict[str, tuple[str, list[str]]] = {
     "test_ground_ice": ("ground/ice", ["gateway"])}
 
 
+# Sanitizers: build folder below build/, and value of CMake's SANITIZE.
+SANITIZERS = {"address": ("sanitized", "ON"), "thread": ("thread", "thread")}
+
+
+@choices.expecting("a sanitizer")
+def kinds(values=None):  # pylint: disable=unused-argument
+    return list(SANITIZERS)
+
+
 @choices.expecting("a test program that is built with sanitizers")
 def guarded(values=None):  # pylint: disable=unused-argument
     """Returns the names of the test programs for check sanitizers."""
@@ -93,8 +102,8 @@ def netlist(values):
 
 
 @command("check sanitizers",
-         [Option("kinds", WORDS, "sanitizers to use: address or thread", ["address", "thread"],
-                 choices=choices.sanitizers),
+         [Option("kinds", WORDS, f"sanitizers to use: {', '.join(SANITIZERS)}", list(SANITIZERS),
+                 choices=kinds),
           Option("programs", WORDS, f"test programs to run: {', '.join(GUARDED)}", list(GUARDED),
                  choices=guarded),
           BUILD, JOBS],
@@ -109,11 +118,9 @@ def sanitizers(values):
     Builds IceC, engine, gateway and plugin with both sanitizers and runs their tests.
     Afterwards it fuzzes the stub of the debugger.
     """
-    folders = {"address": ("sanitized", "ON"), "thread": ("thread", "thread")}
     build, status = configured(values, tests=True), 0
     for name in values.kinds:  # build/sanitized is the folder of the tests, so another one is used
-                               # here
-        kind, option = folders[name]
+        kind, option = SANITIZERS[name]
         folder = BuildFolder(f"build/{kind}", values)
         folder.configure(f"-DSANITIZE={option}", f"-DROOMS={ROOMS_OF_PROGRAMS}")
         environment = {

@@ -91,9 +91,11 @@ def changed_tests(build, values, tests, seed, label=""):
         return 0
     numbers = build / "changed.tests"
     write_numbers(numbers, some)
-    status = build.ctest("-I", numbers.absolute(), tests=tests, check=False, **seed)
-    passes.note(build / "junit.xml")
-    return status
+    (build / "junit.xml").unlink(missing_ok=True)
+    try:
+        return build.ctest("-I", numbers.absolute(), tests=tests, check=False, **seed)
+    finally:  # also after Ctrl-C: junit.xml then contains the finished tests
+        passes.note(build / "junit.xml")
 
 
 @command("regress", [

@@ -90,8 +90,10 @@ class Cases(Script):
             picture = figures.PICTURE.format("utilisation")
             text = figures.text_of(Path(copy, picture))
             shutil.copy(TREE / "docs/pictures/mission.png", Path(copy, picture))
-            self.assertTrue(all(line.startswith(picture) and "found no such text" in line
-                                for line in figures.differences(copy)))
+            wrong = list(figures.differences(copy))
+            self.assertTrue(wrong)
+            for line in wrong:
+                self.assertRegex(line, "expected '.*', found no such text|in docs/utilisation.md")
             figures.put_text(Path(copy, picture), text)
             self.assertEqual(list(figures.differences(copy)), [])
 

@@ -55,7 +55,7 @@ protected:
     }
 
     EngineLog log_;
-    Rig rig_{testSeed()};
+    Rig rig_{testSeed(), 8};
 };
 
 TEST_F(EngineTest, MoreProgramsThanChannelsWaitTheirTurn) {
@@ -131,8 +131,9 @@ TEST_F(EngineTest, WhatIsLateIsWithdrawnAndItsSenderIsTold) {
     rig_.with([&] { rig_.uav.refuse = false; });
     const int next = engine->connect(1, 2000);
     echoes(next, 3);
-    rig_.with(
-        [&] { EXPECT_EQ(rig_.uav.received, decltype(rig_.uav.received)(1, {1, message(3)})); });
+    rig_.with([&] {
+        EXPECT_EQ(rig_.uav.received, decltype(rig_.uav.received)(1, {1, message(3)}));
+    });
     close(next);
 }
 

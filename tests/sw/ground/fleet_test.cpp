@@ -39,7 +39,9 @@ public:
         modem_->advance(rig_.ns());
         frames_.feed(
             line_.received.data(), line_.received.size(),
-            [this](int, const uint8_t* data, size_t size) { take({data, data + size}); },
+            [this](int, const uint8_t* data, size_t size) {
+                take({data, data + size});
+            },
             [](const Rig::Bytes&) {});
         line_.received.clear();
     }
@@ -151,7 +153,7 @@ protected:
 
     EngineLog log_;
     XBeeAT::Settings settings_;
-    Rig rig_{testSeed()};
+    Rig rig_{testSeed(), 8};
     std::map<int, size_t> taken_; // received bytes, by address
     std::map<int, std::unique_ptr<Uav>> vehicles_;
     std::list<Hearer> hearers_; // receivers of calls to all vehicles

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
 """everything: declares all commands, which takes a tenth of a second."""
 from icesoc.cli.commands import (  # noqa: F401 (each declares its commands)
-    flights, call, core, foreign, board, bringup, synth, build, figures, regression, checks, coverage,
-    fresh, package, docs, release, tree)
+    flights, call, core, foreign, board, bringup, synth, build, figures, regression, checks,
+    coverage, fresh, package, docs, release, tree)

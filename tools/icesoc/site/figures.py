@@ -25,9 +25,11 @@ PLACES = {
         "| {minimal}; {unlinked} without `--gc-sections` |",
         "| {table1.sites} ({table1.low} to {table1.high}) / {table1.ff} / {table1.slices} "
         "({table1.less} to {table1.more}) |",
-        "API frames (`make synth DESIGN=table1_flown`) | {flown.sites} ({flown.low} to {flown.high}) / {flown.ff} / {flown.slices} "
+        "API frames (`make synth DESIGN=table1_flown`) | {flown.sites} ({flown.low} to "
+        "{flown.high}) / {flown.ff} / {flown.slices} "
         "({flown.less} to {flown.more}) |",
-        "(`make test NAME=CallBytes`) | {air.key}; {air.clear} | MAVLink 2: {mav.key}; {mav.clear} |",
+        "(`make test NAME=CallBytes`) | {air.key}; {air.clear} | "
+        "MAVLink 2: {mav.key}; {mav.clear} |",
         "| 0 of {hostile} |",
         "| 0 of {firmware}; 0 of {bitstream} |",
         "have {full} bytes in the vehicle",

@@ -53,7 +53,7 @@ def figures_of_synth(report):
 
 
 @command("build figures", [
-    Option("steps", WORDS, f"what to do: {', '.join(STEPS)}", STEPS, positional=True,
+    Option("steps", WORDS, f"steps to run: {', '.join(STEPS)}", STEPS, positional=True,
            choices=steps)], make="figures", brief="build figures pages",
          examples=[
              "build figures",

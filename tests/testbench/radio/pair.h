@@ -78,7 +78,7 @@ protected:
         RfChannel::Outcome outcome;
     };
     std::string profile = "s1"; // both modems', since power()
-    bool perfect = true; // RfWeather's, since power()
+    bool perfect = true;        // RfWeather's, since power()
     uint64_t now = 0;
     RfChannel air{testSeed()};
     HostLine lineA, lineB;

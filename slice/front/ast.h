@@ -158,8 +158,8 @@ struct Declaration {
     } facts;
     void complete();
 
-    std::string id() const; // returns ::Module::Sub::Name Returns whether this declaration is
-                            // `other` or derives from it.
+    std::string id() const; // returns ::Module::Sub::Name
+    // Returns whether this declaration is `other` or derives from it.
     bool isA(const Declaration& other) const;
     // Returns whether slices of unknown derived types are preserved: ["preserve-slice"] is set here
     // or on a base.

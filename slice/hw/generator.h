@@ -35,9 +35,9 @@ struct Piece {
     unsigned portLsb = 0, portWidth = 0;
     unsigned exception = 0; // 0 for a value of the call or its results; n for a member of the n-th
                             // exception
-    bool isCode = false;    // true for the code of an exception: 0, or the exception's number The
-                            // number of elements of a
-    // sequence, which is in DDR3, `offset` bytes after the start of the slot's buffers.
+    bool isCode = false;    // true for the code of an exception: 0, or the exception's number
+    // The number of elements of a sequence, which is in DDR3, `offset` bytes after the start of the
+    // slot's buffers.
     bool isCount = false;
     unsigned offset = 0, most = 0, elementBytes = 0;
 };

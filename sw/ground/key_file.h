@@ -27,9 +27,9 @@ std::string readSecret(const std::string& path);
 
 class KeyFile {
 public:
-    KeyFile() = default; // without keys: communication with every vehicle is unencrypted Reads a
-                         // file. Throws
-    // std::runtime_error, with advice, if readSecret does or if a line is invalid.
+    KeyFile() = default; // without keys: communication with every vehicle is unencrypted
+    // Reads a file. Throws std::runtime_error, with advice, if readSecret does or if a line is
+    // invalid.
     explicit KeyFile(const std::string& path);
 
     // Returns the keys of a vehicle; throws std::runtime_error if the file has none.

@@ -61,10 +61,10 @@ public:
     // message. -1 disables this. Returns -1 with EBUSY while another ground station with the same
     // address is connected to the vehicle.
     int connect(int channel, int lateMs = -1);
-    size_t waiting() const; // number of programs that wait for a channel Lets the peer open
-                            // connections. Each new connection
-    // makes the returned descriptor readable, even after the serial port was lost and found again.
-    // Returns -1 if another program already listens.
+    size_t waiting() const; // number of programs that wait for a channel
+    // Lets the peer open connections. Each new connection makes the returned descriptor readable,
+    // even after the serial port was lost and found again. Returns -1 if another program already
+    // listens.
     int listen();
     // Takes a connection that the peer opened. Returns a socket for the program, or -1 if the peer
     // has not opened a connection.
@@ -106,9 +106,8 @@ protected:
     virtual bool openChannel(int channel) = 0; // opens a channel for a program
     virtual void opened(ProgramConnection& program, U32 now) = 0;
     virtual void closeChannel(int channel) = 0;
-    virtual U32 longestMessage() const = 0; // to be called with the lock held Sends the next
-                                            // message of a connection. Returns whether the
-                                            // message was accepted.
+    virtual U32 longestMessage() const = 0; // to be called with the lock held
+    // Sends the next message of a connection. Returns whether the message was accepted.
     virtual bool send(int channel, U32 now) = 0;
     // Does the work that is due for the derived class. Returns the time of the next call, in
     // microseconds.

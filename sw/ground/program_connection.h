@@ -85,9 +85,9 @@ public:
     U32 silentUs(U32 nowUs) const;
     // Sends Ice's CloseConnection to the program, which may then open another connection.
     void sayGoodbye(U32 nowUs);
-    void greet(U32 nowUs); // sends the first message of a server Removes the next message, a
-                           // two-way call, and replies to it
-                           // with an error that contains `text`.
+    void greet(U32 nowUs); // sends the first message of a server
+    // Removes the next message, a two-way call, and replies to it with an error that contains
+    // `text`.
     void refuse(const std::string& why, U32 nowUs);
 
     static constexpr size_t mostUnread = 64 * 1024; // bytes

@@ -219,9 +219,8 @@ private:
         unsigned number = 0;
         uint32_t cfsrBits = 0;
         std::string text;
-    } synchronous_; // fault that the current instruction caused The write buffer of one entry (TRM
-                    // r2p1, 3.5): a
-    // pending store to a window.
+    } synchronous_; // fault that the current instruction caused
+    // The write buffer of one entry (TRM r2p1, 3.5): a pending store to a window.
     struct BufferedStore {
         uint32_t address = 0, value = 0;
         unsigned bytes = 0; // size of the pending store; 0 means that the buffer is empty

@@ -83,8 +83,8 @@ struct RfWeather {
            burstLoss = 0.9; // bursts of loss (Gilbert-Elliott model),
                             // decided for each packet or each 10 ms
     double duplication = 0, corruption = 0;
-    uint64_t delayNs = 0; // delay in addition to the time on the air, ns Loss at the MAC: of one
-                          // try, or of its acknowledgement; the MAC then retries.
+    uint64_t delayNs = 0; // delay in addition to the time on the air, ns
+    // Probability that one try of the MAC, or its acknowledgement, is lost; the MAC then retries.
     double tryLoss = 0, ackLoss = 0;
     // Distance in free space with Rayleigh fading per try, m; 0 disables it.
     double distance = 0;

@@ -16,9 +16,9 @@
 class M3Machine {
 public:
     struct Config {
-        std::string firmware; // ELF file Processor clock (HCLK), Hz in simulated time. With 120
-                              // MHz, the processor's work takes
-        // as long as on the board, although the FPGA's clock is slower. With 0, HCLK is 6/5 of the
+        std::string firmware; // ELF file
+        // Processor clock (HCLK), Hz in simulated time. With 120 MHz, the processor's work takes as
+        // long as on the board, although the FPGA's clock is slower. With 0, HCLK is 6/5 of the
         // FPGA's clock, as it always is for FSMC accesses: cycle counts are then as on the board,
         // and the processor is slowed down by the same factor as the FPGA.
         uint32_t hclkHz = 120'000'000;

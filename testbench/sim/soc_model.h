@@ -59,11 +59,8 @@ public:
         wake();
         skips_ = !all;
     }
-    uint64_t evaluated() const {
-        return evaluated_;
-    } // number of clocks that were evaluated Returns the name of the core that changed in most of
-      // these
-      // clocks; empty if no core did.
+    uint64_t evaluated() const { return evaluated_; } // number of clocks that were evaluated
+    // Returns the name of the core that changed in most of these clocks; empty if no core did.
     std::string mover() const { return span_.mover(); }
 
     // Returns the complete current state of the chip.

@@ -68,7 +68,7 @@ class Values(Work):
         self.assertIn(f"'{odd}' is not a core", ask("./icesoc", "core", "remove", odd)[1])
 
     def test_both_doors_give_the_same_values(self):
-        samples = {"N": "3", "VALUE": "a", "FOLDER": "x", "WxH": "96x64", "TIME": "60s",
+        samples = {"N": "3", "VALUE": "a", "FOLDER": "tools", "WxH": "96x64", "TIME": "60s",
                    "N|random": "random", "WORD": "a b"}
         for each in command.COMMANDS.values():
             if not each.make:
@@ -155,7 +155,11 @@ MISTAKES = {
     "./icesoc run --replay nowhere": "contains no recorded flight",
     "./icesoc core test --ip a-b": "IP: expected the name of a core, got 'a-b'",
     "./icesoc run --key no.key": "./icesoc key",
-    "./icesoc run --again Makefile": "cannot read the flight",
+    "./icesoc run --again Makefile": "expected JSON, got other text in line 1",
+    "./icesoc run --again nope": "cannot read the flight 'nope': No such file",
+    "./icesoc build all --ucos2 nope": "--ucos2: expected an existing folder, got 'nope'",
+    "./icesoc check fresh --packages nope": "--packages: expected an existing folder",
+    "./icesoc run --wire=yes": "--wire: expected no value, got 'yes'",
     "./icesoc run --again tools/icesoc/cli/flight.schema.json":
     "is not a flight: expected version 4",
     "./icesoc contract": "contract: expected a command: diff, from-rdl",

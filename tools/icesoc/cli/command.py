@@ -95,6 +95,9 @@ class Command:
         parser = self.parser()
 
         def refuse(text):
+            text = re.sub(r"^argument (\S+): ignored explicit argument (.*)",
+                          r"\1: expected no value, got \2", text)
+            text = re.sub(r"^argument (\S+): ", r"\1: ", text)
             raise Stop(f"{self.name}: {text} ({self.program} --help)", 2)
 
         parser.error = refuse

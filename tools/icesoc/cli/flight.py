@@ -147,8 +147,11 @@ def read(path):
     """Returns the description of a flight in a file."""
     try:
         flight = json.loads(Path(path).read_text())
-    except (OSError, json.JSONDecodeError) as error:
-        raise Stop(f"cannot read the flight '{path}': {error}", 2) from None
+    except OSError as error:
+        raise Stop(f"cannot read the flight '{path}': {error.strerror}", 2) from None
+    except json.JSONDecodeError as error:
+        raise Stop(f"cannot read the flight '{path}': expected JSON, got other text in line "
+                   f"{error.lineno}", 2) from None
     except (ValueError, RecursionError):
         raise Stop(f"the flight '{path}': expected JSON in UTF-8, got invalid or too deeply "
                    "nested text", 2) from None

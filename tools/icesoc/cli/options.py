@@ -91,7 +91,7 @@ class Option:
         """Returns the help text: meaning, possible values, default."""
         shown = " ".join(self.default) if isinstance(self.default, list) else self.default
         parts = [] if self.kind in (TEXT, WORDS, FILES, ARGUMENTS, SWITCH, FILE, KEY_FILE, FOLDER,
-                                    PATH, FLIGHT) else [self.kind.expected]
+                                    INPUT_FOLDER, PATH, FLIGHT) else [self.kind.expected]
         parts += [f"default {shown}"] if shown is not None and shown != "" else []
         return (self.help + (f" ({'; '.join(parts)})" if parts else "")).replace("%", "%%")
 
@@ -145,6 +145,13 @@ def _file(text):
     return text
 
 
+def _folder(text):
+    """Checks that a folder exists, before anything is built."""
+    if not os.path.isdir(text):
+        raise ValueError
+    return text
+
+
 def _key(text):
     if not os.path.isfile(text):
         raise ValueError(f"key file '{text}' does not exist; create one with ./icesoc key '{text}'")
@@ -173,6 +180,7 @@ ARGUMENTS = Kind(str, "words, each as it is", metavar="WORD")
 SWITCH = Kind(_switch, "1 or 0", {"type": "boolean"})
 FILE = Kind(_file, "a readable file", {"type": "string"}, "FILE")
 FOLDER = Kind(str, "a folder", {"type": "string"}, "FOLDER")
+INPUT_FOLDER = Kind(_folder, "an existing folder", {"type": "string"}, "FOLDER")
 PATH = Kind(str, "a file name", {"type": "string"}, "FILE")
 KEY_FILE = Kind(_key, "a readable file", {"type": "string"}, "FILE")
 FLIGHT = Kind(_flight, "the folder of a recorded flight", {"type": "string"}, "FOLDER")
@@ -182,8 +190,8 @@ SHARE = number(0, 1, convert=float)
 COUNT = number(1)
 SECONDS = number(0, unit="s", convert=float)
 MINUTES = number(0.001, unit="minutes", convert=float)
-PATHS = (FILE, KEY_FILE, FOLDER, PATH, FLIGHT)  # kinds whose values are paths relative to the
-                                                # caller's folder
+# Kinds whose values are paths relative to the caller's folder.
+PATHS = (FILE, KEY_FILE, FOLDER, INPUT_FOLDER, PATH, FLIGHT)
 
 BUILD = Option("build", FOLDER, "build folder", "build/main")
 JOBS = Option("jobs", COUNT, "parallel build processes", len(os.sched_getaffinity(0)))
@@ -199,7 +207,7 @@ LABEL = Option("label", TEXT,
                choices=choices.labels, has_name=choices.has_label)
 BLOCK = Option("block", TEXT, "block to test, such as bus or modem", choices=choices.blocks,
                is_checked=False)
-UCOS2 = Option("ucos2", FOLDER,
+UCOS2 = Option("ucos2", INPUT_FOLDER,
                "folder of uC/OS-II sources, to build the firmware with this kernel in addition "
                "(docs/firmware.md)")
 FRESH = Option("fresh", SWITCH,

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from icesoc.cli.build_folder import BuildFolder, configured
 from icesoc.cli.command import DEFAULTS, GROUPS, command
-from icesoc.cli.options import BUILD, FOLDER, JOBS, UCOS2, WORDS, Option
+from icesoc.cli.options import BUILD, FOLDER, INPUT_FOLDER, JOBS, UCOS2, WORDS, Option
 from icesoc.site.figures import put_text
 from icesoc.util.browser import Browser
 from icesoc.util.console import say
@@ -171,7 +171,7 @@ def shoot_live(path, profile, icesoc):
            "pictures to take: mission, live, utilisation, regression, or failure (needs a failed "
            "test)",
            ["mission", "live", "utilisation", "regression"], positional=True),
-    Option("from", FOLDER, "folder with the pages", "build"),
+    Option("from", INPUT_FOLDER, "folder with the pages", "build"),
     Option("to", FOLDER, "output folder", "docs/pictures")], make="pictures",
          brief="build pictures mission --to build/brief", examples=[
              "build pictures",

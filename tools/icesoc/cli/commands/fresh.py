@@ -15,7 +15,7 @@ import time
 from pathlib import Path
 
 from icesoc.cli.command import command
-from icesoc.cli.options import FOLDER, SWITCH, TEXT, Option, one_of
+from icesoc.cli.options import FOLDER, INPUT_FOLDER, SWITCH, TEXT, Option, one_of
 from icesoc.util.console import say
 from icesoc.util.errors import Stop
 from icesoc.util.process import output, run
@@ -37,7 +37,7 @@ mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd $3 && $2"
     Option("again", SWITCH, "reuse the existing systems, with the current HEAD"),
     Option("steps", TEXT, "commands to run instead of the README's, separated by ;",
            "; ".join([*README, PACKAGES])),
-    Option("packages", FOLDER, "only test the Debian packages in this folder, in a new system of "
+    Option("packages", INPUT_FOLDER, "only test the Debian packages in this folder, in a new system of "
                                "that --release"),
     Option("folder", FOLDER, "folder for the systems and logs, 8 GB each", "/var/tmp/icesoc-fresh"),
     Option("list", SWITCH, "only print earlier results, with status and minutes")],

@@ -97,6 +97,7 @@ class Cases(Script):
         own = f"http://127.0.0.1:{page}"
         with urllib.request.urlopen(own) as served:
             cookie = served.headers["Set-Cookie"].split(";")[0]
+            self.assertNotIn("Secure", served.headers["Set-Cookie"])
             self.assertIn(f"connect-src 'self' ws://127.0.0.1:{calls} ",
                           served.headers["Content-Security-Policy"])
         with self.assertRaises(urllib.error.HTTPError):
@@ -168,6 +169,8 @@ class Cases(Script):
                      "--rights", "rights.json", *security, wanted="The vehicle: https")
         context = ssl.create_default_context(cafile="authority.pem")
         context.check_hostname = False
+        with urllib.request.urlopen(f"https://127.0.0.1:{page}", context=context) as served:
+            self.assertIn("; Secure", served.headers["Set-Cookie"])
         try:  # without a certificate: the gateway sends an alert, or has closed before it is read
             with context.wrap_socket(socket.create_connection(("127.0.0.1", calls))) as connection:
                 connection.sendall(b"GET / HTTP/1.1\r\n\r\n")

@@ -55,7 +55,7 @@ protected:
     }
 
     EngineLog log_;
-    Rig rig_{testSeed(), 8};
+    Rig rig_{testSeed()};
 };
 
 TEST_F(EngineTest, MoreProgramsThanChannelsWaitTheirTurn) {

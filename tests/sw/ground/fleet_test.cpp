@@ -151,7 +151,7 @@ protected:
 
     EngineLog log_;
     XBeeAT::Settings settings_;
-    Rig rig_{testSeed(), 8};
+    Rig rig_{testSeed()};
     std::map<int, size_t> taken_; // received bytes, by address
     std::map<int, std::unique_ptr<Uav>> vehicles_;
     std::list<Hearer> hearers_; // receivers of calls to all vehicles

@@ -37,8 +37,8 @@ mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd $3 && $2"
     Option("again", SWITCH, "reuse the existing systems, with the current HEAD"),
     Option("steps", TEXT, "commands to run instead of the README's, separated by ;",
            "; ".join([*README, PACKAGES])),
-    Option("packages", INPUT_FOLDER, "only test the Debian packages in this folder, in a new system "
-                                     "of that --release"),
+    Option("packages", INPUT_FOLDER, "only test the Debian packages in this folder, in a new "
+                                     "system of that --release"),
     Option("folder", FOLDER, "folder for the systems and logs, 8 GB each", "/var/tmp/icesoc-fresh"),
     Option("list", SWITCH, "only print earlier results, with status and minutes")],
          brief="check fresh --list", long="check fresh", examples=[

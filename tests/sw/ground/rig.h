@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // rig: the other end of the ground's serial port: a modem on a pty, the air, and a UAV made of a
-// modem and a link layer. Simulated time follows the machine clock, or runs faster. It waits
+// modem and a link layer. Simulated time follows the machine clock, but waits
 // for an engine that keeps step: on a busy machine, time passes slowly and no time-out is early.
 
 #pragma once
@@ -92,10 +92,7 @@ class Rig {
 public:
     using Bytes = Uav::Bytes;
 
-    // `speed`: simulated time over the machine clock, for engines that keep step. Programs that do
-    // not, such as those of stock Ice, need 1.
-    explicit Rig(uint64_t seed, uint64_t speed = 1)
-        : air(seed), elsewhere(seed), uav(air, 1, seed), speed_(speed) {
+    explicit Rig(uint64_t seed) : air(seed), elsewhere(seed), uav(air, 1, seed) {
         replaceGround({});
         Link_start(uav.link(), us());
         thread_ = std::thread([this] { run(); });
@@ -186,7 +183,7 @@ private:
             {
                 std::lock_guard<std::mutex> lock(mutex_);
                 auto now = Steady::now();
-                now_ += std::min(speed_ * static_cast<uint64_t>((now - last).count()), longestNs);
+                now_ += std::min(static_cast<uint64_t>((now - last).count()), longestNs);
                 last = now;
                 clock_.set(now_);
                 air.advance(now_);
@@ -207,7 +204,6 @@ private:
         return !stop_ && std::chrono::steady_clock::now() - waiting_ < std::chrono::seconds(5);
     }
 
-    const uint64_t speed_;
     std::atomic<bool> stop_{false};
     uint64_t now_ = 0;
     ClockFile clock_;

@@ -68,8 +68,8 @@ class Values(Work):
         self.assertIn(f"'{odd}' is not a core", ask("./icesoc", "core", "remove", odd)[1])
 
     def test_both_doors_give_the_same_values(self):
-        samples = {"N": "3", "VALUE": "a", "FOLDER": "tools", "WxH": "96x64", "TIME": "60s",
-                   "N|random": "random", "WORD": "a b"}
+        samples = {"N": "3", "VALUE": "a", "FOLDER": str(TREE / "tools"), "WxH": "96x64",
+                   "TIME": "60s", "N|random": "random", "WORD": "a b"}
         for each in command.COMMANDS.values():
             if not each.make:
                 continue

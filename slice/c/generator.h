@@ -13,8 +13,10 @@ struct CFileNames {
     std::string base;                  // "Printer"
     std::string headerExtension = "h"; // without the dot
     std::string sourceExtension = "c";
-    std::string path;                  // "folder/Printer.h": the header, as in include directives
-    std::string includeDir;            // prefix of the header in include directives, may be empty
+    // path of the header in include directives, such as "folder/Printer.h"
+    std::string path;
+    // prefix of other headers in include directives; may be empty
+    std::string includeDir;
     std::vector<std::string> includes; // headers of the Slice files that the main file includes
 };
 
@@ -22,15 +24,17 @@ struct CFileNames {
 // exists.
 std::vector<std::string> limitFiles(const std::vector<std::string>& files);
 
-// Adds the metadata of these files to the definitions that they name; it goes before the source's.
+// Adds metadata from limits files to the definitions that they name, before the metadata
+// that the source has.
 void addLimits(Unit& unit, const std::vector<std::string>& files, Diagnostics& diagnostics);
 
-// Gives the enumerators of an enum their long names, as ["c:scoped"] does, if a short one is used
-// by another name of the same file. Declarations in other files are ignored, because they may be
-// included or not.
+// Gives the enumerators of an enum long names, as ["c:scoped"] does, if one of the short names is
+// also another name in the same file. Other files are ignored, because a program may or may not
+// include them.
 void scopeEnumerators(Unit& unit);
 
-// Reports definitions that C cannot map, or would map to one name twice. Call it before generateC.
+// Reports definitions that cannot be mapped to C, and definitions that would get the same C name.
+// Call this before generateC.
 void checkC(const Unit& unit, const CFileNames& names, Diagnostics& diagnostics);
 
 std::vector<GeneratedFile> generateC(const Unit& unit, const CFileNames& names);

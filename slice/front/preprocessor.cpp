@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// preprocessor: one run of libmcpp over a file, output in memory.
+// preprocessor: runs libmcpp over one file and keeps the output in memory.
 
 #include "front/front.h"
 extern "C" {
@@ -19,8 +19,8 @@ void addOnce(std::vector<std::string>& list, const std::string& name) {
         list.push_back(name);
 }
 
-// Returns the path of `name`, included by `includer`: libmcpp leaves a name relative to the
-// includer's folder unchanged, or appends it to the -I folder of the includer.
+// Returns the path of `name`, a file included by `includer`. libmcpp reports it either as written,
+// relative to the folder of the includer, or appended to the -I folder of the includer.
 std::string placeOf(const std::string& name, const std::string& includer) {
     std::error_code error;
     std::filesystem::path path = name, folder = std::filesystem::path(includer).parent_path();
@@ -37,8 +37,8 @@ std::string placeOf(const std::string& name, const std::string& includer) {
     return name;
 }
 
-// Follows the markers: #line 1 "file" enters a file, any other name returns to an enclosing one.
-// Each gets the file's path.
+// Finds the path of each file by following the markers: #line 1 "file" enters a file, any other
+// name returns to an enclosing file.
 void findFiles(Preprocessed& p) {
     std::vector<std::string> open, places;
     for (size_t at = 0; (at = p.text.find("#line ", at)) != std::string::npos;) {
@@ -65,7 +65,7 @@ void findFiles(Preprocessed& p) {
     }
 }
 
-// Repeats the number of the last line: libmcpp counts comments at the end of a file twice.
+// Repeats the number of the last line, because libmcpp counts comments at the end of a file twice.
 void markEnd(Preprocessed& p, const std::string& file) {
     size_t end = p.text.find('\n');
     if (p.text.compare(0, 8, "#line 1 ") != 0)
@@ -77,10 +77,11 @@ void markEnd(Preprocessed& p, const std::string& file) {
     p.text += "#line " + std::to_string(lines) + p.text.substr(7, end - 6);
 }
 
-// libmcpp's limit of a line, with lines joined to it by a backslash.
+// libmcpp's limit for a line, including lines joined to it by a backslash, bytes
 constexpr size_t longestLine = 65500;
 
-// Returns a message about the line of `file`, or of an included file, that exceeds libmcpp's limit.
+// Returns an error message that names the line, in `file` or in an included file, that exceeds
+// libmcpp's limit.
 std::string tooLongLine(const std::filesystem::path& file, const std::vector<std::string>& options,
                         std::set<std::filesystem::path>& seen) {
     std::ifstream in(file, std::ios::binary);
@@ -116,13 +117,14 @@ std::string tooLongLine(const std::filesystem::path& file, const std::vector<std
     return "";
 }
 
-// Removes messages that Ice's compilers do not print: about foreign line ends, and a missing one.
+// Removes two messages that Ice's compilers do not print: about line ends of other systems, and
+// about a missing line end.
 std::string withoutLineEnds(const std::string& messages) {
     std::istringstream in(messages);
     std::string kept;
     bool isSkipped = false;
     for (std::string line; std::getline(in, line);) {
-        // true for the source line of a message, and for lines that name the including file
+        // true for a line that shows source text, or names the including file
         bool continues = !line.empty() && line[0] == ' ';
         isSkipped = (isSkipped && continues) ||
                     line.find(": warning: Converted [CR+LF] to [LF]") != std::string::npos ||

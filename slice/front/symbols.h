@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// symbols: Slice's keywords, the identifiers that Slice allows, and the table of declared names.
-// Slice forbids names that differ in capitals only, so the table ignores capitals and compares them
-// itself.
+// symbols: keeps the table of declared names, and knows Slice's keywords and rules for identifiers.
+// Slice forbids names that differ only in capitals, so the table ignores capitals when it searches
+// and then compares them.
 
 #pragma once
 
@@ -30,7 +30,7 @@ struct Symbol {
     Kind kind = Kind::Module;
     std::string id; // "::A::B"
     Location at;
-    Declaration* declaration = nullptr; // the declaration; an enumerator's enum
+    Declaration* declaration = nullptr; // the declared definition; for an enumerator, its enum
     size_t enumerator = 0;
 };
 
@@ -38,22 +38,23 @@ class Symbols {
 public:
     explicit Symbols(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
 
-    // The symbol with this full name, ignoring capitals.
+    // Returns the symbol with this full name, ignoring capitals.
     Symbol* find(const std::string& id);
-    // Declares `name` in `scope` ("" or "::A::B"): a new symbol, or the existing one. 0: an error
-    // was reported.
+    // Declares `name` in `scope` ("" or "::A::B"). Returns the new or the already existing symbol,
+    // or 0 after it has reported an error.
     Symbol* declare(const std::string& scope, const std::string& name, const Location& at,
                     bool& isNew);
-    // Finds the meaning of `written` in `scope`, from the inside out; returns 0 if none.
-    // `user`, a module or a type, must not give the name another meaning later.
+    // Finds the symbol that `written` means in `scope`, from the innermost scope outwards; returns
+    // 0 if none. Records the meaning for `user`, a module or a type, which must not use the name
+    // with another meaning later.
     Symbol* resolve(const std::string& scope, const std::string& written, const Location& at,
                     const std::string& user);
-    // The same for any capitals, and without a user.
+    // Does the same as resolve, but ignores capitals and records nothing.
     Symbol* innermost(const std::string& scope, const std::string& written);
-    // True if `user` has used the name for something else before; reports an error.
+    // Returns true, and reports an error, if `user` has used the name with another meaning before.
     bool hasChanged(const std::string& user, const std::string& name, const Location& at);
-    // Enumerators with this name of any enum in the scope, or around it: Ice still allows them
-    // without their enum.
+    // Declares and returns enumerators by their name alone, as seen in a scope or the scopes around
+    // it; Ice still allows an enumerator without the name of its enum.
     void declareBare(const std::string& scope, const std::string& name, Symbol* enumerator);
     const std::vector<Symbol*>& bare(const std::string& scope, const std::string& name) const;
 
@@ -62,5 +63,5 @@ private:
     std::unordered_map<std::string, Symbol> table_; // keyed by the name in lower case
     std::unordered_map<std::string, std::vector<Symbol*>> bare_;
     std::unordered_map<std::string, std::string>
-        used_; // first components used in a scope, with their meaning
+        used_; // first components of names used in a scope, and their meaning
 };

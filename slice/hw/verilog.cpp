@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// verilog: generates the wrapper over bus_registers: from words to ports with the names of the
-// interface.
+// verilog: generates the wrapper around bus_registers, which connects words of the bus to ports
+// named after the interface.
 
 #include "hw/generator.h"
 #include <map>
@@ -18,18 +18,18 @@ std::string slice(const std::string& vector, unsigned lsb, unsigned width) {
     return vector + "[" + (width == 1 ? low : std::to_string(lsb + width - 1) + ":" + low) + "]";
 }
 
-// The port of a piece, or the piece's bits of the port.
+// Returns the port of a piece, or the bits of the port that the piece covers.
 std::string portOf(const Word& word, const Piece& p) {
     std::string port = word.call + "_" + p.name + (word.isOut ? "_i" : "_o");
     return p.portWidth > 32 ? slice(port, p.portLsb, p.width) : port;
 }
 
-// Index of a word in the vectors of bus_registers.
+// Returns the index of a word's first bit in the vectors of bus_registers.
 unsigned base(unsigned word) {
     return 32 * (word % slotWords - firstWord);
 }
 
-// Returns the suffix of a page's signals; empty for page 0.
+// Returns the suffix of the signals of a page; page 0 has none.
 std::string suffix(unsigned word) {
     return word < slotWords ? "" : std::to_string(word / slotWords);
 }
@@ -119,7 +119,7 @@ void pages(Writer& w, const Block& b) {
     }
 }
 
-// A binary constant with a bit for each call up to the last that has an event.
+// Returns a binary constant with one bit for each call, up to the last call with an event.
 template <class Choose> std::string bits(const Block& b, Choose choose) {
     std::string text;
     for (unsigned bit = b.events(); bit-- > 0;)
@@ -127,7 +127,8 @@ template <class Choose> std::string bits(const Block& b, Choose choose) {
     return std::to_string(b.events()) + "'b" + text;
 }
 
-// busy from start to done; a start while busy, and a done without, have no effect.
+// Writes the busy bits. A call is busy from start to done; a start while it is busy, or a done
+// while it is not, has no effect.
 void longCalls(Writer& w, const Block& b) {
     std::string n = std::to_string(b.events()), top = std::to_string(b.events() - 1);
     std::string done, refused;
@@ -166,7 +167,7 @@ void longCalls(Writer& w, const Block& b) {
 // Writes the read values of a page, starting with word number `first`.
 void results(Writer& w, const Block& b, unsigned first) {
     std::string shown = "shown" + suffix(first);
-    unsigned next = 0; // bits of `shown` below it are assigned
+    unsigned next = 0; // number of the lowest bit of `shown` that is not assigned yet
     auto zero = [&](unsigned until) {
         if (next < until)
             w.line("    assign " + slice(shown, next, until - next) + " = " +
@@ -192,8 +193,8 @@ void results(Writer& w, const Block& b, unsigned first) {
     zero(32 * (slotWords - firstWord));
 }
 
-// Writes the address of a sequence. The buffers are aligned to a multiple of their size, so the
-// offset replaces low bits and nothing is added.
+// Writes the address of a sequence. A buffer is aligned to a multiple of its size, so the offset
+// replaces low bits and no adder is needed.
 void base(Writer& w, const Block& b, const Call& c, const Piece& p) {
     unsigned lsb = b.memoryLsb();
     w.line("    assign " + c.name + "_" + baseName(p) + "_o = {" +

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// vhdl: generates the wrapper in VHDL, for designs entirely in VHDL: an entity with the same ports
-// and the same behaviour in each clock as the Verilog wrapper, in VHDL-93 and later.
+// vhdl: generates the wrapper as a VHDL entity (VHDL-93 and later), for designs that are entirely
+// in VHDL. Its ports, and its behaviour in each clock, are those of the Verilog wrapper.
 
 #include "front/symbols.h"
 #include "hw/generator.h"
@@ -47,7 +47,7 @@ std::string number(unsigned n) {
     return std::to_string(n);
 }
 
-// `width` bits of a vector; a single bit is a std_logic.
+// Returns `width` bits of a vector, starting at `lsb`; a single bit is a std_logic.
 std::string slice(const std::string& vector, unsigned lsb, unsigned width) {
     return vector + "(" + (width == 1 ? "" : number(lsb + width - 1) + " downto ") + number(lsb) +
            ")";
@@ -64,7 +64,7 @@ std::string address(const Block& b, unsigned word) {
     return binary(word, 4 + b.pageBits);
 }
 
-// Number of the word that the bus accesses.
+// Returns the expression for the number of the word that the bus accesses.
 std::string addressed(const Block& b) {
     return b.pageBits ? "place" : "bus_addr_i";
 }
@@ -73,7 +73,7 @@ std::string hex(unsigned value) {
     return "X\"" + hexDigits(value, 8) + '"';
 }
 
-// The port of a piece, or the piece's bits of the port.
+// Returns the port of a piece, or the bits of the port that the piece covers.
 std::string portOf(const Call& c, const Piece& p, bool isResult) {
     std::string port = c.name + "_" + p.name + (isResult ? "_i" : "_o");
     return p.portWidth > 32 ? slice(port, p.portLsb, p.width) : port;
@@ -102,8 +102,8 @@ void signals(Writer& w, const Block& b) {
                    c.name + "_refused : std_logic;");
 }
 
-// Writes the signals that start and end calls, and `happened`, one bit for each call that can end
-// or be an event.
+// Writes the signals that start and end calls, and `happened`, which has one bit for each call that
+// can end or is an event.
 void events(Writer& w, const Block& b) {
     for (const Call& c : b.calls)
         if (c.isLong) {
@@ -123,8 +123,8 @@ void events(Writer& w, const Block& b) {
            "\" else '1';");
 }
 
-// Writes the busy bits: a call is busy from start to done; a start while busy and a done while not
-// are ignored.
+// Writes the busy bits. A call is busy from start to done; a start while it is busy, or a done
+// while it is not, is ignored.
 void longCalls(Writer& w, const Block& b) {
     w.line();
     w.line("  long_operations : process (clk_i)");
@@ -186,11 +186,11 @@ void registers(Writer& w, const Block& b) {
     w.line("  end process;");
 }
 
-// Separates the signals of a sensitivity list: one per line, since their names may be long.
+// separator in a sensitivity list: one signal per line, because names may be long
 const std::string nextSignal = ",\n                   ";
 
-// Returns the lines of the case statement with the read value of each word. Appends the signals
-// that they read to `signals`.
+// Returns the lines of the case statement that selects the value read from each word. Appends the
+// signals that these lines read to `signals`.
 std::vector<std::string> shownWords(const Block& b, std::string& signals) {
     std::vector<std::string> lines;
     auto word = [&](unsigned n, const std::string& name) {
@@ -268,7 +268,8 @@ void calls(Writer& w, const Block& b) {
                (c.isLong ? c.name + "_start" : slice("act", c.bit, 1)) + ";");
         for (const Word& word : c.words)
             for (const Piece& p : word.pieces) {
-                // The buffers are aligned to a multiple of their size, so nothing is added.
+                // A buffer is aligned to a multiple of its size, so the offset replaces low bits
+                // and no adder is needed.
                 if (p.isCount)
                     w.line("  " + c.name + "_" + baseName(p) + "_o <= memory & " +
                            binary(p.offset, b.memoryLsb()) + "; -- " + number(p.offset) +

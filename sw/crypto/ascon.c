@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * ascon: Ascon-AEAD128 in 32-bit halves of its words.
+ * ascon: Ascon-AEAD128, with each 64-bit word kept as two halves of 32 bits.
  */
 #include "ascon.h"
 
-/* Keeps gcc from reordering a round's steps: its order costs 13 more instructions than these 78. */
+/* Keeps gcc from reordering the steps of a round: its order takes 91 instead of 78 instructions. */
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-reassoc", "no-schedule-insns")
 #endif
 
-/* Round constants: of the first of 12 and of 8 rounds, and the value after the last round. */
+/* Round constants: the first one of 12 rounds, the first one of 8 rounds, and the value after the
+ * last round. */
 #define ROUNDS_12 0xF0U
 #define ROUNDS_8 0xB4U
 #define ROUNDS_END 0x3CU
@@ -17,11 +18,12 @@
 
 #define RATE 16U /* bytes in a block */
 
-/* XORs a value with half of a word rotated right by 0 < n < 32; `next` is the half above it. The
- * parts are separate, because the processor shifts one operand of ^ for free. */
+/* XORs `value` with one half of a word that is rotated right by n, 0 < n < 32; `next` is the half
+ * above it. The two shifted parts are separate operands, because the processor shifts one operand
+ * of ^ at no cost. */
 #define JOIN(value, half, next, n) value ^ half >> n ^ next << (32 - n)
 
-/* Applies the 5-bit S-box, 32 times at once, to one half of each word. */
+/* Applies the 5-bit S-box to one half of each word, to 32 columns at once. */
 #define SUBSTITUTE(x0, x1, x2, x3, x4) \
     x0 ^= x4;                          \
     x4 ^= x3;                          \
@@ -36,9 +38,9 @@
     x0 = y0 ^ x4;                      \
     x2 = ~y2;
 
-/* XORs a word with itself rotated right by m and by n. (l, h) and (k, i) are its halves, low first,
- * for the two rotations. For a rotation by more than 32 they are exchanged and n is reduced by
- * 32. */
+/* XORs a word with itself rotated right by m and by n. (l, h) and (k, i) are the halves of the
+ * word, low half first, for the two rotations. For a rotation by more than 32, the halves are
+ * exchanged and the number is reduced by 32. */
 #define DIFFUSE(low, high, l, h, m, k, i, n)   \
     y0 = JOIN(JOIN(low, l, h, m), k, i, n);    \
     high = JOIN(JOIN(high, h, l, m), i, k, n); \
@@ -72,7 +74,7 @@ static void permute(U32* half, U32 constant) {
     half[9] = E;
 }
 
-/* Reads four bytes at any address as a word; the compiler makes one access of it. */
+/* Reads four bytes at any address as a word; compilers turn this into one access. */
 static U32 get(const U8* bytes) {
     return bytes[0] | (U32)bytes[1] << 8 | (U32)bytes[2] << 16 | (U32)bytes[3] << 24;
 }
@@ -84,7 +86,7 @@ static void put(U8* bytes, U32 word) {
     bytes[3] = (U8)(word >> 24);
 }
 
-/* Adds a block of 16 bytes to four halves of the state. */
+/* XORs a block of 16 bytes into four halves of the state. */
 static void add(U32* half, const U8* bytes) {
     U32 i;
     for (i = 0; i < RATE; i += 4U)

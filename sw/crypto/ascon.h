@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * ascon: encrypts and authenticates a message by Ascon-AEAD128 (NIST SP 800-232).
+ * ascon: encrypts and authenticates a message with Ascon-AEAD128 (NIST SP 800-232).
  *
  *     Ascon ascon;
  *     Ascon_begin(&ascon, key, nonce);
- *     Ascon_associate(&ascon, head, headSize);        (what is only authenticated, if any; once)
- *     Ascon_crypt(&ascon, message, size, 0);          (once, also with no bytes)
+ *     Ascon_associate(&ascon, head, headSize);        (once; only if there is associated data)
+ *     Ascon_crypt(&ascon, message, size, 0);          (once, even for an empty message)
  *     Ascon_end(&ascon, key, tag);
  *
- * A nonce must never be used twice with one key. Neither branches nor addresses depend on secrets.
+ * Never use a nonce twice with one key. Neither branches nor addresses depend on secrets.
  */
 #pragma once
 
@@ -23,21 +23,22 @@ typedef struct Ascon {
     U32 half[10];
 } Ascon;
 
-/* Starts a message under `key` and `nonce`, of 16 bytes each. */
+/* Starts a message with `key` and `nonce`, 16 bytes each. */
 void Ascon_begin(Ascon* ascon, const U8* key, const U8* nonce);
 
-/* Absorbs the associated data, all at once. Must not be called without associated data. */
+/* Absorbs all associated data (authenticated, but not encrypted). Must not be called without
+ * data. */
 void Ascon_associate(Ascon* ascon, const U8* bytes, U32 size);
 
 /* Encrypts or decrypts the message in place. Decrypted bytes must not be used before the tag is
  * verified. */
 void Ascon_crypt(Ascon* ascon, U8* bytes, U32 size, int isDecryption);
 
-/* Writes the tag of 16 bytes, and wipes the state. */
+/* Writes the tag of 16 bytes and wipes the state. */
 void Ascon_end(Ascon* ascon, const U8* key, U8* tag);
 
-/* Compares bytes in a time that does not depend on the position of the difference. */
+/* Returns 1 if the bytes are equal. The time does not depend on where they differ. */
 int Ascon_isSame(const U8* a, const U8* b, U32 size);
 
-/* Overwrites with zeros, even if the compiler sees no later read. */
+/* Overwrites bytes with zeros, even if the compiler sees no later read of them. */
 void Ascon_wipe(void* bytes, U32 size);

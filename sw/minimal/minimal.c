@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * minimal: the smallest program that uses all layers: one loop, no tasks, a server and a client.
+ * minimal: the smallest program that uses all layers: a server and a client in one loop, without
+ * tasks.
  *
- * `make size` measures it (docs/icec.md), and it flies: `make run CPU=m3 APP=minimal`. It has the
- * Slice interfaces of the paper's Figure 3, the engine's servant as in its Figure 5, and calls to
- * the ground station, two-way and one-way, over the xbee-at endpoint, the link, the modem and the
- * FSMC. The only interrupt is a tick of 1 kHz: the program polls.
+ * `make size` measures this program (docs/icec.md), and `make run CPU=m3 APP=minimal` flies it. It
+ * implements the Slice interfaces of the paper's Figure 3, with the engine's servant of Figure 5.
+ * It calls the ground station, two-way and one-way, over the xbee-at endpoint, the link, the modem
+ * and the FSMC. The only interrupt is a tick of 1 kHz; everything else is polled.
  */
 #include "Autopilot.h"
 #include "board.h"
@@ -25,14 +26,14 @@ static Ice_ObjectAdapter adapter;
 static Autopilot_HwProcessingEngine servant;
 static XBeeATEndpoint endpoint;
 static Link radioLink;
-static volatile U32 now; /* milliseconds since the start */
+static volatile U32 now; /* time since the start, ms */
 
 /* Sleeps until the next tick. */
 static void sleep(void) {
     __asm__ volatile("wfi");
 }
 
-/* Sleeps. The radio driver needs no other function of an OS. */
+/* The only function of an operating system that the radio driver calls. */
 void OSTimeDly(INT32U ticks) {
     INT32U begin = now;
     while (now - begin < ticks)
@@ -79,7 +80,7 @@ static U32 randomWord(void* context) {
 
 static void onState(void* context, Link_State state) {
     (void)context;
-    (void)state; /* the link reports each channel to the endpoint */
+    (void)state; /* the link has already reported each channel to the endpoint */
 }
 
 static const Link_Port linkPort = {
@@ -96,7 +97,7 @@ Ice_Status Autopilot_HwProcessingEngine_setParameterA(Autopilot_HwProcessingEngi
 
 Ice_Status Autopilot_HwProcessingEngine_startProcessing(Autopilot_HwProcessingEnginePtr self,
                                                         const Ice_Current* current) {
-    U8 size[8]; /* width and height, written by the camera */
+    U8 size[8]; /* width and height, which the camera has written to the memory */
     (void)self;
     (void)current;
     FSMC_readMemory(UAV_FRAME_HEADER, size, 8);
@@ -109,7 +110,7 @@ Ice_Status Autopilot_HwProcessingEngine_startProcessing(Autopilot_HwProcessingEn
     return ICE_OK;
 }
 
-/* Returns the last frame's result; `cycles` is 0 while the core is at work. */
+/* Returns the result of the last frame; `cycles` is 0 while the core is working. */
 Ice_Status Autopilot_HwProcessingEngine_getResult(Autopilot_HwProcessingEnginePtr self,
                                                   Autopilot_ResultType* res,
                                                   const Ice_Current* current) {
@@ -124,7 +125,7 @@ Ice_Status Autopilot_HwProcessingEngine_getResult(Autopilot_HwProcessingEnginePt
     return ICE_OK;
 }
 
-/* Returns if the FPGA or the modem does not respond. */
+/* Returns only if the FPGA or the modem does not respond. */
 int main(void) {
     static const XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0, 0, 0};
     static const Radio_Memory rings = {0x00000000U, 0x00001000U};
@@ -146,7 +147,7 @@ int main(void) {
     (void)Ice_Communicator_stringToProxy(&ic, "station:xbee-at -a 0x0000", &station);
     (void)Ice_Communicator_stringToProxy(&ic, "station -o:xbee-at -a 0x0000", &stationOneway);
     (void)Ice_ObjectAdapter_createProxy(&adapter, "hwengine1", &self);
-    /* Calls are served before the link is up and the station listens. */
+    /* Serves calls until the link is up and the station listens. */
     while (Autopilot_StationPrx_vehicleState(&station, &self, &params) != ICE_OK)
         (void)Ice_Communicator_poll(&ic, 1000);
     (void)Autopilot_StationPrx_vehicleState(&stationOneway, &self, &params);

@@ -21,7 +21,7 @@ typedef struct OS_Task {
     U8 used;
     U8 timedOut;
     U32 delay;       /* remaining ticks; 0 means no delay */
-    OS_EVENT* event; /* event that the task waits for */
+    OS_EVENT* event; /* event for which the task waits */
     void* message;   /* message passed by OSQPost */
     OS_STK* bottom;  /* lowest address of the stack; 0 if unknown */
     U32 words;       /* size of the stack, words */
@@ -30,7 +30,7 @@ typedef struct OS_Task {
 
 struct os_event {
     OS_EventType type;
-    U16 count;      /* semaphore: units; queue: entries */
+    U16 count;      /* number of units of a semaphore, or of entries of a queue */
     U16 size, head; /* queue */
     void** slots;   /* queue */
     OS_Task* owner; /* mutex */
@@ -40,7 +40,7 @@ struct os_event {
 
 typedef struct OS_Kernel {
     OS_Set ready;
-    OS_Set reserved; /* ceilings of mutexes: not available to tasks */
+    OS_Set reserved; /* priorities that are ceilings of mutexes; tasks cannot have them */
     OS_Task* byPriority[OS_LOWEST_PRIO + 1];
     OS_Task tasks[OS_MAX_TASKS + 1];
     OS_EVENT events[OS_MAX_EVENTS];
@@ -54,13 +54,13 @@ extern OS_Kernel os_kernel;
 void OS_Set_add(OS_Set* set, U8 priority);
 void OS_Set_remove(OS_Set* set, U8 priority);
 int OS_Set_has(const OS_Set* set, U8 priority);
-/* Returns the lowest number in the set; OS_LOWEST_PRIO + 1 if it is empty. */
+/* Returns the lowest number in the set, or OS_LOWEST_PRIO + 1 if the set is empty. */
 U8 OS_Set_first(const OS_Set* set);
 
-/* True if a task or a mutex has this priority. */
+/* Returns 1 if a task or a mutex has this priority. */
 int OS_PriorityTaken(U8 priority);
-/* Creates a task, with interrupts disabled, from `stack`: its bounds and options. Returns
- * OS_ERR_NONE or OS_ERR_TASK_NO_MORE_TCB. */
+/* Creates a task with the entry, stack bounds and options given; interrupts must be disabled.
+ * Returns OS_ERR_NONE or OS_ERR_TASK_NO_MORE_TCB. */
 U8 OS_TaskMake(void (*task)(void*), void* argument, OS_STK* ptos, U8 priority,
                const OS_Task* stack);
 /* Switches to the highest-priority ready task, unless in an interrupt or locked. */
@@ -68,8 +68,8 @@ void OS_Sched(void);
 /* Changes the priority of a task in all lists. */
 void OS_ChangePriority(OS_Task* task, U8 priority);
 
-/* Functions of the processor port. */
+/* Functions that the processor port defines. */
 OS_STK* OSTaskStkInit(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT16U opt);
-void OSStartHighRdy(void);                /* first switch: to os_kernel.current */
-void OSCtxSw(OS_Task* from, OS_Task* to); /* also from OSIntExit */
+void OSStartHighRdy(void);                /* switches to the first task, os_kernel.current */
+void OSCtxSw(OS_Task* from, OS_Task* to); /* also called by OSIntExit */
 void OSTaskIdleHook(void);                /* called repeatedly by the idle task */

@@ -1,21 +1,23 @@
 /* SPDX-License-Identifier: MIT
  *
- * Figure 5 of the paper, upper half: the server on the UAV, as printed except for the marked lines:
+ * Figure 5 of the paper, upper half: the server on the UAV. It is as printed, except for the marked
+ * lines:
  *
- *   [1] servants get `self`, so that two cores of a kind can be distinguished, and `current`; they
- *       return a status; Figure 3 calls the operation setParameterA
- *   [2] FSMC_write(...) is filled in: word 1 of the vision core's slot is its threshold
- *   [3] xbeeInit is called by the radio task (uav_modem.c, with the same xbeeConf), which also
- *       repeats it when the modem has lost its settings
- *   [4] XBeeATEndpoint_init(&ic, "xbee-at"), with the link that it stands on, and its task
- *   [5] Figure 3's Vehicle is served as well
+ *   [1] A servant's function gets `self`, so that it can distinguish two cores of one kind, and
+ *       `current`; it returns a status. The operation is setParameterA, as in Figure 3.
+ *   [2] The figure leaves FSMC_write(...) open. Here it writes word 1 of the vision core's slot,
+ *       the threshold.
+ *   [3] xbeeInit is called by the radio task (uav_modem.c, with the same xbeeConf), which repeats
+ *       the call when the modem has lost its settings.
+ *   [4] XBeeATEndpoint_init(&ic, "xbee-at") also starts the link below the endpoint, and its task.
+ *   [5] The Vehicle of Figure 3 is served as well.
  *
- * getResult, which the figure leaves out ("[...]"), follows the same pattern. Figure 3 is
- * Figure3.ice, the client figure5.py; `make test NAME=paper_figures` flies all over the simulated
- * radio. Figure 4 prints Autopilot_Vehicle_vehicleState for an operation of Station: here it is
- * Autopilot_StationPrx_vehicleState (build/main/gen/slice/Figure3/Figure3_client.c), since the
- * servant's function has the name without Prx; it returns a status, and the run time has the parts
- * that the figure repeats in every function.
+ * The figure omits getResult ("[...]"); it is written in the same way. Figure 3 is Figure3.ice, and
+ * its client is figure5.py; `make test NAME=paper_figures` runs them all over the simulated radio.
+ * Figure 4 calls an operation of Station by the name Autopilot_Vehicle_vehicleState. Here it is
+ * Autopilot_StationPrx_vehicleState (build/main/gen/slice/Figure3/Figure3_client.c), because the
+ * name without Prx belongs to the servant's function. It returns a status. The run time contains
+ * the code that the figure repeats in every function.
  */
 #include "Figure3.h"
 #include "fsmc.h"

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// registers_apart: checks that two registers of a third-party core hold different values, as far as
-// they can be written. It detects lost writes and a wrong address unit (words instead of bytes, or
-// the reverse), with which neighbouring addresses reach one register. In a core with fewer
-// registers than addresses they repeat at a distance. The test prints a note for each register,
-// with whether it was read back, and a note if the core moves without a call, with the signals that
-// move (icesoc.regress.ctest prints notes).
+// registers_apart: checks that each register of a third-party core keeps a different value, if the
+// register can be written. This finds lost writes. It also finds a wrong address unit (words
+// instead of bytes, or the reverse), because two neighbouring addresses then access one register.
+// If a core has fewer registers than addresses, its registers repeat at a distance, which is
+// correct.
+//
+// The test prints one note for each register: whether the value could be read back. It prints
+// another note if the core is active without a call, with the signals that change
+// (icesoc.regress.ctest prints notes).
 
 #pragma once
 
@@ -23,7 +26,7 @@ extern "C" {
 #include "hw_registers.h"
 }
 
-// True if a slot has idle_o, which reports that its clock may stop.
+// True if a slot has the output idle_o, which reports that the clock of the slot may stop.
 template <class Module> auto saysIdle(Module& top, int) -> decltype(bool(top.idle_o)) {
     return top.idle_o;
 }
@@ -31,7 +34,7 @@ template <class Module> bool saysIdle(Module&, long) {
     return false;
 }
 
-// A signal in a model's state, by its path in the slot. state_members.awk generates
+// A signal in the state of a model, named by its path in the slot. state_members.awk generates
 // V<core>_slot_state.h, which lists the signals of a core.
 struct StateMember {
     template <class Root, class T>
@@ -46,14 +49,15 @@ template <class Root> std::vector<StateMember> stateOf(const Root&) {
     return {};
 }
 
-// A flight skips clocks in which only the core's counters move (docs/simulation.md).
-// The generated test includes the header of the model's state.
+// Prints a note if the core is active without a call. Only counters should change then: a flight
+// skips clocks in which nothing else changes (docs/simulation.md). The generated test includes the
+// header with the state of the model.
 template <class Module> void noteWhetherItRests(Bench<Module>& bench) {
     constexpr unsigned settling = 64, clocks = 1000, named = 3;
     const auto& state = *bench.top().rootp;
     const auto* now = reinterpret_cast<const unsigned char*>(&state);
     const std::vector<StateMember> members = stateOf(state);
-    std::map<std::string, unsigned> movers; // signals by the number of clocks in which they moved
+    std::map<std::string, unsigned> movers; // number of clocks in which each signal has changed
     for (unsigned i = 0; i < settling; ++i)
         bench.tick();
     unsigned moved = 0;
@@ -69,7 +73,7 @@ template <class Module> void noteWhetherItRests(Bench<Module>& bench) {
         return;
     std::vector<std::pair<unsigned, std::string>> most;
     for (const auto& [path, times] : movers)
-        most.emplace_back(clocks - times, path); // the first moves most often
+        most.emplace_back(clocks - times, path); // sorts the most active signal first
     std::sort(most.begin(), most.end());
     std::string which;
     for (size_t i = 0; i < most.size() && i < named; ++i)
@@ -86,7 +90,7 @@ void expectRegistersApart(CoreSlot<Module>& slot, const Hw_Register (&table)[N],
                           unsigned pageWord) {
     struct Register {
         const Hw_Register& is;
-        U32 value; // different from the values of the other registers
+        U32 value; // written value; differs for each register
     };
     auto access = [&](bool isWrite, const Register& r) {
         slot.bus_.write(pageWord, static_cast<U32>(r.is.page));
@@ -95,7 +99,7 @@ void expectRegistersApart(CoreSlot<Module>& slot, const Hw_Register (&table)[N],
     std::vector<Register> hold;
     for (const Hw_Register& is : table) {
         if (is.word < 8)
-            continue; // registers of the system slot
+            continue; // words 0 to 7 belong to the wrapper, not to the core
         const U32 mask = is.width < 32 ? (1u << is.width) - 1 : ~0u;
         const Register r{is, (0x5A5A0001u + 0x01010101u * static_cast<U32>(&is - table)) & mask};
         const bool refused = access(true, r).error;

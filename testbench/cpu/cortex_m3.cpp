@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// cortex_m3: the loop around libunicorn, and the steps before each instruction.
+// cortex_m3: the main loop around libunicorn, and the steps before each instruction.
 //
-// Unicorn's code hook announces every instruction. There time passes, and there the processor is
-// stopped, before the instruction, when an exception must be entered: so unmasking takes effect at
-// the same instruction as on the chip. It is not stopped within an IT block, since unicorn would
-// lose the block's state; an interrupt waits there for up to four instructions.
+// Unicorn calls a hook before every instruction. The hook advances the time, and stops the
+// processor before the instruction when an exception must be entered. So unmasking an interrupt
+// takes effect at the same instruction as on the chip. The hook does not stop within an IT block,
+// because unicorn would lose the state of the block; an interrupt waits there for up to four
+// instructions.
 
 #include "cortex_m3.h"
 #include "unicorn_calls.h"
@@ -19,7 +20,7 @@ constexpr uint64_t sleepStep = 1 << 20; // cycles that the rest of the system ma
 CortexM3::Stop CortexM3::run(bool singleStep) {
     singleStep_ = singleStep;
     stepped_ = breakpointHit_ = false;
-    passBreakpoint_ = true; // the breakpoint at the current address
+    passBreakpoint_ = true; // do not stop at a breakpoint at the current address
     for (;;) {
         if (failure_) {
             auto failure = failure_;
@@ -40,7 +41,7 @@ CortexM3::Stop CortexM3::run(bool singleStep) {
             updateAttention();
             return why;
         }
-        if (lockedUp_) { // only a reset leaves lock-up
+        if (lockedUp_) { // only a reset ends a lock-up
             pass(1);
             continue;
         }
@@ -104,7 +105,7 @@ void CortexM3::onInstruction(uint32_t address) {
         if (skipped_ != 0) {
             unsigned cycles = skipped_;
             skipped_ = 0;
-            if (address == unitEnd_) { // skipped instructions of an IT block cost a cycle each
+            if (address == unitEnd_) { // each skipped instruction of an IT block takes one cycle
                 expected_ = address;
                 pass(cycles);
             }
@@ -232,7 +233,7 @@ void CortexM3::waitForFlash() {
     updateAttention();
 }
 
-// BASEPRI has four implemented bits. A write to BASEPRI_MAX is ignored if these four bits are 0.
+// Keeps only the four implemented bits of BASEPRI. A write to BASEPRI_MAX is ignored if they are 0.
 void CortexM3::fixBasepri() {
     constexpr uint8_t basepriMax = 18;
     const uint32_t value = reg(Basepri), kept = value & Exceptions::priorityBits;

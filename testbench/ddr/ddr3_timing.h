@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// ddr3_timing: the times at which a DDR3 device takes the commands of a BL8 burst: banks, rows,
-// turnarounds.
+// ddr3_timing: computes when a DDR3 memory can execute each burst of 8 (BL8), from the state of its
+// banks and rows and from the direction of the previous burst.
 //
 // All times are in clocks of the memory (tCK). Figures: Micron 1Gb DDR3 SDRAM data sheet
-// (MT41J64M16; 09005aef826aa906), "Speed Bins" and "Electrical Characteristics and AC
-// Operating Conditions", rounded up to clocks of 2.5 ns as its note on tCK demands.
+// (MT41J64M16; 09005aef826aa906), "Speed Bins" and "Electrical Characteristics and AC Operating
+// Conditions", rounded up to clocks of 2.5 ns as its note on tCK demands.
 
 #pragma once
 
@@ -14,7 +14,7 @@
 
 struct Ddr3Part {
     const char* name;
-    unsigned rowBytes;   // a page: 1024 columns
+    unsigned rowBytes;   // size of a row (page), bytes: 1024 columns
     unsigned burstBytes; // BL8
     unsigned cl, cwl;    // read and write latency
     unsigned tRCD, tRP, tRAS, tRC;
@@ -22,15 +22,17 @@ struct Ddr3Part {
     unsigned tRFC, tREFI;
 };
 
-// -187E (DDR3-1066, 7-7-7) at DDR3-800: CL 6, CWL 5; tRCD = tRP = 13.125 ns, tRAS = 37.5 ns,
-// tRC = 50.625 ns, tWR = 15 ns, tRFC = 110 ns (1 Gb), tREFI = 7.8 us; tCCD = 4 CK, tRTP = tWTR =
-// max(4 CK, 7.5 ns), tRRD = max(4 CK, 10 ns), tFAW = 50 ns for pages of 2 KiB, 40 ns for 1 KiB.
+// Speed grade -187E (DDR3-1066, 7-7-7), run as DDR3-800: CL 6, CWL 5; tRCD = tRP = 13.125 ns, tRAS
+// = 37.5 ns, tRC = 50.625 ns, tWR = 15 ns, tRFC = 110 ns (1 Gb), tREFI = 7.8 us; tCCD = 4 CK, tRTP
+// = tWTR = max(4 CK, 7.5 ns), tRRD = max(4 CK, 10 ns), tFAW = 50 ns for pages of 2 KiB, 40 ns for 1
+// KiB.
 constexpr Ddr3Part mt41j64m16{
     "MT41J64M16-187E at DDR3-800", 2048, 16, 6, 5, 6, 6, 15, 21, 4, 4, 6, 4, 4, 20, 44, 3120};
 
 class Ddr3Timing {
 public:
-    // `refreshLater`: clocks that the controller adds to tRP between precharging all and a refresh.
+    // `refreshLater`: clocks that the controller waits in addition to tRP, between precharging all
+    // banks and a refresh.
     explicit Ddr3Timing(const Ddr3Part& part, unsigned refreshLater = 0)
         : part_(part), refreshLater_(refreshLater), nextRefresh_(part.tREFI) {}
 
@@ -77,7 +79,8 @@ public:
         b.open = false;
         b.mayActivate = std::max(b.mayActivate, precharge(b, 0) + part_.tRP);
     }
-    // Refreshes on demand, at `at` or later. Returns the clock in which the refresh ends.
+    // Refreshes at clock `at` or later, even if no refresh is due. Returns the clock in which the
+    // refresh ends.
     uint64_t refreshNow(uint64_t at) {
         uint64_t start = at;
         for (Bank& b : banks_) { // precharge all
@@ -112,7 +115,7 @@ private:
         if (activations_ > 0) {
             act = std::max(
                 {act, b.activated + (b.used ? part_.tRC : 0), lastActivated_ + part_.tRRD});
-            if (activations_ >= 4) // four activates in any window of tFAW
+            if (activations_ >= 4) // at most four activates in any window of tFAW
                 act = std::max(act, window_[activations_ % 4] + part_.tFAW);
         }
         window_[activations_++ % 4] = act;
@@ -122,7 +125,8 @@ private:
         b.mayPrecharge = 0;
     }
 
-    // Refreshes due until `at`; after a long idle time only the last one can delay an access.
+    // Executes the refreshes that are due until `at`. After a long idle time only the last of them
+    // can delay an access.
     uint64_t refresh(uint64_t at) {
         if (at < nextRefresh_)
             return at;

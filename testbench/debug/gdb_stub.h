@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// gdb_stub: lets a debugger on this machine command a CortexM3: GDB's remote serial protocol over
-// TCP on the loopback interface. Registers, memory, breakpoints, step, continue, interrupt,
-// `monitor reset`.
+// gdb_stub: lets a debugger on this machine control a CortexM3. It serves GDB's remote serial
+// protocol over TCP on the loopback interface: registers, memory, breakpoints, step, continue,
+// interrupt, and `monitor reset`.
 
 #pragma once
 
@@ -13,20 +13,23 @@
 
 class GdbStub {
 public:
-    // The target of the debugger's commands. `run` returns when the processor stops (or the
-    // simulation ends: then `isOver` is true); `describe` is the answer to `monitor info`.
+    // What the debugger controls. `run` returns when the processor stops or when the simulation has
+    // ended; isOver() is true after the latter. `describe` returns the answer to `monitor info`.
     struct Target {
         CortexM3& cpu;
         std::function<CortexM3::Stop(bool singleStep)> run;
         std::function<void()> reset;
         std::function<bool()> isOver;
         std::function<std::string()> describe;
-        // Goes back one stop, or to the last breakpoint, if supported. Returns if there is nothing
-        // before; otherwise the continuing process returns from `run`.
+        // Goes back by one instruction (`singleStep`) or to the last breakpoint; empty if not
+        // supported. Returns if there is nothing before; otherwise the process that continues
+        // returns from `run`.
         std::function<void(bool singleStep)> back = nullptr;
-        // Returns where a reversible run has ended: at its "begin" or "end", or "".
+        // Returns the end of the recording that a reversible run has reached: "begin", "end", or
+        // "".
         std::function<std::string()> edge = [] { return ""; };
-        std::function<void()> changed = [] {}; // the debugger has written registers or memory
+        // called after the debugger has written registers or memory
+        std::function<void()> changed = [] {};
     };
     // Listens on 127.0.0.1; port 0 selects a free one. Throws std::system_error if the port is
     // taken.
@@ -36,12 +39,13 @@ public:
     GdbStub& operator=(const GdbStub&) = delete;
     uint16_t port() const { return port_; }
 
-    // Waits for a debugger while `mayWait` returns true, and executes its commands. A peer that
-    // does not speak the protocol is disconnected. Returns true if the program must continue; false
-    // if the debugger has killed it, the simulation is over, or no debugger has connected.
+    // Waits for a debugger while `mayWait` returns true, and executes its commands. Disconnects a
+    // peer that does not speak the protocol. Returns true if the program must continue. Returns
+    // false if the debugger has killed the program, the simulation has ended, or no debugger has
+    // connected.
     bool serve(const Target& target, const std::function<bool()>& mayWait);
-    // True while the processor runs and must stop: the debugger has sent Ctrl-C, or has gone, or
-    // another one waits.
+    // Returns true if the running processor must stop: the debugger has sent Ctrl-C or
+    // disconnected, or another debugger waits.
     bool wantsStop();
     bool hasServed() const { return served_; }
 

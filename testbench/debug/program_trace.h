@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// program_trace: records which task, interrupt and function the Cortex-M3 runs over time.
+// program_trace: records over time which task, interrupt and function the Cortex-M3 runs.
 //
-// They are three rows of text in WAVE.program.vcd where the environment asks for a waveform
-// (wave_window.h), in the same unit of time as the RTL's: half a clock. join_waves.sh puts the two
-// together. Functions are written from WAVE_FROM to WAVE_TO, tasks and interrupts a tenth of a
-// second earlier.
+// If the environment asks for a waveform (wave_window.h), the program writes three rows of text to
+// WAVE.program.vcd. Their unit of time is half a clock, as in the waveform of the RTL;
+// join_waves.sh combines the two files. Functions are recorded from WAVE_FROM to WAVE_TO; tasks and
+// interrupts start a tenth of a second earlier.
 
 #pragma once
 
@@ -17,8 +17,8 @@
 
 class ProgramTrace {
 public:
-    // Listens permanently to `cpu`, which runs the program `image`. `clocks` returns the fabric
-    // clocks that have passed.
+    // Observes `cpu`, which runs the program `image`, as long as both exist. `clocks` returns the
+    // number of fabric clocks that have passed.
     ProgramTrace(CortexM3& cpu, const ElfImage& image, std::function<uint64_t()> clocks)
         : cpu_(cpu), image_(image), clocks_(std::move(clocks)),
           taskAddress_(kernelsPointer(image)) {
@@ -49,14 +49,14 @@ public:
     std::function<void(const std::string& name)> onTask;
 
 private:
-    static constexpr unsigned pendSv = 14;                 // exception in which each kernel
-                                                           // switches tasks
+    // number of the exception in which both kernels switch tasks
+    static constexpr unsigned pendSv = 14;
     static constexpr uint64_t tenthOfASecond = 10'000'000; // clocks
     // longest time to the next exception, clocks; the kernel's tick is 100,000
     static constexpr uint64_t soon = 200'000;
 
-    // Returns the address of the pointer to the running task, uC/OS-II's or our kernel's; 0: the
-    // program has no kernel.
+    // Returns the address of the kernel's pointer to the running task (of uC/OS-II or of our
+    // kernel); 0 if the program has no kernel.
     static uint32_t kernelsPointer(const ElfImage& image) {
         for (const char* name : {"OSTCBCur", "os_running"})
             if (image.has(name))
@@ -64,7 +64,8 @@ private:
         return 0;
     }
 
-    // A task that is seen for the first time continues at its first instruction.
+    // Handles a task switch. A task that runs for the first time starts at its function, which
+    // gives its name.
     void switched() {
         std::string& name = tasks_[cpu_.word(taskAddress_)];
         if (name.empty())
@@ -107,11 +108,11 @@ private:
     std::function<uint64_t()> clocks_;
     const WaveWindow window_;
     std::ofstream file_;
-    uint32_t taskAddress_;                  // address of the pointer to the running task; 0: no
-                                            // kernel
-    std::map<uint32_t, std::string> tasks_; // name by value of that pointer
+    // address of the kernel's pointer to the running task; 0 if the program has no kernel
+    uint32_t taskAddress_;
+    std::map<uint32_t, std::string> tasks_; // names of tasks by the value of that pointer
     std::string task_, interrupt_ = "-";
-    std::map<std::string, std::string> written_; // last text by row
+    std::map<std::string, std::string> written_; // last text written in each row
     uint64_t time_ = ~0ull;
-    bool isNear_ = false; // the window has begun, or begins soon
+    bool isNear_ = false; // true if the recorded window has begun or begins soon
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// bridge_bench: the FSMC bridge alone, between the processor pins, a bus slave with the system
-// slot's ID, and a memory.
+// bridge_bench: tests the FSMC bridge alone, between the pins of the processor, a memory, and a bus
+// slave that returns the ID of the system slot.
 
 #pragma once
 
@@ -16,8 +16,8 @@ extern "C" {
 #include "system_regs.h"
 }
 
-// A slave with 1024 words at a master of the register bus (docs/bus.md), with random stalls, errors
-// and a hang. It checks the master's rules and throws where one is broken.
+// A bus slave with 1024 words (docs/bus.md), with random stalls, errors, and an option to hang. It
+// checks that the master obeys the rules of the bus, and throws if not.
 template <class Module> class BusSlave {
 public:
     BusSlave(Bench<Module>& bench, double stall, uint64_t seed)
@@ -29,7 +29,7 @@ public:
     std::array<uint32_t, 1024> words{};
     unsigned firstError = 1024; // this word and all later ones report an error
     bool hung = false;          // never answers
-    unsigned clearWord = 1024;  // writing 1 clears there
+    unsigned clearWord = 1024;  // word whose bits are cleared by writing 1 (default: none)
 
 private:
     [[noreturn]] static void broken(const std::string& what) {
@@ -59,14 +59,14 @@ private:
     void drive() {
         bool ready = !hung && !random_.chance(stall_);
         top_.bus_ready_i = ready;
-        // Valid only with ready high; else noise.
+        // Data is valid only while ready is high; it is noise before.
         top_.bus_rdata_i = random_.next();
         top_.bus_error_i = random_.chance(0.5);
-        answer(); // the answer is combinational, as a decoder's
+        answer(); // the answer is combinational, as from a decoder
     }
 
 public:
-    // Data and error depend on the address combinationally, as a decoder's do.
+    // Sets data and error from the address, combinationally, as a decoder does.
     void answer() {
         if (!top_.bus_ready_i)
             return;
@@ -101,21 +101,22 @@ public:
     Bench<Bridge> bench;
     Bridge& top = bench.top();
     FsmcPins pins;         // pins at the processor
-    FsmcPins* far = &pins; // pins at the design; separate ones if there are delays
+    FsmcPins* far = &pins; // pins at the FPGA; a separate set if the pins have delays
     NpiMemory<Bridge> memory;
     BusSlave<Bridge> slave;
     FsmcMaster master;
     unsigned errors = 0, errorAddr = 0;
     bool errorWrite = false;
-    std::function<void()> onTick; // called each clock, for observers
+    std::function<void()> onTick; // called in each clock; for observers
 
-    // Configures the FSMC with its driver: with the driver's timing, or with both banks alike.
+    // Configures the FSMC by its driver, with the driver's own timings or with the same bank twice.
     FSMC_Status init() { return FSMC_init(&driverPort, &master); }
     FSMC_Status init(const FSMC_Bank& bank) {
         const FSMC_Bank banks[2] = {bank, bank};
         return FSMC_initBanks(&driverPort, &master, banks);
     }
-    // From now on EVENT is as in the system slot: late accesses set its bit, writing 1 clears.
+    // From now on the word EVENT works as in the system slot: a late access sets its bit, writing 1
+    // clears it.
     void keepEvents() { slave.clearWord = MAP_SLOT_SYSTEM * 16 + SYSTEM_EVENT; }
     void tick() {
         showPins();
@@ -155,7 +156,7 @@ private:
     }
     void showPins() {
         top.fsmc_a_i = far->a;
-        top.fsmc_d_i = far->dOut ? far->d : 0xDEAD; // a floating bus
+        top.fsmc_d_i = far->dOut ? far->d : 0xDEAD; // value of a bus that floats
         top.fsmc_ne_n_i = far->neN & 3;
         top.fsmc_nbl_n_i = far->nblN;
         top.fsmc_noe_n_i = far->noeN;

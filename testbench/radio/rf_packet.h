@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// rf_packet: a packet between modems, its air times and its possible outcomes.
+// rf_packet: a packet between modems, the time it takes on the air, and its possible outcomes.
 
 #pragma once
 
@@ -14,35 +14,36 @@ struct RfPacket {
     static constexpr uint16_t allPans = 0xFFFF;
 
     uint16_t from = 0, to = 0, pan = 0;
-    uint64_t to64 = 0; // destination by serial number, if `wide`
+    uint64_t to64 = 0; // serial number of the destination, if `wide`
     bool wide = false;
     uint8_t channel = 0;
-    std::vector<uint8_t> bytes; // as on the air: encrypted if the sender encrypts
+    std::vector<uint8_t> bytes; // payload as on the air: encrypted if the sender encrypts
     // The sender's settings
-    bool header = true;       // MM 0 or 3: the maker's header of two bytes
-    bool acknowledged = true; // MM 0 or 2, and no broadcast
-    bool sequenced = false;   // has the header of RR, by which the receiver drops duplicates
+    bool header = true;       // MM is 0 or 3: the packet has the manufacturer's header of two bytes
+    bool acknowledged = true; // MM is 0 or 2, and the packet is not a broadcast
+    // RR is set: the packet has a sequence number, by which the receiver drops duplicates
+    bool sequenced = false;
     uint16_t sequence = 0;
-    uint64_t serial = 0;    // the sender's, for decryption
+    uint64_t serial = 0;    // serial number of the sender; the receiver needs it to decrypt
     bool encrypted = false; // EE
-    bool from64 = false;    // the sender has no 16-bit address
-    unsigned tries = 4;     // tries of the MAC in a round: the first one and the retries
-    unsigned rounds = 0;    // further rounds of tries (RR)
-    unsigned copies = 1;    // frames of a broadcast: RR + 2, or 1 if RR is 0
+    bool from64 = false;    // the sender has no 16-bit address; it sends its serial number
+    unsigned tries = 4;     // transmissions by the MAC in one round: the first one and its retries
+    unsigned rounds = 0;    // number of further rounds (RR)
+    unsigned copies = 1;    // number of copies of a broadcast: RR + 2, or 1 if RR is 0
     unsigned backoff = 0;   // RN
-    double rssi = -40;      // dBm at the receiver
+    double rssi = -40;      // level at the receiver, dBm
 
     bool isBroadcast() const { return to == 0xFFFF && !wide; }
 };
 
-// Times of a try by IEEE 802.15.4, ns (docs/simulation.md).
+// Durations by IEEE 802.15.4 for one transmission, ns (docs/simulation.md).
 namespace RfTimes {
 
 constexpr uint64_t byteNs = 32'000, ccaNs = 128'000, turnaroundNs = 192'000;
 constexpr uint64_t ackNs = turnaroundNs + 11 * byteNs, gapNs = 640'000; // LIFS
 
-// Returns the bytes on the air: PHY header, MAC header with 16-bit addresses and checksum have 17;
-// a 64-bit address adds 6.
+// Returns the number of bytes on the air. PHY header, checksum, and MAC header with 16-bit
+// addresses are 17; each 64-bit address adds 6.
 inline size_t frameBytes(const RfPacket& packet) {
     bool longSource = packet.encrypted || packet.from64;
     return 17 + 2u * packet.header + 6u * packet.wide + 6u * longSource + packet.bytes.size();

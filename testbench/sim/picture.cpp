@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// picture: decodes pictures with stb_image, and handles two things that stb_image ignores: the
-// orientation in a JPEG file (EXIF 2.3, tag 0x0112), and the maximum of a PNM file (netpbm's
-// formats).
+// picture: decodes pictures with stb_image. Handles two properties that stb_image ignores: the
+// orientation in a JPEG file (EXIF 2.3, tag 0x0112), and the largest sample value of a PNM file
+// (netpbm's formats).
 
 #include "picture.h"
 
@@ -20,7 +20,7 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-// Reads numbers of a file; beyond its end returns 0.
+// Reads numbers from a file; reading beyond its end returns 0.
 struct Reader {
     const Bytes& file;
     bool isLittle = false;
@@ -35,7 +35,8 @@ struct Reader {
     }
 };
 
-// Returns the orientation in an EXIF block, which begins at `at` with a TIFF header; 1: upright.
+// Returns the orientation from an EXIF block, which begins at `at` with a TIFF header; 1 (upright)
+// if it has none.
 int orientationAt(const Bytes& file, size_t at) {
     constexpr size_t tag = 0x0112, shortNumber = 3, entryBytes = 12;
     Reader in{file, file.size() > at && file[at] == 'I'};
@@ -55,9 +56,9 @@ int orientationAt(const Bytes& file, size_t at) {
     return 1;
 }
 
-// Returns the orientation of a JPEG file by EXIF's numbers, 1 to 8; 1 for other files.
+// Returns the orientation of a JPEG file as EXIF numbers it, 1 to 8; 1 for other files.
 int orientationOf(const Bytes& file) {
-    static const char name[] = "Exif\0"; // and a second 0
+    static const char name[] = "Exif\0"; // five characters and two zero bytes
     constexpr size_t imageData = 0xFFDA, application1 = 0xFFE1;
     const Reader in{file};
     if (in.number(0, 2) != 0xFFD8)
@@ -80,13 +81,13 @@ struct PnmHeader {
     size_t bytes = 0;   // size of all samples
 };
 
-// Returns the header of a binary PNM file; of another file, the default.
+// Returns the header of a binary PNM file; the default header for any other file.
 PnmHeader pnmHeader(const Bytes& file) {
     PnmHeader header;
     if (file.size() < 2 || file[0] != 'P' || (file[1] != '5' && file[1] != '6'))
         return header;
     size_t at = 2;
-    const auto next = [&] { // the next number; comments last until the end of their line
+    const auto next = [&] { // reads the next number; a comment extends to the end of its line
         for (bool isComment = false; at < file.size(); ++at) {
             isComment = file[at] == '#' || (isComment && file[at] != '\n');
             if (!isComment && !std::isspace(file[at]))
@@ -104,8 +105,8 @@ PnmHeader pnmHeader(const Bytes& file) {
     return header;
 }
 
-// Returns a PNM file whose samples have two bytes with one byte per sample: stb_image does not
-// read their byte order.
+// Returns a PNM file with samples of two bytes as one with samples of one byte, because stb_image
+// reads the two bytes in the wrong order.
 Bytes inBytes(const Bytes& file, const PnmHeader& header) {
     const std::string text(file.begin(), file.begin() + std::ptrdiff_t(header.end));
     const size_t white = text.rfind(std::to_string(header.white));
@@ -118,7 +119,7 @@ Bytes inBytes(const Bytes& file, const PnmHeader& header) {
     return to;
 }
 
-// Returns the picture as EXIF's orientation means it.
+// Returns the picture, turned upright according to its EXIF orientation.
 Picture turned(const Picture& from, int orientation) {
     const bool isOnItsSide = orientation >= 5;
     Picture to;
@@ -126,8 +127,9 @@ Picture turned(const Picture& from, int orientation) {
     to.height = isOnItsSide ? from.width : from.height;
     for (int y = 0; y < to.height; ++y)
         for (int x = 0; x < to.width; ++x) {
-            // Position of `from`'s row 0 and column 0: 1 top left, 2 top right, 3 bottom right, 4
-            // bottom left, 5 left top, 6 right top, 7 right bottom, 8 left bottom.
+            // The orientation is the place of `from`'s first row and first column in the upright
+            // picture: 1 top left, 2 top right, 3 bottom right, 4 bottom left, 5 left top, 6 right
+            // top, 7 right bottom, 8 left bottom.
             const int a = isOnItsSide ? y : x, b = isOnItsSide ? x : y;
             const bool flipsA =
                 orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;
@@ -147,7 +149,7 @@ Picture readPicture(const std::string& path) {
     if (!in.is_open() || in.bad() || file.empty())
         throw std::runtime_error("cannot read picture '" + path + "'");
     PnmHeader header = pnmHeader(file);
-    if (header.bytes > file.size() - header.end) // stb_image takes it
+    if (header.bytes > file.size() - header.end) // stb_image would accept a file that is too short
         throw std::runtime_error("picture '" + path + "' is cut: expected " +
                                  std::to_string(header.bytes) + " bytes of samples, got " +
                                  std::to_string(file.size() - header.end));

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// rest_proof: proves that the chip's platform (bridge, decoder, modem, system slot) keeps its state
-// while sim_soc.v stops its clock, which it does while stirs_o is low (quiet_span.h). Used only by
-// the prover.
+// rest_proof: proves that the simulator may stop the clock of the chip's platform (bridge, decoder,
+// modem, system slot) while stirs_o is low, because the platform would not change its state
+// (sim_soc.v, quiet_span.h). Used only by the prover.
 //
-// In the first clock the platform is in any state and only its counters move. The proof shows that
-// then only they move in all later clocks, by the same steps, whatever cores and memory do, as long
-// as stirs_o is low, the pins of the platform are stable, and no counter has its event. The outputs
-// of the platform to cores, memory and pins do not depend on the counters
-// (tests/hdl/formal/platform_rests.ys). The clock of the chip is `later` here: idle_registers.v
-// makes an assumption and an assertion of each flip-flop with this clock.
+// In the first clock the platform may be in any state in which only its counters change. The proof
+// shows that in all later clocks, too, only the counters change, always by the same steps, for any
+// behaviour of cores and memory. It assumes that stirs_o is low, that the pins of the platform are
+// stable, and that no counter reaches its end. The outputs of the platform to cores, memory and
+// pins do not depend on the counters (tests/hdl/formal/platform_rests.ys).
+//
+// The chip's clock is the signal `later` here: idle_registers.v turns each flip-flop with this
+// clock into one assumption and one assertion.
 
 `default_nettype none
 `include "rests.vh"
@@ -17,7 +19,7 @@
 module rest_proof (
     input wire        clk_i,
     input wire [31:0] core_pins_i,
-    output reg        later // than the first clock
+    output reg        later // high after the first clock
 );
     initial later = 1'b0;
     always @(posedge clk_i)
@@ -41,23 +43,24 @@ module rest_proof (
     wire stirs = `PLATFORM_STIRS(u_soc.u_platform);
     always @* assume (!stirs);
 
-    // All counters, and the counters with a tick as their event.
+    // All counters, and the counters whose end triggers an action.
     (* hierconn *) wire [63:0] \u_soc.u_system_slot.cycles ;
     (* hierconn *) wire [18:0] \u_soc.u_modem.u_baud.phase ;
     (* hierconn *) wire [16:0] \u_soc.u_modem.u_timer.clocks ;
     wire [18:0] phase  = \u_soc.u_modem.u_baud.phase ;
     wire [16:0] clocks = \u_soc.u_modem.u_timer.clocks ;
-    localparam [16:0] FIRST = 17'd1 - 17'd106250; // modem_timer.v: of the board's 100 MHz
+    localparam [16:0] FIRST = 17'd1 - 17'd106250; // as in modem_timer.v at 100 MHz
     always @* assume (!phase[18] && clocks >= FIRST && !(&clocks));
 
     wire [98:0] now = {\u_soc.u_system_slot.cycles , phase[17:0], clocks};
     reg  [98:0] before, older;
-    reg         last = 1'b0; // later than the second clock
+    reg         last = 1'b0; // high after the second clock
     always @(posedge clk_i) begin
         {older, before} <= {before, now};
         last            <= later;
     end
-    always @* assume (!later || last || now[16:0] - before[16:0] <= 17'd1); // it counts, or is held
+    // it counts by one, or stands still
+    always @* assume (!later || last || now[16:0] - before[16:0] <= 17'd1);
     always @* if (last) begin
         assert (now[98:35] - before[98:35] == before[98:35] - older[98:35]);
         assert (now[34:17] - before[34:17] == before[34:17] - older[34:17]);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// sim_soc: soc.v, its netlist or the netlist of table1.v (TABLE1), with the simulator's clocks.
+// sim_soc: the chip with the clocks of the simulator. The chip is soc.v, its netlist, or the
+// netlist of table1.v (TABLE1).
 //
-// Each change of tick_i is one clock: clk_i rises with it and falls as soon as its edge is taken,
-// so that both edges need one evaluation. The memory pins have flip-flops here and are driven
-// before the edge with their values after it. Therefore no path leads from inputs through the
-// chip's logic, which the model would otherwise evaluate each time.
+// Each change of tick_i is one clock: clk_i rises with it, and falls as soon as its edge has been
+// processed, so that both edges need only one evaluation. The memory pins have flip-flops here: the
+// simulator sets them before the edge to their values after the edge. Therefore no path leads from
+// inputs through the chip's logic; the model would have to evaluate such a path each time.
 
 `default_nettype none
 `ifdef RESTS
@@ -61,7 +62,7 @@ module sim_soc #(
 `endif
     reg  ticked = 1'b0;
 `ifdef TRACED
-    wire clk_i = tick_i; // a waveform then has both edges
+    wire clk_i = tick_i; // shows both edges in a waveform
 `else
     wire clk_i = tick_i != ticked;
 `endif
@@ -79,13 +80,13 @@ module sim_soc #(
 
 `ifdef RESTS
     // The simulator's copies of soc.v and platform.v use these clocks (rest.awk). The platform's
-    // clock stops while rests_i is high, the memory clock while the memory would not move.
+    // clock stops while rests_i is high; the memory clock stops while the memory would not change.
     wire platform_clk = clk_i && !rests_i;
     wire memory_clk;
     core_gate #(.GATED(1)) u_gate_memory (
         .clk_i(clk_i), .rst_i(soc.rst), .access_i(1'b0),
         .idle_i(`MEMORY_RESTS(soc.u_platform.u_memory)), .clk_o(memory_clk));
-    // A probe would record the standing counters of a platform that rests.
+    // A probe would record the counters of a stopped platform, which stand still.
     assign stirs_o = MAP_PROBES != 0 || `PLATFORM_STIRS(soc.u_platform);
 
     soc #(.CLK_HZ(CLK_HZ), .GATES(1))

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// uav_machine: runs the firmware's host build on a SocModel: bus accesses, interrupts, the tick. A
-// table of entrances selects the firmware, by default the UAV's application.
+// uav_machine: runs firmware that was built for the host on a SocModel, with bus accesses,
+// interrupts and the tick. A table of entry points selects the firmware; the default is the UAV's
+// application.
 
 #pragma once
 
@@ -19,8 +20,8 @@ extern "C" {
 
 class UavMachine {
 public:
-    // The entrances, as in uav.h: one is called at boot (it creates the tasks), one at the FPGA's
-    // interrupt.
+    // Entry points of the firmware, as in uav.h: one is called at boot and creates the tasks; one
+    // is called for an interrupt of the FPGA.
     struct Firmware {
         std::function<void(const FSMC_Port*, void*)> start = [](const FSMC_Port* port, void* soc) {
             if (UAV_start(port, soc) == UAV_NO_KEY)
@@ -41,8 +42,8 @@ public:
 
     SimulatedBoard board; // board of the UAV's application
 
-    // Runs the clock of the firmware this many times as fast as the clock of the fabric, to shorten
-    // periods in which only time-outs of the firmware run. Meanwhile the modem is too slow for it.
+    // Makes the firmware's clock `times` as fast as the fabric's clock, to shorten periods in which
+    // only time-outs of the firmware run. The modem is too slow for the firmware meanwhile.
     void hurry(unsigned times);
 
 private:
@@ -56,8 +57,8 @@ private:
     uint64_t nextTick_ = 0, tickCycles_;
 };
 
-// Boots the UAV's application and flies until the script is done, or until this simulated second.
-// Returns whether it is done.
+// Boots the UAV's application and flies until the script is done or this simulated second is
+// reached. Returns whether the script is done.
 inline bool flies(
     SocModel& soc, const std::function<bool()>& script, double until,
     const std::function<void(UavMachine&)>& prepare = [](UavMachine&) {}) {
@@ -71,7 +72,7 @@ inline bool flies(
     return done;
 }
 
-// The firmware that the simulator runs on the host; each program that links sim_main defines it.
-// `modemKey`: 16 bytes of the modem's AES key, or empty; `isSecure`: the link has a key. Throws if
-// the firmware cannot encrypt.
+// Returns the firmware that the simulator runs on the host; each program that links sim_main
+// defines this function. `modemKey`: the modem's AES key of 16 bytes, or empty. `isSecure`: whether
+// the link has a key. Throws if the firmware cannot encrypt.
 UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& modemKey, bool isSecure);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// client_queues: the requests of all clients that wait for their turn.
+// client_queues: holds the waiting requests of all clients, and picks the next one to send.
 //
-// Bytes are shared evenly (turns.h) among the subjects (certificates, or hosts without one), and
-// the share of each subject evenly among its connections. The requests of one client keep their
-// order. The queues have no lock: the forwarder calls them under its own.
+// The link's bytes are shared evenly (turns.h) among the subjects, and the share of each subject
+// evenly among its connections. A subject is the subject of a certificate, or the host of a client
+// without a certificate. The requests of one client keep their order. ClientQueues has no lock: the
+// forwarder calls it while it holds its own lock.
 
 #pragma once
 
@@ -20,40 +21,43 @@ namespace gateway {
 struct Client {
     Connection connection;
     std::string subject;
-    std::deque<std::shared_ptr<Request>> requests; // waiting, oldest first
+    std::deque<std::shared_ptr<Request>> requests; // waiting requests, oldest first
     size_t underWay = 0;  // number of requests that may not have reached the vehicle yet
     int lane = 0;         // lane on which these requests were sent
-    size_t objects = 0;   // number of objects that it has passed to the vehicle
+    size_t objects = 0;   // number of objects that this client has passed to the vehicle
     bool hasLeft = false; // true if the client has disconnected; its one-way requests remain
 };
 
 class ClientQueues {
 public:
-    static constexpr size_t mostBytes = size_t{1} << 18; // queued bytes of one subject
-    static constexpr size_t mostClients = 200; // clients of one subject; each may queue one request
-    static constexpr size_t mostBlocked = 16;  // threads that wait for room for one subject
+    static constexpr size_t mostBytes = size_t{1} << 18; // limit of the queued bytes of one subject
+    // limit of the clients of one subject; each client may queue one request
+    static constexpr size_t mostClients = 200;
+    // limit of the threads that wait for room for one subject
+    static constexpr size_t mostBlocked = 16;
 
-    // `onClosed`: called when a client's connection has closed, without the caller's lock.
+    // `onClosed` is called when a client's connection has closed; the caller's lock is not held
+    // then.
     explicit ClientQueues(std::function<void(const Connection&)> onClosed)
         : onClosed_(std::move(onClosed)) {}
 
-    // Returns whether a request may wait here. The first request of a client always may, unless its
-    // subject has too many clients. These include disconnected clients with waiting one-way
-    // requests, so that a subject gains nothing by reconnecting.
+    // Returns whether a request may wait here. The first request of a client always may, unless the
+    // subject has too many clients. Disconnected clients whose one-way requests still wait are
+    // counted, so that a subject gains nothing by reconnecting.
     bool hasRoom(const Request& request);
-    // Counts a thread that waits for room. Returns false if the subject has too many of them.
+    // Counts a thread that waits for room. Returns false if its subject has too many such threads.
     bool block(const std::string& subject);
     void unblock(const std::string& subject) { --subjects_[subject].blocked; }
     void add(std::shared_ptr<Request> request);
     // Drops the two-way requests of a client that has disconnected; its one-way requests remain.
-    // Returns the client, or null if the connection has none.
+    // Returns the client, or null if `connection` belongs to no client.
     std::shared_ptr<Client> leave(const Connection& connection);
 
     using MayGo = std::function<bool(const Client&)>;
-    // Returns whether any client with waiting requests satisfies a condition.
+    // Returns whether at least one client with waiting requests satisfies the condition.
     bool isAnyWaiting(const MayGo& condition) const;
-    // Removes and returns the next request by turn of the clients that may send theirs now; null if
-    // there is none.
+    // Chooses the client whose turn it is among those that may send now; removes and returns its
+    // oldest request. Returns null if no client may send.
     std::shared_ptr<Request> popNext(const MayGo& mayGo);
     // Removes and returns the requests that arrived before `due`.
     Requests popOlder(std::chrono::steady_clock::time_point due);
@@ -62,7 +66,7 @@ private:
     struct Subject {
         Turns<const Client*> turns;
         std::set<std::shared_ptr<Client>> clients;
-        size_t bytes = 0, blocked = 0; // queued bytes of a subject; its blocked threads
+        size_t bytes = 0, blocked = 0; // bytes queued by a subject; number of its blocked threads
     };
     std::shared_ptr<Client> clientOf(const Request& request);
     std::shared_ptr<Client> firstOf(const Subject& subject, const MayGo& mayGo) const;

@@ -18,8 +18,8 @@ RESULTS = ("after.png", "report.md", "report.json", "calls.jsonl")
 
 
 class Air:
-    """The simulator's counters (testbench/status/sim_status.toml); real hardware has no
-    counters."""
+    """The simulator's counters (testbench/status/sim_status.toml). On real hardware there are
+    none."""
 
     COUNTERS = ("ns", "cycles", "bytesUp", "bytesDown", "packets", "lost", "wallNs")
 
@@ -35,7 +35,7 @@ class Air:
 
 
 class Patience:
-    """A time-out in simulated time, or without a simulator in real time. It is also over when
+    """A time-out in simulated time; in real time if there is no simulator. It also expires if
     simulated time has stood still for as many real seconds."""
 
     def __init__(self, air, seconds):
@@ -55,7 +55,7 @@ class Patience:
 
 @contextlib.contextmanager
 def whole(path):
-    """Returns a temporary name for a file that is renamed to `path` when it is complete."""
+    """Yields a temporary file name; the file is renamed to `path` when it is complete."""
     temporary = path + ".new"
     try:
         yield temporary
@@ -66,18 +66,22 @@ def whole(path):
 
 
 class Log:
-    """Writes a line a call for people, and rows for the report."""
+    """Prints one line for each call, and stores rows for the report."""
 
     def __init__(self, air, out, build):
-        self.air, self.out, self.build = air, out, build  # folders: of the results, of the build
-        self.patience, self.give_up = math.inf, None  # time-out of a call, s; ends the mission
+        # out: folder of the results; build: build folder
+        self.air, self.out, self.build = air, out, build
+        # time-out of a call, s; function that ends the mission
+        self.patience, self.give_up = math.inf, None
         self.rows = []
         followers = glob.glob(os.path.join(glob.escape(out), "after[0-9]*.png"))
-        # Removes the results of the previous mission; of a link, only the link.
+        # Removes the results of the previous mission. If a result is a symbolic link, only the link
+        # is removed.
         for path in [*(os.path.join(out, name) for name in RESULTS), *followers]:
             with contextlib.suppress(FileNotFoundError):
                 os.remove(path)
-        self.live = open(os.path.join(out, "calls.jsonl"), "x")  # the page of `make run` follows it
+        # read continuously by the page of `make run`
+        self.live = open(os.path.join(out, "calls.jsonl"), "x")
         self.lock = threading.Lock()
         self.start = time.monotonic()
 
@@ -92,13 +96,13 @@ class Log:
             self.live.flush()
 
     def note(self, text):
-        """Prints a line that is not a call, on the terminal and on the page."""
+        """Prints a line that is not a call, and shows it on the page."""
         self.say(text)
         self.follow({"who": "ground", "what": text})
 
     def remind(self, what, answered):
-        """Reports every 15 s that a call has no answer, and ends the mission when its patience is
-        over."""
+        """Reports every 15 s that a call has no answer yet; ends the mission when the time-out
+        expires."""
         begin, reported = time.monotonic(), 15
         wait = Patience(self.air, self.patience)
         while not answered.wait(0.5):
@@ -110,7 +114,8 @@ class Log:
                 return self.give_up()
 
     def call(self, who, what, function):
-        """Runs the call and returns its result; records the bytes on the air."""
+        """Runs `function`, which makes the call, and returns its result; records the bytes on the
+        air."""
         before, wall = self.air.read(), time.monotonic()
         answered = threading.Event()
         threading.Thread(target=self.remind, args=(what, answered), daemon=True).start()

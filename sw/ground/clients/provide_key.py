@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""provide_key: gives a vehicle its address and its key over the processor's serial port, in the
-factory or after a key was lost.
+"""provide_key: gives a vehicle its address and its key over the serial port of its microcontroller,
+in the factory or after a key was lost.
 
-Wire the port to PA9 and PA10, start this, and switch the vehicle on: it listens if the line is in a
-break while it starts.
+Wire the port to PA9 and PA10, start this program, then switch the vehicle on. The vehicle waits for
+a key if it finds a break (a line held low) on this port while it starts.
 """
 
 import argparse
@@ -18,18 +18,20 @@ import termios
 import time
 import tty
 
-TIOCSBRK, TIOCCBRK = 0x5427, 0x5428  # Linux' ioctl_tty(2); Python 3.11's termios lacks both
-GROUP = 0xFFFF  # instead of the address of a vehicle or ground station
-PIPE_WAIT = 10  # time-out for the first bytes of a pipe, s
-BREAK, PAUSE = 1.5, 0.5  # s; a vehicle without a key restarts every second
+# numbers from Linux' ioctl_tty(2); termios of Python 3.11 lacks both
+TIOCSBRK, TIOCCBRK = 0x5427, 0x5428
+GROUP = 0xFFFF  # address that key files use for the group key
+PIPE_WAIT = 10  # time-out for the first bytes from a pipe, s
+# length of the break and of the pause after it, s; a vehicle without a key restarts every second
+BREAK, PAUSE = 1.5, 0.5
 
 
 class Failed(Exception):
-    """The vehicle has no new key; the text is the reason."""
+    """The vehicle did not accept a new key; the text gives the reason."""
 
 
 def address(text):
-    """Returns the number of an address as key files have it."""
+    """Returns an address, as written in key files, as a number."""
     if not re.fullmatch("0x[0-9a-fA-F]{1,4}", text):
         raise argparse.ArgumentTypeError(
             "'%s': expected the address of a vehicle, such as 0x0001" % text)
@@ -37,9 +39,10 @@ def address(text):
 
 
 def open_secret(path):
-    """Opens a file of keys for reading: a regular file, or a pipe that is being written to, which
-    belongs to this user and is closed to others."""
-    fd = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)  # a pipe must not block
+    """Opens a key file for reading. It must be a regular file, or a pipe with a writer; it must
+    belong to this user, and other users must have no access."""
+    # opening a pipe without a writer must not block
+    fd = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     try:
         found = os.fstat(fd)
         if not stat.S_ISREG(found.st_mode) and not stat.S_ISFIFO(found.st_mode):
@@ -60,8 +63,8 @@ def open_secret(path):
 
 
 def read_key(path, vehicle):
-    """Returns a vehicle's key in a file, as the plugin finds it (docs/security.md): in the line of
-    its address, else in the one without an address."""
+    """Returns a vehicle's key from a key file. As in the plugin (docs/security.md), the line with
+    the vehicle's address is used, or else the line without an address."""
     keys = {}
     with open_secret(path) as f:
         for number, line in enumerate(f.read(65536).split("\n"), 1):
@@ -84,8 +87,8 @@ def read_key(path, vehicle):
 
 
 def call_number():
-    """Returns the current number of calls to all vehicles: quarters of a second since the start of
-    2026 (sw/link/link_broadcast.h). The vehicle refuses calls that are older than its key."""
+    """Returns the current number for calls to all vehicles: quarters of a second since the start of
+    2026 (sw/link/link_broadcast.h). A vehicle ignores such calls if they are older than its key."""
     number = int((time.time() - 1767225600) * 4)
     if not 0 < number < 1 << 31:
         raise Failed("the clock of this computer: expected a date after 2026-01-01, got %s; set it "
@@ -95,7 +98,7 @@ def call_number():
 
 
 def read_line(port, seconds):
-    """Returns the bytes that arrive until the end of a line or the time-out."""
+    """Returns the bytes that arrive until a line ends or the time-out expires."""
     text, end = b"", time.monotonic() + seconds
     while b"\n" not in text and select.select([port], [], [], max(0, end - time.monotonic()))[0]:
         text += os.read(port, 100)

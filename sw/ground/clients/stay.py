@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""stay: keeps a vehicle reachable after its mission, until Ctrl-C (LIVE=1) or as long as the page
-of the flight is in use. Starts the gateway at the mission's modem, and writes OUT/live.json, by
-which `./icesoc call` finds the flight:
+"""stay: keeps a vehicle reachable after its mission, until Ctrl-C (LIVE=1) or as long as a browser
+shows the page of the flight. Starts the gateway at the modem of the mission, and writes
+OUT/live.json, which `./icesoc call` reads to find the flight:
 
     {"pid": 4711, "build": "/.../build/main", "vehicles": {"uav1": "tcp -h 127.0.0.1 -p 40001"}}
 
-The page's server writes OUT/viewed about once per second while a browser shows the page, and
+The server of the page writes OUT/viewed about once per second while a browser shows the page, and
 removes it when the page is closed.
 """
 
@@ -21,8 +21,10 @@ import time
 
 from mission_log import whole
 
-HIDDEN = 75  # s; browsers let the page of a hidden tab ask once per minute
-GRACE = 3  # s; another tab may still show the page after one was closed
+# time without a request after which the page counts as closed, s; in a hidden tab, browsers send
+# only one request per minute
+HIDDEN = 75
+GRACE = 3  # waiting time after the page was closed, s; another tab may still show it
 
 
 def is_viewed(folder):
@@ -40,7 +42,7 @@ def gateway_program(args):
 
 
 def is_wanted(args):
-    """Returns whether the vehicle is to stay after its mission."""
+    """Returns whether the vehicle must stay reachable after its mission."""
     if not args.live and not is_viewed(args.out):
         return False
     if gateway_program(args):
@@ -51,7 +53,7 @@ def is_wanted(args):
 
 
 def end_with_page(folder, process):
-    """Ends a process when no browser has shown the page for a while."""
+    """Ends a process after no browser has shown the page for a while."""
     while process.poll() is None:
         time.sleep(0.5)
         if not is_viewed(folder):
@@ -61,7 +63,7 @@ def end_with_page(folder, process):
 
 
 def gateway(args):
-    """Starts the gateway as a process that ends with this one."""
+    """Starts the gateway as a child process that ends together with this program."""
     words = ["setpriv", "--pdeathsig", "TERM", "--", gateway_program(args),
              "--device", args.device, "--guard", str(args.guard), "--listen", "127.0.0.1:0",
              *(["--key", args.key] if args.key else []), *(["--wire"] if args.wire else [])]
@@ -71,7 +73,7 @@ def gateway(args):
 
 
 def serve(args):
-    """Serves until a signal ends this program; returns an exit status."""
+    """Serves until a signal ends this program; returns the exit status."""
     path, vehicles = os.path.join(args.out, "live.json"), {}
     with gateway(args) as process:
         if not args.live:

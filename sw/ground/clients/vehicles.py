@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""vehicles: finds a vehicle by its name, in a file of Ice properties that lists the vehicles.
+"""vehicles: finds a vehicle by its name in a file of Ice properties that lists the vehicles.
 
-The file is FILE of find(), else $ICESOC_VEHICLES, else ~/.config/icesoc/vehicles.conf, else
-/etc/icesoc/vehicles.conf:
+The file is the argument `file` of find(), else $ICESOC_VEHICLES, else
+~/.config/icesoc/vehicles.conf, else /etc/icesoc/vehicles.conf:
 
     Vehicle.uav1=xbee-at -d /dev/icesoc-modem -a 0x0001
     Vehicle.uav7=tcp -h gateway -p 10000
     XBeeAT.KeyFile=/etc/icesoc/uav1.key
 
-A vehicle without a line is looked up in IceGrid, if the file sets Ice.Default.Locator.
+A vehicle without a line is looked up in IceGrid if the file sets Ice.Default.Locator.
 """
 import os
 
@@ -19,7 +19,7 @@ PREFIX = "Vehicle."
 
 
 class Unknown(LookupError):
-    """The vehicle, or the file that lists it, was not found; the text has the remedy."""
+    """The vehicle, or the file that lists vehicles, was not found; the text gives the remedy."""
 
 
 def settings_file(file):
@@ -34,8 +34,9 @@ def settings_file(file):
 
 
 def find(name, file=None):
-    """Returns (place, properties) of the vehicle with this name. place: what follows an identity in
-    a proxy, such as ":tcp -h gateway -p 10000". Without a name: the only vehicle of the file."""
+    """Returns (place, properties) of the vehicle with this name; without a name, of the only
+    vehicle in the file. place: the part of a proxy after the identity, such as ":tcp -h gateway -p
+    10000"."""
     path = settings_file(file)
     found = Ice.createProperties()
     found.load(path)

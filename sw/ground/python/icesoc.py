@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""icesoc: calls vehicles by name from Python, with stock ZeroC Ice and the radio plugin.
+"""icesoc: calls vehicles by name from Python, with an unmodified ZeroC Ice and the radio plugin.
 
     import icesoc
     with icesoc.connect("uav1") as vehicle:
         engine = vehicle.proxy("hwengine1", "Autopilot.HwProcessingEngine")
         print(engine.getResult())
 
-A file of Ice properties lists the vehicles (vehicles.py): FILE of connect(), else
-$ICESOC_VEHICLES, else ~/.config/icesoc/vehicles.conf, else /etc/icesoc/vehicles.conf.
+A file of Ice properties lists the vehicles (vehicles.py). It is the argument `file` of connect(),
+else $ICESOC_VEHICLES, else ~/.config/icesoc/vehicles.conf, else /etc/icesoc/vehicles.conf.
 """
 import importlib
 
@@ -20,21 +20,23 @@ __all__ = ["Vehicle", "Unknown", "connect", "load_slice"]
 
 
 def load_slice(*files):
-    """Makes the types of Slice files available; without names, the types of all installed files."""
+    """Loads Slice files and makes their types available; without arguments, all installed Slice
+    files."""
     for file in files or map(places.slice_file, places.SLICE_FILES):
         Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), file])
 
 
 class Vehicle:
-    """A vehicle, and the communicator that leads to it. Use it in a `with` statement, or close
+    """A vehicle with the communicator that reaches it. Use it in a `with` statement, or close
     it."""
 
     def __init__(self, communicator, place):
         self.communicator, self.place = communicator, place
 
     def proxy(self, identity, interface=None, oneway=False):
-        """Returns a proxy of the vehicle's object `identity`: an Ice.ObjectPrx, or of an interface
-        such as "Autopilot.Vehicle", not checked. oneway: calls do not wait for the vehicle."""
+        """Returns a proxy of the vehicle's object `identity`. interface: name of its type, such as
+        "Autopilot.Vehicle", not checked with the vehicle; without it, an Ice.ObjectPrx. oneway:
+        calls do not wait for the vehicle."""
         text = self.communicator.identityToString(Ice.stringToIdentity(identity))
         proxy = self.communicator.stringToProxy(f"{text}{' -o' if oneway else ''}{self.place}")
         if interface is None:
@@ -53,8 +55,9 @@ class Vehicle:
 
 
 def connect(name, file=None, properties=None):
-    """Returns the Vehicle with this name. properties: Ice's, in addition to those of the file.
-    Calls fail after 10 s without a reply, unless Ice.Default.InvocationTimeout differs."""
+    """Returns the Vehicle with this name. file: the file that lists the vehicles. properties: Ice
+    properties in addition to those of the file. Calls fail after 10 s without a reply, unless
+    Ice.Default.InvocationTimeout is set."""
     place, found = vehicles.find(name, file)
     found = {"Ice.Default.InvocationTimeout": "10000", **found, **(properties or {})}
     communicator = plugged.initialize(found, places.plugin() if vehicles.has_radio(place) else None,

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_slice: slices of user exceptions, and optional values. In 1.0 a slice is its type id, a size
- * of 4 bytes that counts itself, and the members; a byte before the first slice shows whether there
- * are classes. In 1.1 it is flags, type id, the size in the sliced format, the members, and
- * optional values after them up to a mark.
+ * ice_slice: reads and writes the slices of user exceptions, and optional values. With encoding
+ * 1.0, a slice consists of its type id, a size of 4 bytes (these included), and the members; a byte
+ * before the first slice shows whether there are classes. With encoding 1.1, a slice consists of
+ * flags, the type id, the size (in the sliced format), the members, and optional values up to an
+ * end mark.
  */
 #include "ice_slice.h"
 
@@ -110,7 +111,7 @@ Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is) {
     static const Ice_String none = {0, ""};
     Ice_String id;
     if (is->sliceFlags & ICE_SLICE_LAST || is->failed || is->position == is->size) {
-        icec_failRead(is, ICE_FAILED_MALFORMED); /* a base is required and missing */
+        icec_failRead(is, ICE_FAILED_MALFORMED); /* the slice of a required base is missing */
         return none;
     }
     is->sliceFlags = is->minor != 0 ? Ice_InputStream_readByte(is) : ICE_SLICE_SIZE;
@@ -120,15 +121,15 @@ Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is) {
     return is->failed ? none : id;
 }
 
-/* Skips a table of instances after a slice. `depth` bounds the nesting, so that a peer cannot
- * overflow the stack. */
+/* Skips a table of instances that follows a slice. `depth` limits the nesting, so that a peer
+ * cannot overflow the stack. */
 static void skipTable(Ice_InputStreamPtr is, int depth) {
     Ice_Int count = Ice_InputStream_readSequence(is, 1);
     while (count-- > 0 && !is->failed) {
         Ice_Byte flags = ICE_SLICE_LAST;
         Ice_Int end;
         if (Ice_InputStream_readSize(is) != 1)
-            continue; /* one that was there before */
+            continue; /* a reference to an earlier instance has no slices */
         do {
             flags = Ice_InputStream_readByte(is);
             if ((flags & ICE_SLICE_COMPACT_ID) == ICE_SLICE_TYPE_STRING)
@@ -146,8 +147,8 @@ static void skipTable(Ice_InputStreamPtr is, int depth) {
     }
 }
 
-/* Reads the table of instances after a slice, if it has one; without a reader of values it is
- * skipped. */
+/* Reads the table of instances that follows a slice, if it has one. Skips the table if the program
+ * has no reader of classes. */
 static void readTable(Ice_InputStreamPtr is) {
     Ice_Byte flags = is->sliceFlags;
     if (is->sliceFlags & ICE_SLICE_TABLE) {
@@ -178,7 +179,7 @@ void Ice_InputStream_endSlice(Ice_InputStreamPtr is) {
     readTable(is);
 }
 
-/* Skips one value. */
+/* Skips one optional value of this format. */
 static void skip(Ice_InputStreamPtr is, Ice_Int format) {
     switch (format) {
     case ICE_OPTIONAL_SIZE:
@@ -194,14 +195,15 @@ static void skip(Ice_InputStreamPtr is, Ice_Int format) {
         if (is->values)
             is->values->skip(is);
         else if (Ice_InputStream_readSize(is) == 1)
-            icec_failRead(is, ICE_FAILED_MALFORMED); /* an instance where none was expected */
+            icec_failRead(is, ICE_FAILED_MALFORMED); /* an instance is not expected here */
         break;
     default:
         (void)Ice_InputStream_readBlob(is, (Ice_Int)1 << format);
     }
 }
 
-/* Skips to the first tag that is not below `tag`. Returns 1 if it is `tag`: its value follows. */
+/* Skips optional values with tags below `tag`. Returns 1 if the next one has this tag; its value
+ * follows. */
 static Ice_Bool seek(Ice_InputStreamPtr is, Ice_Int tag, Ice_Int format) {
     Ice_Int end = is->sliceFlags && is->sliceEnd ? is->sliceEnd : is->size;
     while (!is->failed && is->position < end) {
@@ -238,7 +240,8 @@ void Ice_InputStream_skipOptionals(Ice_InputStreamPtr is) {
 #ifndef ICEC_MINIMAL
 
 Ice_Bool Ice_InputStream_end(Ice_InputStreamPtr is) {
-    /* Ice before 3.3 could send one byte too much after 1.0's instances of classes. */
+    /* Ice before 3.3 could send one superfluous byte after the instances of classes in encoding
+     * 1.0. */
     Ice_Int most = is->minor == 0 ? 1 : 0;
     is->sliceFlags = 0;
     Ice_InputStream_skipOptionals(is);

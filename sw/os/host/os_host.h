@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// os_host: the kernel's port to a host process: tasks are coroutines of the calling thread.
+// os_host: runs the kernel in a process of the host: each task is a coroutine of the calling
+// thread.
 //
-// A machine (the simulator, or a test) determines how time passes. Interrupts are delivered by
-// OsHost::interruptPoint(), which the machine calls wherever simulated time has passed.
+// A machine (the simulator, or a test) determines how time passes. It calls
+// OsHost::interruptPoint() after simulated time has passed; pending interrupts are served there.
 
 #pragma once
 
@@ -12,22 +13,23 @@
 namespace OsHost {
 
 struct Machine {
-    // Lets time pass up to the next interrupt: no task is ready.
+    // Called when no task is ready; lets time pass until the next interrupt.
     std::function<void()> idle;
-    // Returns true while an interrupt is pending; then `serve` runs its handler (between OSIntEnter
-    // and OSIntExit), which must make `pending` return false or the handler is entered again.
+    // Returns true while an interrupt is pending. `serve` then runs the interrupt handler between
+    // OSIntEnter and OSIntExit. The handler must clear the cause, so that `pending` returns false;
+    // otherwise it is called again.
     std::function<bool()> pending;
     std::function<void()> serve;
 };
 
-// Sets the machine, which must outlive run(). To be called before OSInit.
+// Sets the machine, which must outlive run(). Call this before OSInit.
 void setMachine(Machine machine);
 
-// Runs the tasks like OSStart, but returns: when stop() is called, or with the exception that left
-// a task.
+// Runs the tasks like OSStart. Returns after stop() was called; rethrows an exception that a task
+// has thrown.
 void run();
 
-// Leaves run() from within a task, an interrupt or idle. Tasks do not continue afterwards.
+// Leaves run(), called from a task, an interrupt or idle. No task runs afterwards.
 [[noreturn]] void stop();
 
 // Serves pending interrupts, if they are enabled and none is being served.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// exceptions: marshalling of exceptions, of operations' exception unions, and of classes.
+// exceptions: generates the marshalling of exceptions, of the unions of exceptions that operations
+// throw, and of classes.
 
 #include "c/context.h"
 #include <algorithm>
@@ -8,7 +9,7 @@
 
 namespace {
 
-// Returns whether a member of the exception or of one of its bases holds a class.
+// Returns whether the exception or one of its bases has a member that holds a class.
 bool hasClasses(const Declaration& d) {
     return anyClass(memberSlots(d)) || (d.base() && hasClasses(*d.base()));
 }
@@ -17,12 +18,13 @@ bool requiresClasses(const Declaration& d) {
     return anyRequiredClass(memberSlots(d)) || (d.base() && requiresClasses(*d.base()));
 }
 
-// Returns the path from an exception to the member that stores unknown slices.
+// Returns the path from the exception to the member that stores its unknown slices.
 std::string unknownOf(const Declaration& d) {
     return d.base() && d.base()->preserves() ? "base." + unknownOf(*d.base()) : "ice_unknown";
 }
 
-// Returns whether the code needs a table of instances; preserved slices may also hold instances.
+// Returns whether the code needs a table of instances. Classes need it, and so do preserved slices,
+// because they may contain instances.
 bool needsTables(const Declaration& d) {
     return hasClasses(d) || d.preserves();
 }
@@ -81,7 +83,7 @@ void exceptionFunctions(Writer& w, const Declaration& d) {
 
 namespace {
 
-// An exception that an operation may throw, with its names for the templates.
+// An exception that an operation may throw, and its names in the templates.
 struct Thrown {
     const Declaration* exception;
     Writer::Values names;
@@ -112,7 +114,7 @@ void writeThrown(Writer& w, const std::vector<Thrown>& family) {
     w.line("}");
 }
 
-// Reads one slice, which belongs to one of the exceptions or to none.
+// Writes code that reads one slice and compares its type id with the exceptions of this family.
 void readOneSlice(Writer& w, const std::vector<Thrown>& family, bool preserves) {
     w.line(std::string(preserves ? "" : "Ice_String ") + "id = Ice_InputStream_startSlice(is);");
     const char* otherwise = "";
@@ -184,8 +186,8 @@ void classFunctions(Writer& w, const Declaration& d) {
            v);
 }
 
-// The classes that the main file's types mention and do not define, the interfaces that they
-// mention by value, and types derived from these.
+// Returns the classes that types of the main file mention but do not define, the interfaces that
+// they pass by value, and the types derived from both.
 static std::set<const Declaration*> mentioned(const Unit& unit) {
     std::set<const Declaration*> found;
     auto add = [&](const Type& t) {
@@ -208,7 +210,7 @@ static std::set<const Declaration*> mentioned(const Unit& unit) {
                 add(p.type);
         }
     }
-    for (const auto& d : unit.declarations) // bases precede derived types
+    for (const auto& d : unit.declarations) // a base is written before the types derived from it
         for (const Declaration* base : d->bases)
             if (d->kind == Declaration::Kind::Interface && found.count(base))
                 found.insert(d.get());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// parser: tokens, recovery, modules, and the choice of a definition's rule.
+// parser: handles tokens, error recovery and modules, and selects the rule for each definition.
 
 #include "front/parser.h"
 #include <algorithm>
@@ -69,7 +69,7 @@ std::string Parser::name(const std::string& what) {
              "')");
     NameRules rules = rules_;
     if (!isMain(token().at.file))
-        rules = {true, true}; // an including file is not responsible for these names
+        rules = {true, true}; // an included file is not the user's: its names may break the rules
     checkName(text, rules, token().at, diagnostics_);
     ++position_;
     return std::string(text);
@@ -98,7 +98,7 @@ void Parser::recover() {
         if (isSymbol("{"))
             ++depth;
         if (isSymbol("}") && depth-- == 0)
-            return; // belongs to the surrounding rule
+            return; // the brace ends the surrounding rule
         bool ends = (isSymbol(";") || isSymbol("}")) && depth <= 0;
         ++position_;
         if (ends) {
@@ -112,7 +112,7 @@ std::string Parser::doc() {
     return std::string(token().doc);
 }
 
-// Reads metadata with the doc comment before or after it.
+// Reads metadata, and the doc comment before or after it.
 void Parser::readMetadata(std::string& text, Metadata& found) {
     text = doc();
     found = metadata();
@@ -120,7 +120,8 @@ void Parser::readMetadata(std::string& text, Metadata& found) {
         text = doc();
 }
 
-// The preprocessor may spell the path of the main file differently from the command line.
+// Returns whether this is the main file, whose path the preprocessor may write differently from the
+// command line.
 bool Parser::isMain(std::string_view file) {
     auto [it, isNew] = isMain_.try_emplace(file, false);
     if (isNew) {
@@ -130,7 +131,7 @@ bool Parser::isMain(std::string_view file) {
     return it->second;
 }
 
-// Reads strings up to `end`, separated by commas.
+// Reads strings separated by commas, up to `end`.
 void Parser::metadataStrings(Metadata& found, std::string_view end) {
     do {
         if (!at(Token::Kind::String))
@@ -143,13 +144,13 @@ void Parser::metadataStrings(Metadata& found, std::string_view end) {
 
 Parser::Metadata Parser::metadata() {
     Metadata found;
-    // Ice 3.8 has several groups before one definition.
+    // Ice 3.8 allows several groups before one definition.
     while (accept("["))
         metadataStrings(found, "]");
     return found;
 }
 
-// suppress-warning, suppress-warning:a, suppress-warning:a,b
+// Handles the metadata suppress-warning, suppress-warning:a and suppress-warning:a,b.
 void Parser::suppressWarnings(const std::string& metadata, std::string_view file) {
     static const std::string directive = "suppress-warning";
     if (metadata == directive)
@@ -260,7 +261,7 @@ Declaration& Parser::add(Declaration::Kind kind, const std::string& name, const 
     return d;
 }
 
-// Declares the name that follows. It replaces a forward declaration of the same kind in place.
+// Declares the name that follows. It takes the place of a forward declaration of the same kind.
 Declaration& Parser::declareType(Declaration::Kind kind, bool mayBeForward) {
     Location begin = token().at;
     std::string called = name("the " + std::string(kindName(kind)) + "'s name");
@@ -294,11 +295,12 @@ Declaration& Parser::declareType(Declaration::Kind kind, bool mayBeForward) {
     if (earlier->isLocal != d.isLocal)
         error(begin, "'" + called + "' is " + (d.isLocal ? "" : "not ") +
                          "local here, unlike at line " + std::to_string(earlier->at.line));
-    if (isSymbol(";")) { // another forward declaration
+    if (isSymbol(";")) { // a repeated forward declaration
         unit_.declarations.pop_back();
         return *earlier;
     }
-    // Other declarations refer to the definition; moving it to the end keeps the source order.
+    // Other declarations already refer to this one, so it becomes the definition; moving it to the
+    // end keeps the order of the source.
     auto it = std::find_if(unit_.declarations.begin(), unit_.declarations.end(),
                            [&](const auto& p) { return p.get() == earlier; });
     *earlier = std::move(d);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// map: maps interfaces to slots: checks what is allowed, and assigns words.
+// map: maps interfaces to slots: checks that the types are allowed in hardware, and assigns words.
 
 #include "hw/generator.h"
 #include <algorithm>
@@ -52,8 +52,8 @@ private:
         diagnostics_.error(at, "interface '" + d_.name + "' in hardware: " + text);
     }
 
-    // [":hw", "hw:type:0x4144", "hw:version:0x0100"]; default: the first letters of the name, and
-    // 1.0.
+    // Reads the identity from [":hw", "hw:type:0x4144", "hw:version:0x0100"]. The default is the
+    // first letters of the name, and version 1.0.
     void identity() {
         std::string letters = upperCase(d_.name + "_");
         block_.type = static_cast<unsigned>(letters[0]) << 8 | static_cast<unsigned>(letters[1]);
@@ -68,7 +68,7 @@ private:
         }
     }
 
-    // [":hw", "hw:pin:pwm_o:4", "hw:pin:fault_i"]: name and width of ports that are pins.
+    // Reads the pins from [":hw", "hw:pin:pwm_o:4", "hw:pin:fault_i"]: name and width of each port.
     void pins() {
         for (const std::string& m : d_.metadata) {
             if (m.compare(0, 6, "hw:pin") != 0)
@@ -103,7 +103,7 @@ private:
                name == "clk_i" || name == "rst_i" || name == "irq_o";
     }
 
-    // First the chosen words, then the others in order into the gaps.
+    // Assigns the words that the source chooses, then puts the others in order into the gaps.
     void place() {
         std::map<unsigned, std::string> taken = {{control, "CONTROL"}};
         if (block_.hasLong())
@@ -162,10 +162,10 @@ private:
                     w.number = take(w.name);
     }
 
-    // Checks that no two Slice names give one port name, as aB and a_b do, or a member x of p and
-    // p_x.
+    // Checks that no two Slice names map to one port name, such as aB and a_b, or the member x of p
+    // and p_x.
     void checkPorts() {
-        std::map<std::string, std::string> owners; // by name of the port
+        std::map<std::string, std::string> owners; // Slice names by port name
         for (const Port& p : wrapperPorts(block_)) {
             std::string owner = p.call ? p.call->operation->name : "the wrapper";
             auto [it, isNew] = owners.emplace(p.name.substr(0, p.name.size() - 2), owner);
@@ -256,7 +256,7 @@ std::vector<Port> wrapperPorts(const Block& b) {
     return list;
 }
 
-// Warns of each exception in the file that no operation throws, which therefore has no register.
+// Warns of each exception in the file that no operation throws, because it gets no register.
 void warnOfUnthrown(const Unit& unit, Diagnostics& diagnostics) {
     std::set<const Declaration*> thrown;
     for (const auto& d : unit.declarations)

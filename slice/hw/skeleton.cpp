@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// skeleton: generates a first version of a core, in Verilog or VHDL, which answers every call of
-// its interface with zeros, and a test that makes all calls. For make new-ip; afterwards it belongs
-// to the author.
+// skeleton: generates a first version of a core in Verilog or VHDL, which answers every call with
+// zeros, and a test that makes all calls. `make new-ip` uses it; afterwards the author edits the
+// files.
 
 #include "c/context.h"
 #include "hw/generator.h"
@@ -13,7 +13,8 @@
 namespace hw {
 namespace {
 
-// Ports of a core that its wrapper does not have: the memory port (docs/memory.md), and pins.
+// Returns the ports of a core that do not lead to its wrapper: the memory port (docs/memory.md) and
+// pins.
 std::vector<Port> ownPorts(const Block& b) {
     std::vector<Port> list;
     if (b.memoryBytes)
@@ -40,7 +41,7 @@ std::vector<Port> ownPorts(const Block& b) {
     return list;
 }
 
-// Ports of the wrapper towards the slot, or towards the core.
+// Returns the ports of the wrapper towards the slot (`ofSlot`) or towards the core.
 std::vector<Port> portsOf(const Block& b, bool ofSlot) {
     std::vector<Port> list = wrapperPorts(b);
     auto core = std::find_if(list.begin(), list.end(),
@@ -65,8 +66,8 @@ void head(Writer& w, const Block& b, const char* comment) {
     w.line();
 }
 
-// The memory port as two idle streams of words, with which a core reads and writes its buffers. No
-// operation has a name that begins with npi_.
+// The memory port as two idle streams of words, over which a core can read and write its buffers.
+// No operation may have a name that begins with npi_.
 const char npiStream[] =
     R"(    // The buffers in DDR3 as two streams of words, which rest here (docs/memory.md, npi_stream).
     wire        npi_read_start = 1'd0, npi_read_take = 1'd0;
@@ -93,7 +94,7 @@ const char npiStream[] =
                         npi_read_valid, npi_read_idle, npi_write_base[5:0], npi_write_ready,
                         npi_write_idle, 1'b0};)";
 
-// The same in VHDL: signals, then statements.
+// The same in VHDL: first the signals, then the statements.
 const char npiSignals[] =
     R"(  -- The buffers in DDR3 as two streams of words, which rest here (docs/memory.md, npi_stream).
   signal npi_read_start, npi_read_take, npi_read_valid, npi_read_idle : std_logic;
@@ -256,7 +257,8 @@ GeneratedFile vhdlSkeleton(const Block& b) {
 
 namespace {
 
-// Number of elements of a sequence in the test: 4, or the maximum if lower; 0 for other values.
+// Returns the number of elements that the test gives to a sequence: 4, or the maximum if that is
+// lower. Returns 0 for other types.
 unsigned shown(const Call& c, const Type& type, const std::string& value) {
     if (isSequence(type))
         for (const Word& word : c.words)

@@ -2,9 +2,9 @@
  *
  * board: set-up of the STM32F2 (RM0033), and its interrupt routines.
  *
- * The FPGA's interrupt is a level on a pin of EXTI0; EXTI only sees its rising edge, so the
- * routine works until the pin is low. Interrupts that call the kernel have priorities of 0x40 and
- * more: uC/OS-II's own port masks these, and none above.
+ * The FPGA's interrupt is a level on a pin of EXTI0, but EXTI only detects its rising edge. The
+ * routine therefore repeats its work until the pin is low. Interrupts that call the kernel have
+ * priorities of 0x40 or more: the port of uC/OS-II masks these, and no priority below 0x40.
  */
 #include "board.h"
 #include "board_pins.h"
@@ -53,7 +53,8 @@ static void write32(void* context, U32 address, U32 value) {
 
 const FSMC_Port board_fsmc = {read8, write8, read16, write16, read32, write32};
 
-/* A port's registers that give pins to the FSMC; board_pins.h has the values of the board. */
+/* Registers of a GPIO port that connect pins to the FSMC; board_pins.h has the values for this
+ * board. */
 typedef struct Port {
     U32 base, mode, speed, pull, low, high;
 } Port;
@@ -113,8 +114,9 @@ void Board_serveWatchdog(void) {
 void EXTI0_Handler(void) {
     OSIntEnter();
     EXTI_PR = 1UL << BOARD_IRQ_PIN;
-    /* The edge is cleared before the pin is looked at, so the register is read back. A later clear
-     * would take the edge of an interrupt that rises in between, and its level would be missed. */
+    /* The register is read back, so that the edge is cleared before the pin is read. If it were
+     * cleared later, it could clear the edge of an interrupt that rises in between; that interrupt
+     * would be lost. */
     (void)EXTI_PR;
     while (GPIO_IDR(BOARD_IRQ_PORT) >> BOARD_IRQ_PIN & 1UL)
         Program_onFpgaInterrupt();

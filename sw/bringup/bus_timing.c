@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * bus_timing: measures how late NOE, NE1, NE2 and NWAIT are, by shortening accesses until they
+ * bus_timing: measures how late NOE, NE1, NE2 and NWAIT arrive, by shortening accesses until they
  * fail.
  *
- * Read path: the chip answers a read of a fetched block combinationally. An access of mode A with
- * ADDSET 0 leaves (DATAST - 1) HCLK - 4 ns for NE1, NOE, address and data together; with ADDSET 3
- * the time of NOE stays, and NE1 and the address have 3 HCLK more.
- * NWAIT: in mode 1 it must be valid ADDSET HCLK after the beginning of an access.
+ * Read path: the chip answers a read of a fetched block combinationally. In an access of mode A
+ * with ADDSET 0, NE1, NOE, address and data together may take (DATAST - 1) HCLK - 4 ns. With ADDSET
+ * 3 the time for NOE is the same; NE1 and the address have 3 HCLK more. NWAIT: in mode 1, NWAIT
+ * must be valid ADDSET HCLK after the start of an access.
  */
 #include "bringup.h"
 #include "bus.h"
@@ -17,7 +17,7 @@
 #include "timing.h"
 
 #define BLOCK_HALFWORDS 32U
-#define READ_SETUP 40U /* 0.1 ns: read set-up time of the FSMC, without one HCLK */
+#define READ_SETUP 40U /* read set-up time of the FSMC in addition to one HCLK, 0.1 ns */
 #define DRIVER_ADDSET 2U
 #define MOST_ADDSET 12U
 
@@ -25,7 +25,7 @@ typedef struct Point {
     U8 datast, mhz;
 } Point;
 
-/* From the shortest read to the longest. */
+/* Points of measurement, from the shortest read to the longest. */
 static const Point points[] = {{3, 120}, {3, 110}, {3, 100}, {3, 90}, {4, 120}, {4, 110}, {4, 100},
                                {4, 90},  {4, 80},  {4, 70},  {4, 60}, {5, 60},  {6, 60}};
 #define POINTS (sizeof points / sizeof points[0])
@@ -39,7 +39,7 @@ static U16 pattern(U32 i) {
     return (U16)(i & 1U ? ~(0x0101UL * i) : 0x0101UL * i);
 }
 
-/* Returns the bits that were wrong in reads of a block that the chip has fetched. */
+/* Reads a block that the chip has fetched, and returns the bits that were wrong. */
 static U32 readErrors(U32 addset, U32 datast) {
     static const Bus_Timing patient = {15, 60, 0, 0};
     Bus_Timing fast;
@@ -126,7 +126,7 @@ static int memoryIsRight(void) {
     return 1;
 }
 
-/* Returns the least ADDSET with which accesses of a bank wait as they must. */
+/* Returns the smallest ADDSET with which accesses to a bank still wait for NWAIT. */
 static U32 leastAddset(U32 bank) {
     Bus_Timing t;
     int isRight = 0;

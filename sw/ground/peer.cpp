@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// peer: moves messages from programs' connections to the vehicle, in the engine's thread.
+// peer: transfers messages from the programs' connections to the vehicle; runs in the engine's
+// thread.
 
 #include "peer.h"
 
@@ -19,7 +20,7 @@ namespace XBeeAT {
 namespace {
 
 constexpr U32 never = 0xFFFFFFFFu;
-constexpr U32 lookUs = 50000; // interval of looking for a channel while programs wait
+constexpr U32 lookUs = 50000; // interval of the searches for a free channel while programs wait, us
 
 } // namespace
 
@@ -72,14 +73,14 @@ void Peer::refusePrograms() {
     waiting_.clear();
 }
 
-// Notes that a program's message waits for room.
+// Records that a message of a program waits for room.
 void Peer::waitForRoom(int channel) {
     if (!full_)
         turn_ = channel;
     full_ |= 1u << channel;
 }
 
-// Sends the next message of a program. Returns whether it was taken.
+// Sends the next message of a program. Returns whether the link accepted it.
 bool Peer::sendMessage(int channel, U32 now) {
     ProgramConnection& program = programs_[channel];
     if (!program.is(ProgramConnection::State::Open))
@@ -101,9 +102,9 @@ bool Peer::sendMessage(int channel, U32 now) {
     return send(channel, now);
 }
 
-// Sends messages from the programs. They take turns, one message each, so that a flood leaves room
-// for others. While one waits for room the others send only short messages, for which the link has
-// a reserve.
+// Sends the programs' messages, one message of each program in turn, so that a program that floods
+// the link leaves room for others. While a message waits for room, the other programs may only send
+// short messages, for which the link has a reserve.
 void Peer::sendMessages(U32 now) {
     for (int idle = 0, channel = turn_; idle < LINK_CHANNELS; ++idle) {
         if (!full_)
@@ -126,8 +127,8 @@ void Peer::openWanted(U32 now) {
     }
 }
 
-// Ends the connections of programs that waited too long for room for a message. Returns the time of
-// the next check, in microseconds.
+// Ends the connections of programs whose messages have waited too long for room. Returns the time
+// until the next check, us.
 U32 Peer::endLate(U32 now) {
     U32 wait = never;
     for (int channel = 0; channel < LINK_CHANNELS; ++channel) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// peer_programs: functions of a peer that programs call, in their threads.
+// peer_programs: the functions of a peer that programs call, each in its own thread.
 
 #include "peer.h"
 
@@ -17,7 +17,7 @@ namespace XBeeAT {
 
 namespace {
 
-// Small buffers, so that back-pressure reaches the caller.
+// Creates two connected sockets with small buffers, so that back-pressure reaches the caller.
 bool makePair(int ends[2]) {
     constexpr int bytes = 4096;
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0, ends) != 0)
@@ -27,7 +27,7 @@ bool makePair(int ends[2]) {
     return true;
 }
 
-// Returns whether the program has closed its end and left no bytes to read.
+// Returns whether the program has closed its end and has left no bytes to read.
 bool hasLeft(int fd) {
     pollfd end{fd, POLLRDHUP, 0};
     char byte;
@@ -36,8 +36,9 @@ bool hasLeft(int fd) {
 
 } // namespace
 
-// Returns a channel for a program, `wanted` or any (-1): a free channel, otherwise the channel of
-// the program that has been silent longest, if that is long enough to displace it; otherwise -1.
+// Returns a channel for a program: `wanted`, or any channel if `wanted` is -1. Prefers a free
+// channel. Otherwise takes the channel of the program that has been silent longest, if it has been
+// silent long enough; otherwise returns -1.
 int Peer::freeChannel(int wanted, U32 now) {
     U32 longest =
         host_.settings.idleMs ? static_cast<U32>(host_.settings.idleMs) * 1000 - 1 : 0xFFFFFFFFu;
@@ -46,7 +47,7 @@ int Peer::freeChannel(int wanted, U32 now) {
         const int channel = wanted >= 0 ? wanted : (nextChannel_ + i) % ownChannels;
         ProgramConnection& s = programs_[channel];
         if (s.is(ProgramConnection::State::Wanted) &&
-            hasLeft(s.fd())) // it disconnected before the link was up
+            hasLeft(s.fd())) // the program disconnected before the link was up
             s.close();
         if (s.is(ProgramConnection::State::Closed)) {
             nextChannel_ = (channel + 1) % ownChannels;
@@ -64,7 +65,8 @@ int Peer::freeChannel(int wanted, U32 now) {
     return idlest;
 }
 
-// Assigns channels to waiting programs, in order. A disconnected program gets none.
+// Assigns channels to waiting programs in the order in which they came. A program that has
+// disconnected gets none.
 void Peer::placePrograms(U32 now) {
     for (auto program = waiting_.begin(); program != waiting_.end();) {
         const bool isGone = hasLeft(program->fd);
@@ -136,7 +138,7 @@ int Peer::accept() {
     int ends[2];
     if (channel < 0)
         return -1;
-    if (!makePair(ends)) { // no program replies to the UAV
+    if (!makePair(ends)) { // no socket can be made, so no program can reply to the UAV
         log(0, std::string("the UAV calls, and no socket can be made: ") + std::strerror(errno));
         end(channel, 1, "is refused");
         host_.wake();

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee_plugin: the xbee-at transport of ZeroC Ice 3.7: an endpoint, its options as text and on the
-// wire, and its factory. It is built twice, as libraries for the C++98 mapping (also used by
-// Python) and for the C++11 mapping. It links to ZeroC Ice, which is GPL-2.0.
+// xbee_plugin: the xbee-at transport of ZeroC Ice 3.7. It contains the endpoint, its options as
+// text and on the wire, and the factory of endpoints. The file is compiled twice, as a library for
+// the C++98 mapping, which Python also uses, and as a library for the C++11 mapping. It links to
+// ZeroC Ice, which is GPL-2.0.
 
 #include "plugin_connection.h"
 
@@ -26,7 +27,7 @@ public:
         : instance_(instance), o_(options) {}
 
     void streamWriteImpl(Ice::OutputStream* s) const override {
-        // A proxy only contains data that a peer can use: never the device of this machine.
+        // Only what a peer can use is sent in a proxy; the device of this machine is not.
         s->write(static_cast<Ice::Short>(o_.serial.target));
         s->write(static_cast<Ice::Byte>(o_.channel));
         s->write(o_.timeoutMs);
@@ -61,8 +62,8 @@ public:
         callback->connectors(list);
     }
     IceInternal::AcceptorPtr acceptor(const std::string&) const override {
-        // The acceptor publishes the address of this side, so that a proxy to the peer on the same
-        // device is not taken for an object of this process.
+        // The acceptor publishes the address of this side. With the peer's address, Ice would take
+        // a proxy to the peer on the same device for an object of this process.
         return new Acceptor(instance_, o_,
                             with([](EndpointOptions& o) { o.serial.target = o.serial.source; }));
     }
@@ -127,10 +128,10 @@ protected:
                                                   "' in endpoint '" + endpoint + "'");
         if (option == "-d")
             o_.serial.device = argument;
-        else if (option == "-k") { // a secret, never printed
+        else if (option == "-k") { // the key is secret, so the message does not repeat it
             checkModemKey(argument, "an xbee-at endpoint");
             o_.serial.modemKey = argument;
-        } else if (option != "-h") // -h is accepted and ignored, because radios have no host
+        } else if (option != "-h") // -h is accepted and ignored, because a radio has no host
             number(option[1], argument, endpoint);
         return true;
     }
@@ -176,7 +177,7 @@ private:
     EndpointOptions o_;
 };
 
-// Factory makes the endpoints of one of the two protocols.
+// Creates the endpoints of one of the two protocols.
 class Factory : public IceInternal::EndpointFactory {
 public:
     Factory(const InstancePtr& instance, bool isWire) : instance_(instance), isWire_(isWire) {}
@@ -201,7 +202,8 @@ public:
         o.channel = channel > 2 ? 255 : channel;
         return ICE_MAKE_SHARED(Endpoint, instance_, o);
     }
-    // Another thread may be parsing a proxy: the instance is kept, and refuses further connections.
+    // Keeps the instance, because another thread may be parsing a proxy; the instance refuses
+    // further connections.
     void destroy() override { instance_->destroy(); }
     IceInternal::EndpointFactoryPtr clone(const IceInternal::ProtocolInstancePtr&) const override {
         return new Factory(instance_, isWire_);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_operation: the tables by which generated code describes an interface.
+ * ice_operation: tables with which generated code describes the operations of an interface.
  */
 #pragma once
 
@@ -10,11 +10,11 @@
 
 enum { ICE_NORMAL = 0, ICE_NONMUTATING = 1, ICE_IDEMPOTENT = 2 };
 
-/* Added to the mode of a request that arrived by broadcast (Ice_markBroadcast). */
+/* Number added to the mode of a request that arrived by broadcast (Ice_markBroadcast). */
 #define ICE_BROADCAST 4
 
-/* Request modes that an operation accepts, one bit each; with metadata [":broadcast"] also requests
- * by broadcast. */
+/* Request modes that an operation accepts, one bit each. ICE_TAKES_BROADCAST adds the same modes by
+ * broadcast, for operations with metadata [":broadcast"]. */
 enum {
     ICE_TAKES_NORMAL = 1 << ICE_NORMAL,
     ICE_TAKES_IDEMPOTENT = 1 << ICE_NONMUTATING | 1 << ICE_IDEMPOTENT
@@ -22,8 +22,9 @@ enum {
 #define ICE_TAKES_BROADCAST(modes) ((modes) | (modes) << ICE_BROADCAST)
 
 typedef struct Ice_Operation {
-    const char* name; /* 0 marks the end of a table */
-    /* `table`: the servant's M_I_Operations */
+    const char* name; /* name; 0 marks the end of a table */
+    /* Reads the parameters, calls the servant and writes the result. `table` is the servant's table
+     * of functions, of type M_I_Operations. */
     Ice_Status (*dispatch)(Ice_ObjectPtr self, const void* table, const Ice_Current* current,
                            Ice_InputStreamPtr is, Ice_OutputStreamPtr os);
     Ice_Byte modes;
@@ -33,16 +34,18 @@ typedef struct Ice_Base Ice_Base;
 
 typedef struct Ice_Interface {
     const Ice_Operation* operations;
-    const Ice_Base* bases; /* 0 if none */
+    const Ice_Base* bases; /* interfaces from which this one is derived; 0 if none */
 } Ice_Interface;
 
 struct Ice_Base {
-    const Ice_Interface* interface; /* 0 marks the end */
-    size_t offset;                  /* offset of its table of operations in the derived one */
+    const Ice_Interface* interface; /* 0 marks the end of the list */
+    /* offset of the base's table of functions in the table of the derived interface */
+    size_t offset;
 };
 
-/* Calls the operation that `current` names. ICE_PROTOCOL: it was called as idempotent and is not,
- * or the reverse, or by broadcast and is not meant to be. */
+/* Calls the operation that `current` names. Returns ICE_PROTOCOL if the mode of the request does
+ * not fit: only one of request and operation is idempotent, or the request arrived by broadcast and
+ * the operation does not allow this. */
 Ice_Status Ice_Object_dispatch(const Ice_Interface* interface, const void* table,
                                Ice_ObjectPtr self, const Ice_Current* current,
                                Ice_InputStreamPtr is, Ice_OutputStreamPtr os);

@@ -1,16 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_option: options in endpoint strings: "-h host -p 10000 -v 'a b'".
- *
- * As in Ice, an option's value does not begin with '-', and of two options with one letter the last
- * one counts. Quotes stand around a whole word.
+ * ice_option: reads options in endpoint strings, such as "-h host -p 10000 -v 'a b'". * As in Ice,
+ * the value of an option does not begin with '-', and if an option occurs twice, the last one
+ * counts. Quotes must enclose a whole word.
  */
 #include "ice_private.h"
 
 #include <string.h>
 
-/* Takes the next word of the options, without its quotes. Returns the text after it; 0 at the end,
- * with `size` -1 if quotes do not match. */
+/* Finds the next word of the options, without its quotes. Returns the text after the word. Returns
+ * 0 at the end of the options, and also if quotes do not match; `size` is then -1. */
 static const char* nextWord(const char* text, const char** word, Ice_Int* size) {
     char quote = 0;
     *size = 0;
@@ -27,7 +26,7 @@ static const char* nextWord(const char* text, const char** word, Ice_Int* size) 
     if (*text == '"' || *text == '\'')
         quote = *text++;
     *word = text;
-    /* A colon ends an endpoint even within single quotes. */
+    /* Within single quotes, too, a colon ends the endpoint. */
     text += strcspn(text, quote == '"' ? "\"" : quote ? "':" : ICEC_SPACES ":'\"");
     *size = (Ice_Int)(text - *word);
     if (quote && *text == quote && text[-1] != '\\')
@@ -35,7 +34,7 @@ static const char* nextWord(const char* text, const char** word, Ice_Int* size) 
     else if (quote)
         *size = -1;
     if (*text && strchr(ICEC_SPACES ":", *text) == 0)
-        *size = -1; /* a quote within a word */
+        *size = -1; /* a quote in the middle of a word is an error */
     return *size < 0 ? 0 : text;
 }
 
@@ -67,7 +66,7 @@ Ice_Bool Ice_areOptions(const char* options, const char* letters) {
 const char* Ice_findOption(const char* options, char letter, Ice_Int* size) {
     const char *word, *found = 0;
     Ice_Int length;
-    int matches = 0; /* the previous word was "-x" */
+    int matches = 0; /* 1 if the previous word was this option */
     while (options && (options = nextWord(options, &word, &length)) != 0) {
         if (matches) {
             found = word;
@@ -87,7 +86,7 @@ Ice_Bool Ice_hasOption(const char* options, char letter) {
     return 0;
 }
 
-/* Reads a decimal number. Returns 0 if the word is not a number. */
+/* Reads a decimal number from 0 to `most`. Returns 0 if the word is not such a number. */
 static Ice_Bool readInteger(const char* at, Ice_Int size, Ice_Int most, Ice_Int* value) {
     Ice_Int number = 0;
     while (size > 0 && strchr(ICEC_SPACES, *at))

@@ -4,7 +4,7 @@
  */
 #include "os_core.h"
 
-/* Allocates an event. Returns 0 if none is free, or in an interrupt. */
+/* Allocates an event. Returns 0 if none is free, or if called in an interrupt. */
 static OS_EVENT* create(OS_EventType type) {
     OS_CPU_SR cpu_sr;
     OS_EVENT* found = 0;
@@ -21,7 +21,8 @@ static OS_EVENT* create(OS_EventType type) {
     return found;
 }
 
-/* Checks a pend call on an event of this type. Returns OS_ERR_NONE or the error of the call. */
+/* Checks whether a pend call on an event of this type is allowed. Returns OS_ERR_NONE or the error
+ * of the call. */
 static U8 pendError(const OS_EVENT* event, OS_EventType type) {
     if (!event)
         return OS_ERR_PEVENT_NULL;
@@ -32,9 +33,9 @@ static U8 pendError(const OS_EVENT* event, OS_EventType type) {
     return os_kernel.lockNesting ? OS_ERR_PEND_LOCKED : OS_ERR_NONE;
 }
 
-/* Suspends the current task on an event until it is signalled or `timeout` ticks have passed.
- * Returns 1 on time-out. Interrupts are disabled at the call and at the return, and enabled in
- * between. */
+/* Suspends the current task until the event is signalled or `timeout` ticks have passed. Returns 1
+ * on time-out. Interrupts must be disabled at the call, and are disabled at the return; they are
+ * enabled in between. */
 static U8 waitFor(OS_EVENT* event, U32 timeout, OS_CPU_SR* cpu_sr) {
     OS_Task* task = os_kernel.current;
     task->event = event;
@@ -48,7 +49,7 @@ static U8 waitFor(OS_EVENT* event, U32 timeout, OS_CPU_SR* cpu_sr) {
     return task->timedOut;
 }
 
-/* Makes the first waiting task ready and returns it; 0 if none waits. */
+/* Makes the first task that waits for the event ready and returns it; returns 0 if none waits. */
 static OS_Task* wake(OS_EVENT* event) {
     U8 priority;
     OS_Task* task;
@@ -147,7 +148,8 @@ void OSMutexPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr) {
     if (!pevent->owner) {
         pevent->owner = self;
         if (self->priority <= pevent->ceiling)
-            *perr = OS_ERR_PIP_LOWER; /* owned all the same, as in uC/OS-II */
+            /* the task owns the mutex in spite of the error, as in uC/OS-II */
+            *perr = OS_ERR_PIP_LOWER;
     } else {
         OS_Task* owner = pevent->owner;
         if (owner->priority > self->priority && owner->priority > pevent->ceiling)
@@ -162,7 +164,9 @@ INT8U OSMutexPost(OS_EVENT* pevent) {
     OS_CPU_SR cpu_sr;
     OS_Task* self = os_kernel.current;
     U8 priority = self->priority;
-    int mayRun; /* another task: one that waited, or one that was below the raised priority */
+    /* 1 if another task may have to run: one that waited for the mutex, or one that the raised
+     * priority has delayed */
+    int mayRun;
     if (os_kernel.interruptNesting)
         return OS_ERR_POST_ISR;
     if (!pevent)

@@ -1,33 +1,34 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_backup: the vehicle's memory that a battery keeps (backup.h), its random numbers, and the
- * state that is kept there: address and flight.
+ * uav_backup: the vehicle's memory that a battery powers (backup.h), the state that is kept there
+ * (address and flight), and random numbers.
  */
 #pragma once
 
 #include "backup.h"
 
-/* Functions of the board for secrets and random numbers. `context` is passed back unchanged. */
+/* Functions of the board for secrets and random numbers. `context` is passed to them unchanged. */
 typedef struct UAV_Board {
-    /* Returns 32 bits that cannot be guessed. */
+    /* Returns 32 random bits from a source that cannot be predicted. */
     U32 (*random)(void* context);
     /* Read and write words 0..BACKUP_WORDS - 1, which keep their values without power. */
     U32 (*load)(void* context, U32 word);
     void (*store)(void* context, U32 word, U32 value);
 } UAV_Board;
 
-/* Sets the board, which must stay valid. Call it first. */
+/* Sets the board, which must stay valid. Call this first. */
 void UAV_useBoard(const UAV_Board* board, void* context);
 
-/* Returns 32 bits that cannot be guessed. */
+/* Returns 32 random bits from the board's source. */
 U32 UAV_random(void* unused);
 
 U32 UAV_load(U32 word);
 void UAV_store(U32 word, U32 value);
 
-/* Returns the vehicle's address: its modem's MY, to which its keys are bound. */
+/* Returns the address of the vehicle, which is the MY of its modem. Its keys are bound to this
+ * address. */
 U32 UAV_address(void);
 
-/* Return and set whether the vehicle flies; kept through a restart in flight. */
+/* Return and set whether the vehicle is flying. The state survives a restart in flight. */
 int UAV_isFlying(void);
 void UAV_setFlying(int isFlying);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_update: the servants of new firmware and bitstreams, and the task for long steps, below all
- * others but the watchdog's: one signature, sector or digest at a time.
+ * uav_update: servants that receive new firmware and bitstreams, and a task for the long steps: it
+ * verifies one signature, erases one sector or computes one digest at a time. Only the task of the
+ * watchdog has a lower priority.
  */
 #include "uav_update.h"
 #include "Update.h"
@@ -13,12 +14,13 @@
 #include <lz4.h>
 #include <string.h>
 
-#define STACK_WORDS 1152 /* a signature takes 3.5 KB */
+#define STACK_WORDS 1152 /* verifying a signature takes 3.5 KB */
 #define PERIOD (OS_TICKS_PER_SEC / 10U)
 #define PIECE_BYTES 4096
 #define DICTIONARY_BYTES 65535U
-#define TRIAL_S 60U  /* after this time an unconfirmed firmware is replaced */
-#define RESTART_S 1U /* gives pending replies time to leave */
+/* time for confirming a new firmware, s; after it, the old firmware is started again */
+#define TRIAL_S 60U
+#define RESTART_S 1U /* delay before a restart, s; pending replies are sent meanwhile */
 
 UAV_Update uav_update[UAV_UPDATABLES];
 void (*uav_restart)(void);
@@ -46,7 +48,7 @@ Ice_Status Update_Firmware_getStatus(Update_FirmwarePtr self, Update_Status* res
     return ICE_OK;
 }
 
-/* Answers, and wakes the task for the requested work. */
+/* Sets the result of a call; if it is OK, wakes the task, which does the requested work. */
 static Ice_Status answer(Receiver_Reason reason, Update_Reason* result) {
     *result = (Update_Reason)reason;
     if (reason == RECEIVER_OK)
@@ -68,9 +70,9 @@ Ice_Status Update_Firmware_begin(Update_FirmwarePtr self, const Update_Header* s
     return answer(Receiver_begin(receiverOf(self), &header), result);
 }
 
-/* Returns the piece's bytes; 0 if they are not as announced. The dictionary of a compressed piece
- * is the part of the image in flash, which the processor reads as memory, so a loss of power loses
- * nothing. */
+/* Returns the bytes of a piece, or 0 if their number differs from the announced one. The dictionary
+ * of a compressed piece is the part of the image that is already in flash. The processor reads it
+ * there as memory, so it also exists after a loss of power. */
 static const U8* unpack(const Receiver* receiver, U32 offset, Ice_Int size,
                         const Update_Piece* bytes) {
     static U8 unpacked[PIECE_BYTES];
@@ -130,8 +132,8 @@ Ice_Status Update_Firmware_confirm(Update_FirmwarePtr self, Update_Reason* resul
     return ICE_OK;
 }
 
-/* Does one step of each update; returns whether one has more to do. During flight updates wait:
- * erases stall the processor, and a new image restarts it. */
+/* Does one step of each update. Returns 1 if at least one update has more steps. Updates wait
+ * during flight, because an erase stalls the processor and a new image restarts it. */
 static int workOn(U32 uptime) {
     int more = 0, i;
     for (i = 0; i < UAV_UPDATABLES && !UAV_isFlying(); ++i) {
@@ -156,7 +158,7 @@ static void updateTask(void* argument) {
     for (;;) {
         OSSemPend(work, PERIOD, &error);
         while (workOn(OSTimeGet() - begun))
-            OSTimeDly(PERIOD); /* an erase stalls the processor, so other tasks run first */
+            OSTimeDly(PERIOD); /* an erase stalls the processor, so other tasks run before it */
     }
 }
 

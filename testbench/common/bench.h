@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// bench: clock, reset and bounded waits for a Verilated module with clk_i and rst_i.
+// bench: provides clock, reset and bounded waits for a Verilated module with clk_i and rst_i.
 //
-// Drive inputs after tick(), sample outputs before it: outputs are settled when tick() returns.
+// Set inputs after tick() and read outputs before it: the outputs are stable when tick() returns.
 
 #pragma once
 
@@ -21,8 +21,8 @@ public:
     Bench()
         : context_(new VerilatedContext), observer_(*context_), top_(new Module(context_.get())) {}
     ~Bench() {
-        // A module's scopes remove this thread's context, which may belong to a bench that no
-        // longer exists.
+        // The scopes of a module unregister at this thread's context. Sets this bench's context,
+        // because the thread's context may belong to a bench that no longer exists.
         Verilated::threadContextp(context_.get());
         top_->final();
         observer_.finish();
@@ -33,17 +33,18 @@ public:
     Module& top() { return *top_; }
     uint64_t cycles() const { return cycles_; }
 
-    // Adds a synchronous model: `sample` sees the settled ports before each rising edge, `drive`
+    // Adds a synchronous model. `sample` reads the stable ports before each rising edge; `drive`
     // sets inputs after it, as registers would.
     void addModel(std::function<void()> sample, std::function<void()> drive) {
         models_.emplace_back(std::move(sample), std::move(drive));
     }
 
-    // Adds a clock that is independent of clk_i: `half` is called between its edges, twice a cycle.
+    // Adds a clock that is independent of clk_i. `half` is called twice per cycle, between the
+    // edges of clk_i.
     void addClock(std::function<void()> half) { half_ = std::move(half); }
 
-    // Passes one clock cycle: settle, models sample, rising edge, models drive, falling edge,
-    // settle.
+    // Runs one clock cycle: settles, lets the models sample, rising edge, lets the models drive,
+    // falling edge, settles.
     void tick() {
         top_->eval();
         for (auto& model : models_)
@@ -75,7 +76,8 @@ public:
         top_->eval();
     }
 
-    // Ticks until the condition holds; throws after `limit` cycles, with `what` in the message.
+    // Runs clocks until the condition holds. Throws after `limit` cycles; the message contains
+    // `what`.
     template <class Condition>
     void waitFor(Condition condition, const std::string& what, uint64_t limit = 10000) {
         for (uint64_t i = 0; i < limit; ++i) {

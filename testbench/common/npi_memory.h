@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_memory: a model of the memory behind one NPI port (docs/memory.md), with random stalls, for
-// block tests. It checks the requester's rules and throws if one is broken.
+// npi_memory: models the memory at one NPI port (docs/memory.md), with random stalls, for tests of
+// single blocks. It checks the rules for the requester, and throws if one is broken.
 
 #pragma once
 
@@ -12,7 +12,8 @@
 
 template <class Module> class NpiMemory {
 public:
-    // stall: probability, per cycle, that an acknowledgement or the next read word waits.
+    // `stall`: probability per cycle that an acknowledgement or the next read word is delayed, 0 to
+    // 1.
     NpiMemory(Bench<Module>& bench, double stall, uint64_t seed)
         : top_(bench.top()), random_(seed), stall_(stall) {
         drive();
@@ -35,10 +36,10 @@ public:
         return list;
     }
     void setStall(double stall) { stall_ = stall; }
-    // Holds all requests, as a hung memory does.
+    // Holds all requests, like a memory that hangs.
     void hold(bool held) { held_ = held; }
-    // Probability, per cycle, that a word of an acknowledged write stays in the write FIFO, as it
-    // does while the memory is busy with other ports. With 0 it leaves at the acknowledgement.
+    // Sets the probability per cycle that a word of an acknowledged write stays in the write FIFO,
+    // as in a memory that is busy with other ports. With 0, the word leaves at the acknowledgement.
     void setLinger(double linger) { linger_ = linger; }
     uint64_t reads() const { return reads_; }
     uint64_t writes() const { return writes_; }
@@ -48,7 +49,7 @@ private:
 
     struct Word {
         uint64_t data;
-        uint8_t extra; // write: byte enables; read: index in the transfer
+        uint8_t extra; // byte enables of a written word; index in the transfer of a read word
     };
 
     [[noreturn]] static void broken(const std::string& what) {
@@ -112,8 +113,8 @@ private:
         if (size_ > 5)
             broken("size " + std::to_string(size_));
         unsigned words = 1u << size_;
-        bool lineRead = isRead_ && (size_ == 1 || size_ == 2); // may start with any word of the
-                                                               // line
+        // a line read may start with any word of the line
+        bool lineRead = isRead_ && (size_ == 1 || size_ == 2);
         if (address_ % (lineRead ? 8 : words * 8))
             broken("address not aligned to its size");
         address_ -= address_ % (words * 8);
@@ -140,7 +141,7 @@ private:
                     bytes_[address_ + 8 * w + b] = static_cast<uint8_t>(word.data >> (8 * b));
         }
         if (linger_ > 0)
-            lingering_ += words; // every later request sees their words
+            lingering_ += words; // the words count against the room of every later request
     }
 
     uint64_t load(uint32_t address) const {

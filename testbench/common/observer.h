@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// observer: records a Verilated model in special builds: a waveform (-DTRACE=ON; WAVE=file,
-// WAVE_FROM and WAVE_TO in clocks) and coverage (-DCOVERAGE=ON; COVERAGE_DIR). In other builds it
-// only keeps the clock.
+// observer: records a Verilated model in special builds. It writes a waveform with -DTRACE=ON (file
+// WAVE, from clock WAVE_FROM to WAVE_TO), and coverage data with -DCOVERAGE=ON (folder
+// COVERAGE_DIR). In other builds it only holds the number of the clock.
 //
-// CDC_SEED, a number in the environment, makes the model's synchronisers uncertain
-// (hdl/cdc/cdc_random.vh); the draws follow from it and from SEED.
+// The environment variable CDC_SEED, a number, adds random delays to the model's synchronisers
+// (hdl/cdc/cdc_random.vh). The delays depend on CDC_SEED and SEED only.
 
 #pragma once
 
@@ -26,7 +26,7 @@
 
 template <class Module> class Observer {
 public:
-    // Prepares the recording; call it before the model is made.
+    // Prepares the recording. Call this before the model is created.
     explicit Observer(VerilatedContext& context) : context_(context) {
         const uint64_t seed = environmentNumber("CDC_SEED", 0);
         const char* arguments[] = {"", "+cdc_random"};
@@ -36,7 +36,7 @@ public:
         context_.traceEverOn(true);
 #endif
     }
-    // Ends the recording; call it before the model, which owns the counters, is destroyed.
+    // Ends the recording. Call this before the model is destroyed, because it owns the counters.
     void finish() {
 #ifdef ICESOC_TRACE
         if (wave_)
@@ -45,19 +45,19 @@ public:
 #ifdef ICESOC_COVERAGE
         if (const char* folder = std::getenv("COVERAGE_DIR")) {
             std::string file = std::string(folder) + "/XXXXXX.dat";
-            close(mkstemps(file.data(), 4)); // process ids are reused in a long run
+            close(mkstemps(file.data(), 4)); // a unique name; process ids repeat in a long run
             context_.coveragep()->write(file.c_str());
         }
 #endif
     }
 
-    // Records a half of a clock: `half` is 0 with the clock high, 1 with it low.
+    // Records half a clock: `half` is 0 while the clock is high, 1 while it is low.
     void step(Module& top, uint64_t clock, unsigned half) {
         observedClock = clock;
 #ifdef ICESOC_TRACE
         if (window_.file.empty() || clock < window_.from || clock > window_.to)
             return;
-        if (!wave_) { // a later model takes the file over, since a test fails in its last one
+        if (!wave_) { // a later model overwrites the file, because a test fails in its last model
             wave_.reset(new VerilatedFstC);
             top.trace(wave_.get(), 99);
             wave_->open(window_.file.c_str());

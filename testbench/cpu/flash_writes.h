@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// flash_writes: the flash bytes of the CPU model: their decoded instructions, and the undoing of
-// stores that libunicorn carries out by itself (the bus then applies the write).
+// flash_writes: keeps the decoded instructions of the CPU model's flash, and undoes stores to
+// flash. libunicorn carries out such a store by itself; it is undone, and the bus then applies the
+// write.
 
 #pragma once
 
@@ -16,23 +17,23 @@ public:
             i.bytes = 0;
     }
 
-    // Returns the decoded instruction at an offset. Its `bytes` is 0 if it was not decoded yet; the
-    // caller then decodes it into the slot.
+    // Returns the place for the decoded instruction at an offset. If its `bytes` is 0, the caller
+    // must decode the instruction and store it there.
     Instruction& decodedAt(uint32_t offset) { return decoded_[offset >> 1]; }
-    // Forgets the decoded instructions of bytes that have changed.
+    // Drops the decoded instructions of bytes that have changed.
     void changed(uint32_t offset, uint32_t bytes) {
-        const uint32_t first = offset >= 2 ? offset / 2 - 1 : 0; // a 32-bit instruction may begin
-                                                                 // one halfword earlier
+        // a 32-bit instruction may begin one halfword earlier
+        const uint32_t first = offset >= 2 ? offset / 2 - 1 : 0;
         for (uint32_t at = first; at < (offset + bytes + 1) / 2; ++at) {
             isStale_ = isStale_ || decoded_[at].bytes;
             decoded_[at].bytes = 0;
         }
     }
-    // True if code that libunicorn has translated differs from flash.
+    // True if code that libunicorn has translated no longer equals the flash.
     bool isStale() const { return isStale_; }
     void translated() { isStale_ = false; }
 
-    // Keeps the old bytes before libunicorn overwrites them.
+    // Saves the old bytes before libunicorn overwrites them.
     void keep(const uint8_t* flash, uint32_t offset, unsigned bytes) {
         Store store{offset, bytes, {}};
         std::memcpy(store.was, flash + offset, bytes);
@@ -54,6 +55,6 @@ private:
         uint8_t was[8];
     };
     std::vector<Store> stores_;        // stores of the current instruction
-    std::vector<Instruction> decoded_; // one slot per halfword
+    std::vector<Instruction> decoded_; // one entry per halfword
     bool isStale_ = false;
 };

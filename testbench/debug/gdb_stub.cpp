@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// gdb_stub: packets "$payload#checksum", answered one by one (GDB manual, appendix E).
+// gdb_stub: receives packets "$payload#checksum" and answers each (GDB manual, appendix E).
 
 #include "gdb_stub.h"
 #include <arpa/inet.h>
@@ -16,8 +16,7 @@
 
 namespace {
 
-constexpr int xpsrNumber = 25, firstSystemNumber = 26; // register numbers, as in the description
-                                                       // below
+constexpr int xpsrNumber = 25, firstSystemNumber = 26; // register numbers in the description below
 constexpr int systemRegisters[] = {CortexM3::Msp,     CortexM3::Psp,       CortexM3::Primask,
                                    CortexM3::Basepri, CortexM3::Faultmask, CortexM3::Control};
 
@@ -64,7 +63,8 @@ uint32_t wordOf(const std::string& hex) {
     return value;
 }
 
-// Converts GDB's number of a register to CortexM3's; -1 if it does not exist.
+// Converts GDB's number of a register to the number in CortexM3; returns -1 if there is no such
+// register.
 int registerOf(unsigned long number) {
     if (number <= 15)
         return static_cast<int>(number);
@@ -76,7 +76,7 @@ int registerOf(unsigned long number) {
 
 const std::string error = "E01";
 constexpr int interrupt = 3;             // Ctrl-C
-constexpr size_t longestPacket = 0x4000; // bytes, as reported in qSupported
+constexpr size_t longestPacket = 0x4000; // longest packet, bytes, as reported in qSupported
 
 } // namespace
 
@@ -131,7 +131,7 @@ bool GdbStub::receive(std::string& packet) {
             c = nextByte();
         while (c == '+' || c == '-' || c == interrupt);
         if (c != '$')
-            return false; // the peer has gone, or speaks another protocol
+            return false; // the peer has disconnected or uses another protocol
         packet.clear();
         unsigned sum = 0;
         while ((c = nextByte()) >= 0 && c != '#') {
@@ -165,7 +165,8 @@ bool GdbStub::wantsStop() {
         pollfd waiting{listener_, POLLIN, 0};
         return poll(&waiting, 1, 0) > 0;
     }
-    char bytes[4096]; // other bytes must not hide a Ctrl-C or the end of the connection
+    // reads everything, so that other bytes cannot hide a Ctrl-C or the end of the connection
+    char bytes[4096];
     const ssize_t n = recv(connection_, bytes, sizeof bytes, MSG_DONTWAIT);
     return n > 0 ? std::memchr(bytes, interrupt, static_cast<size_t>(n)) != nullptr
                  : n == 0 || (errno != EAGAIN && errno != EINTR);
@@ -186,7 +187,8 @@ bool GdbStub::serve(const Target& target, const std::function<bool()>& mayWait) 
     return served_ && !over_;
 }
 
-// A debugger may be silent for hours, but it sends the first packet.
+// Sets the time-out for a packet: none, or 2 s for the first one. A debugger may be silent for
+// hours, but it always sends the first packet.
 void GdbStub::patient(bool on) {
     timeval limit{on ? 0 : 2, 0};
     setsockopt(connection_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
@@ -201,7 +203,7 @@ bool GdbStub::talks(const Target& target) {
         if (receive(packet))
             send(answer(target, packet));
         else if (talked)
-            detached_ = true; // the debugger has disconnected: the program continues
+            detached_ = true; // the debugger has disconnected; the program continues
         else
             return false;
         talked = true;
@@ -337,7 +339,7 @@ std::string GdbStub::writeMemory(const Target& target, const std::string& argume
 std::string GdbStub::breakpoint(const Target& target, const std::string& packet) {
     unsigned kind = 0, address = 0;
     if (std::sscanf(packet.c_str() + 1, "%u,%x", &kind, &address) != 2 || kind > 1)
-        return ""; // watchpoints: the debugger steps instead
+        return ""; // watchpoints are not supported; the debugger steps instead
     if (packet[0] == 'Z')
         target.cpu.breakpoints.insert(address & ~1u);
     else
@@ -357,7 +359,7 @@ std::string GdbStub::resume(const Target& target, bool singleStep) {
     return why == CortexM3::Stop::Asked ? "T02" : "T05"; // SIGINT, SIGTRAP
 }
 
-// "bs" and "bc": run backwards.
+// Handles "bs" and "bc", which run backwards.
 std::string GdbStub::back(const Target& target, const std::string& packet) {
     if (!target.back || (packet != "bs" && packet != "bc"))
         return "";

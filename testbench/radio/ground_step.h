@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ground_step: makes simulated time wait for the program on the ground that keeps step with it
-// (keep_step.h), however seldom a busy machine lets that program run.
+// ground_step: makes simulated time wait for the ground program that keeps step with it
+// (keep_step.h), even if a busy machine rarely runs that program.
 
 #pragma once
 
@@ -22,9 +22,9 @@
 
 class GroundStep {
 public:
-    // Calls `goOn` about each 10 ms while time stands still, and stops waiting when it returns
-    // false. A program that holds time for `patience` seconds of the wall clock without a debugger
-    // is no longer waited for; stderr names it.
+    // Calls `goOn` about every 10 ms while time stands still; stops waiting when `goOn` returns
+    // false. A program that holds time for `patience` seconds of the wall clock, and is not stopped
+    // by a debugger, is no longer waited for; a message on stderr names it.
     GroundStep(SimStatus& status, PtyLine& pty, std::function<bool()> goOn, double patience = 60)
         : status_(status), pty_(pty), goOn_(std::move(goOn)), patience_(patience) {
         std::strncpy(status_.device, pty.path().c_str(), sizeof status_.device - 1);
@@ -35,7 +35,8 @@ public:
     GroundStep(const GroundStep&) = delete;
     GroundStep& operator=(const GroundStep&) = delete;
 
-    // Returns when the program lets time pass beyond `now`; at once if none keeps step.
+    // Returns when the program lets time pass beyond `now`. Returns at once if no program keeps
+    // step.
     void wait(uint64_t now) {
         __atomic_store_n(&status_.carried, pty_.carried(), __ATOMIC_RELEASE);
         if (!holds(now))
@@ -64,7 +65,7 @@ public:
         }
         waitedNs_ += static_cast<uint64_t>((std::chrono::steady_clock::now() - begin).count());
     }
-    // Returns when the program wakes up, in simulated ns.
+    // Returns the simulated time at which the program wakes up, ns.
     uint64_t nextEvent() const { return load(status_.keeper) ? load(status_.untilNs) : never; }
     uint64_t waitedNs() const { return waitedNs_; } // wall-clock time
 
@@ -75,7 +76,8 @@ private:
         return __atomic_load_n(&field, __ATOMIC_ACQUIRE);
     }
     static pid_t processOf(uint64_t keeper) { return static_cast<pid_t>(keeper & 0xFFFFFFFFu); }
-    // True if a debugger or SIGSTOP has stopped the process: "PID (NAME) T ..." in its stat.
+    // Returns true if a debugger or SIGSTOP has stopped the process; /proc/PID/stat is then "PID
+    // (NAME) T ...".
     static bool isHeld(pid_t process) {
         std::ifstream file("/proc/" + std::to_string(process) + "/stat");
         std::string text;
@@ -83,7 +85,7 @@ private:
         const size_t name = text.rfind(") ");
         return name != std::string::npos && (text[name + 2] == 'T' || text[name + 2] == 't');
     }
-    // When a byte is counted, its reader may have left and another one may have begun.
+    // Counts bytes given to the program, unless another program has replaced it meanwhile.
     void given(uint64_t keeper, size_t bytes) {
         uint64_t is = load(status_.toGround);
         while (is - simCount(is) == simSession(keeper) &&
@@ -96,7 +98,7 @@ private:
                (load(status_.untilNs) <= now ||
                 load(status_.taken) < simCount(load(status_.toGround)));
     }
-    // A killed program has not signed off.
+    // Stops waiting for a program that was killed, since it could not sign off.
     void dismissTheDead() {
         uint64_t keeper = load(status_.keeper);
         if (keeper && kill(processOf(keeper), 0) != 0 && errno == ESRCH)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// mac: the IEEE 802.15.4 MAC of one modem. It waits for a clear channel, sends a packet, and tries
-// again until the packet is acknowledged or its tries are used up. Sources: docs/simulation.md.
+// mac: the IEEE 802.15.4 MAC of one modem. It waits for a clear channel, sends a packet, and
+// repeats this until the packet is acknowledged or the number of tries is used up. Sources:
+// docs/simulation.md.
 
 #pragma once
 
@@ -12,12 +13,12 @@ class Mac : private RfSender {
 public:
     enum class Fate { Sent, NoAck, NoClearChannel };
 
-    // The modem that the MAC belongs to.
+    // The modem to which the MAC belongs.
     class Modem : public RfReceiver {
     public:
-        // Returns when the modem's work on packets ends; until then it sends none.
+        // Returns the time until which the modem is busy with packets and sends no further one.
         virtual uint64_t busyUntil() const = 0;
-        // The packet in flight has ended.
+        // Called when the packet in flight has been sent or has failed.
         virtual void transmitted(uint64_t now, Fate fate) = 0;
     };
 
@@ -26,9 +27,9 @@ public:
     Mac(const Mac&) = delete;
     Mac& operator=(const Mac&) = delete;
 
-    // Sends a packet; one at a time. Modem::transmitted follows.
+    // Sends a packet; the previous one must have ended. Calls Modem::transmitted at its end.
     void send(RfPacket packet, uint64_t now);
-    // Drops the packet; a frame that is on the air still arrives.
+    // Drops the packet. A frame that is already on the air still arrives.
     void abort();
 
 private:
@@ -49,9 +50,11 @@ private:
     Modem& modem_;
     State state_ = State::Idle;
     RfPacket packet_;
-    RfOutcome drawn_ = RfOutcome::Delivered; // the weather's decision on this packet
-    // Remaining tries of this round, rounds of RR, and copies of a broadcast.
+    // outcome drawn for this packet by the model of the weather
+    RfOutcome drawn_ = RfOutcome::Delivered;
+    // Number of remaining tries in this round, of remaining rounds (RR), and of remaining copies of
+    // a broadcast.
     unsigned triesLeft_ = 0, roundsLeft_ = 0, copiesLeft_ = 0;
-    unsigned busySenses_ = 0; // busy carrier senses in this try
+    unsigned busySenses_ = 0; // number of carrier senses in this try that found the channel busy
     Fate fate_ = Fate::Sent;
 };

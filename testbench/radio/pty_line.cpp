@@ -4,7 +4,8 @@
 
 #include "serial_line.h"
 #include <algorithm>
-#include <asm/termbits.h> // struct termios2, TCGETS2: the actual speed, including custom ones
+// for struct termios2 and TCGETS2, which have the actual speed, including custom speeds
+#include <asm/termbits.h>
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
@@ -16,10 +17,12 @@
 
 namespace {
 
-constexpr uint64_t pollNs = 500'000;        // interval between looks at the pty
-constexpr uint64_t countedPollNs = 100'000; // the same, if no byte is late
-constexpr int patience = 20'000;            // polls of a pty before its bytes, which the kernel has
-                                            // yet to move, are considered read
+constexpr uint64_t pollNs = 500'000; // interval between reads of the pty, ns
+// interval between reads if the program counts its bytes, so that none is late, ns
+constexpr uint64_t countedPollNs = 100'000;
+// number of reads without result after which bytes that were counted, but not moved by the kernel,
+// are considered read
+constexpr int patience = 20'000;
 
 void makeRaw(int fd) {
     termios2 settings{};
@@ -61,8 +64,8 @@ bool PtyLine::speedFits() const {
     return std::fabs(settings.c_ospeed - modem) <= 0.045 * modem;
 }
 
-// Reads all bytes that the program has written; the kernel needs a moment to move them between the
-// ends.
+// Reads all bytes that the program has written. The kernel needs a moment to move them between the
+// two ends of the pty.
 void PtyLine::readAhead(uint64_t now) {
     uint64_t counter = count_.keeper ? count_.keeper() : 0;
     if (counter != counter_)
@@ -72,8 +75,8 @@ void PtyLine::readAhead(uint64_t now) {
     for (; counter && looks < patience; ++looks) {
         uint8_t bytes[512];
         ssize_t count = read(master_, bytes, sizeof bytes);
-        if (count > 0) {        // also bytes of a program that counts no longer
-            if (ahead_.empty()) // the wire was idle
+        if (count > 0) {        // also the bytes of a program that has stopped counting
+            if (ahead_.empty()) // the wire was idle before these bytes
                 rxFree_ = std::max(rxFree_, static_cast<double>(now));
             ahead_.insert(ahead_.end(), bytes, bytes + count);
             fetched_ += static_cast<uint64_t>(count);
@@ -83,7 +86,7 @@ void PtyLine::readAhead(uint64_t now) {
             sched_yield();
         }
     }
-    if (looks == patience) // the previous session has read them
+    if (looks == patience) // the previous session has read the missing bytes
         fetched_ = std::max(fetched_, count_.fromProgram());
 }
 
@@ -98,8 +101,8 @@ size_t PtyLine::fetch(uint8_t* bytes, size_t room) {
 
 void PtyLine::readHost(uint64_t now) {
     uint8_t bytes[64];
-    // Takes only the bytes that the wire could have carried by now, so that no byte is read ahead
-    // of flow control.
+    // Reads only as many bytes as the wire could have carried by now, so that flow control applies
+    // to the others.
     if (!counter_)
         rxFree_ = std::max(rxFree_, static_cast<double>(now) - lookBack());
     size_t room = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// rf_channel: carries packets through the air, loses, damages and doubles them.
+// rf_channel: carries packets between modems, and loses, damages or duplicates some of them.
 
 #include "rf_channel.h"
 #include <algorithm>
@@ -8,9 +8,11 @@
 
 namespace {
 
-constexpr uint64_t burstStepNs = 10'000'000; // duration of a full packet
-constexpr double sensitivity = -92;          // dBm; XBee-PRO: -100
-constexpr double jitter = 0.05;              // variation of a modem's processing time, unverified
+constexpr uint64_t burstStepNs = 10'000'000; // duration of a full packet, ns
+// sensitivity of the receiver, dBm; an XBee-PRO has -100
+constexpr double sensitivity = -92;
+// relative variation of a modem's processing time; not verified on hardware
+constexpr double jitter = 0.05;
 
 } // namespace
 
@@ -45,8 +47,8 @@ void RfChannel::carryAway(const RfReceiver* modem, bool isAway) {
 }
 
 RfChannel::Outcome RfChannel::fate(uint64_t now) {
-    // One step for this packet, and one per missed packet time: a burst also passes while no modem
-    // sends.
+    // One step for this packet, and one for each packet time without a packet, so that a burst of
+    // losses also ends while no modem sends.
     const uint64_t quiet = std::min<uint64_t>((now - fateAt_) / burstStepNs, 1000);
     fateAt_ = now;
     for (uint64_t steps = std::max<uint64_t>(quiet, 1); weather.burstBegin > 0 && steps; --steps)
@@ -63,7 +65,8 @@ uint64_t RfChannel::delayNs(uint64_t now) const {
     return weather.trace ? weather.trace->at(now).delayNs : weather.delayNs;
 }
 
-// Draws the signal strength of one try. Returns whether it is below the receiver's sensitivity.
+// Draws the signal strength of one transmission. Returns true if it is below the sensitivity of the
+// receiver.
 bool RfChannel::faded(RfPacket& packet) {
     if (weather.distance <= 0)
         return false;
@@ -105,8 +108,8 @@ bool RfChannel::isClear(uint8_t channel, uint64_t from, uint64_t to) const {
     });
 }
 
-// Two modems that begin within the time from carrier sense to the first symbol do not hear each
-// other, and a modem cannot receive while it sends.
+// Starts a transmission. Two modems that start within the time from carrier sense to the first
+// symbol do not hear each other; a modem cannot receive while it sends.
 void RfChannel::put(RfSender& sender, const RfReceiver& from, RfPacket packet, Outcome drawn,
                     uint64_t now) {
     const uint64_t end = now + RfTimes::tryNs(packet);
@@ -156,7 +159,7 @@ bool RfChannel::isMissed(Frame& frame) {
            (weather.tryLoss > 0 && random_.chance(weather.tryLoss));
 }
 
-// Called at the end of a frame, when the receiver has the packet.
+// Ends a transmission: the receiver has the packet.
 void RfChannel::land(RfSender* sender, Frame& frame, uint64_t now) {
     const bool missed = isMissed(frame);
     if (frame.drawn == Outcome::Corrupted && !missed) {
@@ -166,7 +169,7 @@ void RfChannel::land(RfSender* sender, Frame& frame, uint64_t now) {
             static_cast<uint8_t>(1 + random_.below(255));
     }
     const Outcome outcome = missed ? Outcome::Lost : deliver(frame, now);
-    // A modem acknowledges a packet that its full buffer then drops.
+    // A modem also acknowledges a packet that it then drops because its buffer is full.
     const bool isHeard = outcome != Outcome::Lost && outcome != Outcome::Nobody;
     const bool isAnswered = isHeard && !(weather.ackLoss > 0 && random_.chance(weather.ackLoss));
     if (sender)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee: the modem's firmware by its manual: data, buffers, packets.
+// xbee: models the modem's firmware as its manual describes it: data, buffers, packets.
 
 #include "xbee.h"
 #include "xbee_crypt.h"
@@ -10,13 +10,15 @@
 namespace {
 
 constexpr size_t outputBytes = 202;
-constexpr size_t legacyBytes = 100, legacyBytesEncrypted = 95; // packets with C8
+// payload of a packet in the legacy mode selected by C8, bytes
+constexpr size_t legacyBytes = 100, legacyBytesEncrypted = 95;
 constexpr uint64_t msNs = 1'000'000, resetNs = 200;
-// Processing time of the modem for each packet that it sends (before carrier sense) or has received
-// (before the next one). With this and the time on the air, full packets leave at 80 kb/s and,
-// encrypted, at 47 kb/s, as the manufacturer measured (docs/simulation.md).
+// Processing time of the modem for each packet: before the carrier sense when it sends, or after
+// the packet when it receives. With this time and the time on the air, full packets leave at 80
+// kb/s, and at 47 kb/s if encrypted, as the manufacturer measured (docs/simulation.md).
 constexpr uint64_t processingNs = 4'688'000, processingEncryptedNs = 10'666'000;
-constexpr uint64_t plusWindowNs = 1000 * msNs; // the three characters must arrive within one second
+// time in which the three characters of the command sequence must arrive
+constexpr uint64_t plusWindowNs = 1000 * msNs;
 
 } // namespace
 
@@ -39,7 +41,7 @@ XBee::XBee(SerialLine& line, RfChannel& channel, Options options)
     channel_.join(this);
     boot(0);
     line_.setBitTime(1e9 / baud());
-    bootDone_ = 0; // powered long ago
+    bootDone_ = 0; // the boot ended long ago
 }
 
 XBee::~XBee() {
@@ -158,12 +160,13 @@ void XBee::dataByte(uint8_t byte, uint64_t now) {
         return;
     }
     for (; pluses_; --pluses_)
-        store(static_cast<uint8_t>(active_.at("CC"))); // they were data
+        store(static_cast<uint8_t>(active_.at("CC"))); // the held characters were data
     store(byte);
     sendPackets(now);
 }
 
-// Decides after the guard time whether the held characters were the command sequence, or data.
+// At the end of the guard time, decides whether the held characters were the command sequence or
+// data.
 void XBee::silence(uint64_t now) {
     if (pluses_ && now - lastByte_ >= guardNs()) {
         if (pluses_ == 3)
@@ -206,7 +209,7 @@ void XBee::setRounds(RfPacket& packet) const {
     packet.copies = packet.isBroadcast() && rr ? rr + 2 : 1;
 }
 
-// Returns the most data that one packet carries.
+// Returns the largest payload of a packet, bytes.
 size_t XBee::packetBytes() const {
     const bool encrypts = active_.at("EE");
     if (profile_.hasLegacyMode && active_.at("C8") & 1)
@@ -249,7 +252,7 @@ void XBee::launch(RfPacket packet, uint64_t now) {
     mac_.send(std::move(packet), now);
 }
 
-// Its one processor handles one packet at a time, in either direction.
+// Occupies the modem's processor, which handles one packet at a time in either direction.
 void XBee::work(uint64_t now, bool encrypted) {
     uint64_t needed = encrypted ? processingEncryptedNs : processingNs;
     busyUntil_ = std::max(busyUntil_, now) + channel_.jittered(needed);
@@ -267,7 +270,7 @@ void XBee::transmitted(uint64_t now, Mac::Fate fate) {
     if (apiId_) {
         auto status = static_cast<uint8_t>(fate);
         if (fate == Mac::Fate::NoAck && active_.at("RR"))
-            status = 0x21; // no acknowledgement in any of the rounds
+            status = 0x21; // status: no acknowledgement in any round
         apiReply({0x89, apiId_, status});
         apiId_ = 0;
         line_.wake(now);
@@ -292,7 +295,7 @@ XBee::Reception XBee::receive(const RfPacket& onAir, uint64_t now) {
     active_["DB"] = pending_["DB"] = static_cast<uint32_t>(std::clamp(-packet.rssi, 23.0, 92.0));
     bool wantsHeader = active_.at("MM") == 0 || active_.at("MM") == 3;
     if (wantsHeader && !packet.header)
-        return Reception::Taken; // acknowledged, but this mode ignores it
+        return Reception::Taken; // acknowledged, but this value of MM ignores the packet
     if (packet.encrypted != (active_.at("EE") != 0)) {
         ++counters_.packetsUnreadable;
         return Reception::Taken;

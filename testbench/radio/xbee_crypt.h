@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee_crypt: AES-128 in counter mode by IEEE 802.15.4-2003 (security suite AES-CTR, 7.6.2): five
-// bytes before the payload, frame counter and key sequence counter, and no check. So a packet has
-// 95 bytes instead of 100, and another key gives garbage, not silence.
+// xbee_crypt: AES-128 in counter mode by IEEE 802.15.4-2003 (security suite AES-CTR, 7.6.2). Five
+// bytes precede the payload: frame counter and key sequence counter; there is no integrity check.
+// So a packet has room for 95 instead of 100 bytes, and a wrong key yields garbage, not silence.
 
 #pragma once
 
@@ -17,7 +17,8 @@
 struct XBeeCrypt {
     using Bytes = std::vector<uint8_t>;
     static constexpr size_t headBytes = 5;
-    // `key`: 32 hexadecimal digits, or "" for all zeros. `source`: the sender's serial number.
+    // Encrypts a payload. `key`: 32 hexadecimal digits, or "" for all zeros. `source`: serial
+    // number of the sender.
     static Bytes encrypt(const std::string& key, uint64_t source, uint32_t counter,
                          const Bytes& plain) {
         Bytes packet = {static_cast<uint8_t>(counter >> 24), static_cast<uint8_t>(counter >> 16),
@@ -43,8 +44,8 @@ private:
             key[i] = static_cast<uint8_t>(std::stoul(digits.substr(2 * i, 2), nullptr, 16));
         return key;
     }
-    // Flags, the sender's address, frame counter, key sequence counter, and the block's number from
-    // 1, all high byte first.
+    // Returns the first counter block: flags, address of the sender, frame counter, key sequence
+    // counter, and number of the block (starting with 1), each with the high byte first.
     static Block firstBlock(uint64_t source, const uint8_t* head) {
         Block block{0x82};
         for (size_t i = 0; i < 8; ++i)
@@ -54,7 +55,7 @@ private:
         block[15] = 1;
         return block;
     }
-    // Encrypting and decrypting are the same in counter mode.
+    // Encrypts or decrypts; in counter mode both are the same operation.
     static Bytes stream(const std::string& key, const Block& block, const uint8_t* bytes,
                         size_t count) {
         std::unique_ptr<EVP_CIPHER_CTX, decltype(&EVP_CIPHER_CTX_free)> context(

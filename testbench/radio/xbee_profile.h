@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee_profile: the modems that the model imitates: the XBee 802.15.4 of series 1, the S2C and the
-// XBee 3 with 802.15.4 firmware. docs/modem.md has the sources of the figures.
+// xbee_profile: properties of the modems that the model can imitate: the XBee 802.15.4 of series 1,
+// the S2C, and the XBee 3 with 802.15.4 firmware. docs/modem.md gives the sources of the figures.
 
 #pragma once
 
@@ -11,22 +11,27 @@
 #include <string>
 
 struct XBeeProfile {
-    const char* name;      // as in --modem
-    uint32_t highestCode;  // highest value of BD that is a code
-    uint32_t lowestRate;   // lowest value of BD that is a rate, baud
-    uint32_t highestRate;  // highest one
-    bool dividesMegahertz; // rates are 1 MHz divided by an integer: 115,200 becomes 111,111
-    uint32_t highestRn;    // greatest value of RN
-    uint32_t inputBytes;   // serial receive buffer
-    uint32_t threshold;    // bytes in it when CTS is deasserted, from the factory
-    uint32_t release;      // bytes fewer than the threshold when CTS is asserted again
-    bool hasLegacyMode;    // C8 selects packets as short as those of series 1; FT is a command
-    size_t packetBytes;    // most data in a packet, with Digi's header and 16-bit addresses
-    size_t encryptedBytes; // the same with encryption
-    uint8_t tooLongStatus; // status of a transmit request with more data; 0: no answer
+    const char* name;     // name, as in --modem
+    uint32_t highestCode; // highest value of BD that is a code for a rate
+    uint32_t lowestRate;  // lowest value of BD that is itself a rate, baud
+    uint32_t highestRate; // highest one
+    // true if rates are 1 MHz divided by an integer, so that 115,200 becomes 111,111
+    bool dividesMegahertz;
+    uint32_t highestRn;  // highest value of RN
+    uint32_t inputBytes; // size of the serial receive buffer, bytes
+    uint32_t threshold;  // factory setting of the buffer level at which CTS is deasserted, bytes
+    // difference between this level and the level at which CTS is asserted again, bytes
+    uint32_t release;
+    // true if C8 can limit packets to the size of series 1, and FT is a command
+    bool hasLegacyMode;
+    // largest payload of a packet with Digi's header and 16-bit addresses, bytes
+    size_t packetBytes;
+    size_t encryptedBytes; // the same with encryption, bytes
+    // status of a transmit request with a longer payload; 0 means that no status is sent
+    uint8_t tooLongStatus;
 };
 
-// Returns a modem by its name. Throws std::invalid_argument for another name.
+// Returns the profile with this name. Throws std::invalid_argument if the name is unknown.
 inline const XBeeProfile& xbeeProfile(const std::string& name) {
     static const XBeeProfile profiles[] = {
         {"s1", 7, 0x80, 250000, true, 3, 202, 185, 17, false, 100, 95, 0},

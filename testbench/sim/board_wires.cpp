@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// board_wires: reads the texts that ./icesoc board make generates, and follows the pins.
+// board_wires: reads the list of nets and pins that `./icesoc board make` generates, and connects
+// the pins.
 
 #include "board_wires.h"
 #include <regex>
@@ -11,8 +12,8 @@ namespace {
 
 #include "board_wires.inc"
 
-// The two names of a signal: the microcontroller's function or the modem's pin (`end`), and the
-// chip's port (`port`).
+// The two names of a signal. `end`: the function of the microcontroller, or the pin of the modem;
+// `port`: the port of the chip.
 struct Name {
     const char *end, *port;
     unsigned line, count;
@@ -56,7 +57,7 @@ BoardWires::BoardWires() : BoardWires(defaultWires, defaultUcf) {}
 BoardWires::BoardWires(const std::string& wires, const std::string& ucf) {
     from_.fill(-1);
     isSwitched_.fill(true);
-    // The pull-ups of synth/ise/chip.ucf.
+    // Lines with a pull-up in synth/ise/chip.ucf.
     for (unsigned line : {unsigned(Ne), Ne + 1, unsigned(Noe), unsigned(Nwe), unsigned(ModemRxd)})
         isHigh_[line] = true;
     std::map<std::string, int> lineAtBall;
@@ -75,8 +76,8 @@ BoardWires::BoardWires(const std::string& wires, const std::string& ucf) {
     updateStraight();
 }
 
-// Returns the signal of a function, a pin or a port, such as FSMC_NE2 or fsmc_ne_n_i<1>; Lines if
-// there is none.
+// Returns the line of a function, a pin or a port, such as FSMC_NE2 or fsmc_ne_n_i<1>; Lines if the
+// name is unknown.
 BoardWires::Line BoardWires::lineOf(const std::string& name) {
     for (const Name& n : names) {
         for (const std::string known : {n.end, n.port}) {
@@ -90,7 +91,8 @@ BoardWires::Line BoardWires::lineOf(const std::string& name) {
             if (n.count == 1 || !std::regex_match(rest, found, number))
                 continue;
             const unsigned bit =
-                static_cast<unsigned>(std::stoul(found[1])) - (known == "FSMC_NE"); // NE1 is bit 0
+                // FSMC_NE1 is bit 0
+                static_cast<unsigned>(std::stoul(found[1])) - (known == "FSMC_NE");
             if (bit < n.count)
                 return Line(n.line + bit);
         }
@@ -98,7 +100,7 @@ BoardWires::Line BoardWires::lineOf(const std::string& name) {
     return Lines;
 }
 
-// Reads pins and balls: a line for each net (tools/icesoc/board/simulator.py).
+// Reads the pins and balls of each net, one net per line (tools/icesoc/board/simulator.py).
 void BoardWires::readWires(const std::string& text, std::map<std::string, int>& lineAtBall) {
     std::istringstream lines(text);
     std::string line;
@@ -125,7 +127,7 @@ void BoardWires::readWires(const std::string& text, std::map<std::string, int>& 
             pins_[signal] = {unsigned(end[1] - 'A'),
                              static_cast<unsigned>(std::stoul(end.substr(2))),
                              static_cast<unsigned>(std::stoul(number)), signal};
-        if (volts > 0) // a bank without supply neither drives nor sees its balls
+        if (volts > 0) // a bank without supply neither drives nor reads its balls
             lineAtBall[ball] = int(signal);
     }
 }
@@ -153,7 +155,7 @@ void BoardWires::changed(unsigned port) {
 void BoardWires::updateStraight() {
     isStraight_ = true;
     for (unsigned line = 0; line < Irq; ++line)
-        if (line != Nadv) // this chip's bridge is not multiplexed
+        if (line != Nadv) // the bridge of this chip is not multiplexed
             isStraight_ = isStraight_ && from_[line] == int(line) && isSwitched_[line];
 }
 
@@ -182,8 +184,8 @@ FsmcPins BoardWires::atChip(const FsmcPins& near) const {
 }
 
 void BoardWires::toProcessor(const FsmcPins& chip, FsmcPins& near) const {
-    // A data pin that the chip does not reach reads as low, since a processor cannot see that
-    // nothing drives it.
+    // A data pin without a connection to the chip reads as low, because a processor cannot detect
+    // that nothing drives it.
     near.dFromDesign = 0;
     for (unsigned bit = 0; bit < 16; ++bit) {
         const int signal = from_[D + bit];

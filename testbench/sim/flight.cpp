@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// flight: makes and connects the models, starts the ground's program, runs the processor.
+// flight: creates and connects the models, starts the ground program, and runs the processor.
 
 #include "flight.h"
 #include "core_pins.h"
@@ -43,7 +43,7 @@ Frame pictureFor(const Flight::Options& o) {
     return loadFrame(o.image, width, height);
 }
 
-// Creates the folder for the files of the flight, with the picture, and returns it.
+// Creates the folder for the files of the flight, stores the picture in it, and returns its path.
 std::string prepared(const Flight::Options& o, const Frame& frame) {
     std::filesystem::create_directories(o.out);
     savePng(o.out + "/before.png", frame);
@@ -93,7 +93,7 @@ std::vector<uint8_t> keyBytes(const std::string& digits) {
     return key;
 }
 
-// Returns the bytes of a file for a flash; empty if no file is given.
+// Returns the bytes of a file that initialise a flash; empty if no file is given.
 std::vector<uint8_t> flashOf(const std::string& file, size_t size, const std::string& owner) {
     const std::string bytes = file.empty() ? "" : readFile(file);
     if (!file.empty() && bytes.size() != size)
@@ -234,7 +234,7 @@ void Flight::bringTrouble() {
     trouble_->begin(air_, modem);
 }
 
-// Counts how often a vehicle's vision core is started: once per call.
+// Counts the starts of a vehicle's vision core: one for each call.
 void Flight::countStarts(SocModel& soc, uint32_t address, uint32_t value, bool isWrite) {
 #ifdef MAP_SLOT_VISION
     constexpr uint32_t control = MAP_CONTROL_WINDOW + 4 * (16 * MAP_SLOT_VISION + VISION_CONTROL);
@@ -281,8 +281,8 @@ double Flight::millionsPerSecond() const {
            static_cast<double>(pace_.workedNs() - ground_.step.waitedNs());
 }
 
-// Warns once if the chip is hardly ever quiet: names the core that causes it and the flight's
-// speed.
+// Warns once if the clock of the chip can hardly ever be stopped: names the core that prevents it,
+// and the flight's speed.
 void Flight::adviseOnClock() {
     constexpr uint64_t enough = 2'000'000, slow = 2'000'000;
     if (o_.quiet || o_.every_clock || advised_ || soc_.evaluated() < enough ||
@@ -302,11 +302,11 @@ void Flight::adviseOnClock() {
 void Flight::mark(const char* what, const nlohmann::json& value) {
     if (ground_.recorded)
         ground_.recorded->note(soc_.now(), what, value);
-    else if (o_.gdb < 0) // a debugger may change the values that it reads
+    else if (o_.gdb < 0) // a debugger may change the compared values, so they are not compared then
         o_.replayed->compare(soc_.now(), what, value);
 }
 
-// Keeps the recording, and evaluates each clock of the waveform's span.
+// Keeps the recording, and makes the model evaluate each clock in the span of the waveform.
 void Flight::watch() {
     if (soc_.now() >= nextDigest_) {
         nextDigest_ += digestNs;
@@ -319,7 +319,7 @@ void Flight::watch() {
     looks_ = looks;
 }
 
-// Does the flight's periodic work, about once a simulated millisecond.
+// Does the periodic work of the flight, about once per simulated millisecond.
 bool Flight::poll() {
     adviseOnClock();
     watch();
@@ -365,7 +365,7 @@ void Flight::runOnCortexM3() {
         machine.run();
     }
     if (!o_.flash.empty()) {
-        machine.stm32().flash().reset(); // cuts the power
+        machine.stm32().flash().reset(); // a loss of power
         std::ofstream(o_.flash, std::ios::binary)
             .write(reinterpret_cast<const char*>(machine.cpu().flash()), Stm32Flash::bytes);
     }

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """icesoc-fly: flies the mission in the simulator: a simulated vehicle, called by a ground station
-with stock ZeroC Ice over simulated modems.
+with unmodified ZeroC Ice over simulated modems.
 
-This is the installed form of `./icesoc run`, without the page of the flight. Pictures, a report and
-flight.json, which describes the flight, are written to the output folder.
+This is the installed form of `./icesoc run`, without the page of the flight. It writes pictures, a
+report, and flight.json, which describes the flight, to the output folder.
 """
 import argparse
 import json
@@ -16,14 +16,15 @@ from pathlib import Path
 PREFIX = Path(__file__).resolve().parents[1]
 SCHEMA = PREFIX / "share/icesoc/flight.schema.json"
 REFERENCE = PREFIX / "libexec/icesoc/vision-reference"
-# Fields of a flight that this program does not offer: they belong to other programs of the source
-# tree.
+# Fields of a flight that this program does not offer, because other programs of the source tree use
+# them.
 OTHER = {"app", "port", "live", "update", "clk_hz", "probe"}
 CONFIG = Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config") / "icesoc"
 
 
 def fields():
-    """Returns the version of a flight's description, and its fields that have a default."""
+    """Returns the version of the flight description, and those of its fields that have a
+    default."""
     known = json.loads(SCHEMA.read_text())["properties"]
     return known["version"]["const"], {name: field for name, field in known.items()
                                        if "default" in field}
@@ -49,7 +50,7 @@ def arguments(known):
 
 
 def demo_key(name):
-    """Returns a key file of this user; makes it at first use."""
+    """Returns the path of this user's key file; creates the file at first use."""
     path = CONFIG / name
     CONFIG.mkdir(parents=True, exist_ok=True)
     try:
@@ -73,7 +74,7 @@ def main():
     if flight["camera"] and "camera" not in flight["cores"]:
         flight["cores"].append("camera")
     if not flight["firmware"]:
-        del flight["firmware"]  # the simulator knows the installed one
+        del flight["firmware"]  # the simulator then uses the installed firmware
     try:
         out = Path(flight["out"])
         out.mkdir(parents=True, exist_ok=True)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// icesoc-sim: reads the options of a simulated flight, from a file (flight.json) and from words
-// "--name value". The schema of the file, which ./icesoc generates from its options, defines the
-// fields, their types and limits.
+// icesoc-sim: reads the options of a simulated flight from a file (flight.json) and from arguments
+// "--name value". A schema defines the fields, their types and limits; ./icesoc generates it from
+// its options.
 
 #include "files.h"
 #include "flight.h"
@@ -15,7 +15,7 @@ using nlohmann::json;
 
 namespace {
 
-// Text of tools/icesoc/cli/flight.schema.json, so that the program runs anywhere.
+// Contents of tools/icesoc/cli/flight.schema.json, built in so that the program needs no file.
 constexpr char schemaText[] =
 #include "flight_schema.inc"
     ;
@@ -24,7 +24,7 @@ json fields() {
     return json::parse(schemaText).at("properties");
 }
 
-// Converts a word to a value of its field's type; returns the text if that fails.
+// Converts an argument to a value of the field's type; returns the text if that is not possible.
 json valueOf(const json& field, const std::string& text) {
     const std::string type = field.value("type", "string");
     if (type == "integer" || type == "number") {
@@ -51,8 +51,8 @@ bool fits(const json& field, const json& value) {
                                                   std::regex(field["pattern"].get<std::string>())));
 }
 
-// Reads words up to "--". "--flight FILE" takes all fields of a file; later words override single
-// fields. Throws std::invalid_argument, which names the word, if one is wrong.
+// Reads arguments up to "--". "--flight FILE" takes all fields from a file; later arguments
+// override single fields. Throws std::invalid_argument, which names the argument, if one is wrong.
 json flightOf(const std::vector<std::string>& words) {
     const json known = fields();
     json flight = json::object();
@@ -85,7 +85,7 @@ json flightOf(const std::vector<std::string>& words) {
     return flight;
 }
 
-// Returns a text that names all fields.
+// Returns the help text, with all fields.
 std::string flightHelp() {
     std::string text =
         "Simulates the UAV: RTL, DDR3, firmware, modems, radio. The ground's modem is a pty.\n"
@@ -119,7 +119,7 @@ void writeWave(const Flight::Options& o) {
 #endif
 }
 
-// Combines the options of the recorded flight with those options that control this replay.
+// Combines the options of the recorded flight with the options that control this replay.
 Flight::Options recorded(const Flight::Options& now, const std::string& folder) {
     auto replayed = std::make_shared<ReplayedLine>(folder + "/flight.jsonl");
     const json& head = replayed->head();

@@ -16,8 +16,9 @@
 
 namespace {
 
-constexpr uint32_t shortestUs = 50; // between two looks at simulated time
-constexpr uint32_t longestUs = 500; // the same, while simulated time waits for this program
+constexpr uint32_t shortestUs = 50; // shortest interval between two reads of simulated time, us
+// longest interval while simulated time waits for this program, us
+constexpr uint32_t longestUs = 500;
 constexpr uint64_t endOfTime = ~uint64_t(0);
 
 std::string whole(const std::string& path) {
@@ -65,12 +66,12 @@ uint32_t SimulatedClock::nowUs() const {
     return static_cast<uint32_t>(nowNs() / 1000);
 }
 
-// Simulated time is usually no faster than the machine's, so the remaining time is slept before the
-// next look.
+// Simulated time usually runs no faster than real time, so the program sleeps for the remaining
+// time before it reads again.
 int SimulatedClock::wait(pollfd* fds, nfds_t count, uint32_t us) {
     const uint64_t begin = nowNs() / 1000;
-    // A program that keeps step waits for at least shortestUs. A program that never waits would
-    // stop time, and might wait for time to pass.
+    // A program that keeps step waits for at least shortestUs. If it waited for 0, it would stop
+    // time and might wait forever for time to pass.
     const uint64_t end =
         us == forever ? endOfTime : begin + (inStep() ? std::max(us, shortestUs) : us);
     const bool reads = std::any_of(fds, fds + count, [this](const pollfd& p) {
@@ -111,7 +112,8 @@ void SimulatedClock::keepStep(int serial, const std::string& device) {
     store(simulation_->keeper, token_);
 }
 
-// Another program on the same port may keep step now.
+// Clears the entry only if it is this program's: another program on the same port may keep step by
+// now.
 void SimulatedClock::leaveStep() {
     uint64_t mine = token_;
     if (mine)

@@ -19,7 +19,7 @@ namespace gateway {
 
 namespace {
 
-// Returns Ice's endpoints for HOST:PORT or endpoints from the command line.
+// Returns Ice endpoints for an argument, which is HOST:PORT or already consists of endpoints.
 std::string given(const std::string& text) {
     if (text.find(' ') != std::string::npos)
         return text;
@@ -31,7 +31,7 @@ std::string given(const std::string& text) {
         port.size() > 5 || std::stoul(port) > 65535)
         throw std::runtime_error("'" + text + "': a port is 0 to 65535");
     std::string host = text.substr(0, colon);
-    if (host.front() == '[') { // as in URLs: [::1]:10000
+    if (host.front() == '[') { // an IPv6 address in brackets, as in URLs: [::1]:10000
         if (host.back() != ']')
             throw std::runtime_error("'" + text + "': a ] is missing");
         host = host.substr(1, host.size() - 2);
@@ -39,7 +39,7 @@ std::string given(const std::string& text) {
     return "tcp -h \"" + host + "\" -p " + port;
 }
 
-// Reads the modem's key from a file: every user of the machine can read the command line.
+// Reads the modem's key from a file. An argument would show it to every user of the machine.
 std::string readModemKey(const std::string& path) {
     std::string key = XBeeAT::readSecret(path);
     key.erase(key.find_last_not_of(" \n") + 1);
@@ -116,11 +116,12 @@ void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o) 
     };
     preset("Ice.ThreadPool.Server.Size", "4");
     preset("Ice.ThreadPool.Server.SizeMax",
-           "256"); // each client that waits for room holds a thread
+           "256"); // a client that waits for room holds a thread
     preset("Ice.ThreadPool.Server.Serialize", "1");
     preset("Ice.ThreadPool.Client.Size", "4");
-    preset("Ice.ACM.Client.Close", "0");     // the vehicle may call back at any time
-    preset("Ice.ACM.Server.Heartbeat", "3"); // always: Ice 3.8 drops a silent server after 60 s
+    preset("Ice.ACM.Client.Close", "0"); // never close: the vehicle may call back at any time
+    // always send heartbeats: Ice 3.8 closes the connection of a silent peer after 60 s
+    preset("Ice.ACM.Server.Heartbeat", "3");
     preset("Ice.RetryIntervals", "-1");
     preset("Ice.Override.CloseTimeout", "5000");
     preset("Ice.Warn.Connections", "0");
@@ -130,7 +131,8 @@ void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o) 
     p->setProperty("XBeeAT.Setup", o.setUp ? "1" : "0");
     p->setProperty("XBeeAT.Api", o.isApi ? "1" : "0");
     p->setProperty("XBeeAT.KeyFile", o.keyFile);
-    p->setProperty("Ice.Override.ConnectTimeout", "30000"); // the modem is set up meanwhile
+    // connecting includes the set-up of the modem
+    p->setProperty("Ice.Override.ConnectTimeout", "30000");
     if (!o.modemKeyFile.empty())
         p->setProperty("XBeeAT.ModemKey", readModemKey(o.modemKeyFile));
     Ice::registerPluginFactory("XBeeAT", createXBeeAT, true);
@@ -158,11 +160,13 @@ std::map<std::string, int> fleetOf(const Options& o) {
         const size_t equals = text.find('=');
         const std::string name = text.substr(0, equals);
         const std::string number = equals < text.size() ? text.substr(equals + 1) : "";
-        char* end = nullptr; // a number too large for a long becomes the largest one
+        char* end = nullptr; // strtol returns the largest long for a number that is too large
         const long address = std::strtol(number.c_str(), &end, 0);
         if (name.empty() || number.empty() || !std::isdigit(number[0]) || address > 0xFFFF || *end)
             throw std::runtime_error("'" + text + "': give NAME=ADDRESS, as uav7=0x0007");
-        if (address == XBeeAT::everybody) // docs/fleet.md: a oneway proxy of the plugin's endpoint
+        // calls to all vehicles use a one-way proxy of the plugin's endpoint instead
+        // (docs/fleet.md)
+        if (address == XBeeAT::everybody)
             throw std::runtime_error("'" + text + "': 0xFFFF is all vehicles, give each its own");
         for (const auto& [other, taken] : fleet)
             if (taken == address && other != name)

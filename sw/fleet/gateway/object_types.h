@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// object_types: which of the vehicle's objects are for maintenance. The gateway asks the vehicle
-// once per session for the type of each object; requests to an object of unknown type wait here.
-// It has no lock: the forwarder calls it under its own.
+// object_types: remembers which objects of the vehicle are for maintenance. The gateway asks the
+// vehicle once per session for the type of each object; requests to an object of unknown type wait
+// here. ObjectTypes has no lock: the forwarder calls it while it holds its own lock.
 
 #pragma once
 
@@ -12,16 +12,17 @@
 
 namespace gateway {
 
-constexpr size_t mostKnown = 1000; // objects, or operations, that are remembered
+constexpr size_t mostKnown = 1000; // limit of the objects, or operations, that are remembered
 
 class ObjectTypes {
 public:
-    using Object = std::pair<Ice::Identity, std::string>; // identity and facet
+    using Object = std::pair<Ice::Identity, std::string>; // identity and facet of an object
     static Object objectOf(const Request& request) {
         return {request.current.id, request.current.facet};
     }
 
-    // Asks: the caller is to ask the vehicle, and to report the type to answered().
+    // What happens to a request. Asks: the caller must ask the vehicle for the type of the object,
+    // and report it to answered().
     enum class Verdict { Goes, Waits, Asks, Refused };
     Verdict verdictOn(const std::shared_ptr<Request>& request) {
         const Object object = objectOf(*request);
@@ -34,20 +35,20 @@ public:
         waiting.push_back(request);
         return waiting.size() == 1 ? Verdict::Asks : Verdict::Waits;
     }
-    // Returns the requests that waited for an object's type.
+    // Removes and returns the requests that waited for the type of an object.
     Requests answered(const Object& object) {
         Requests waiting;
         waiting.swap(waiting_[object]);
         waiting_.erase(object);
         return waiting;
     }
-    // Records an object's type until the end of the session.
+    // Records the type of an object until the session ends.
     void record(const Object& object, bool isMaintenance) {
         if (isMaintenance_.size() >= mostKnown)
             isMaintenance_.clear();
         isMaintenance_[object] = isMaintenance;
     }
-    // Forgets all types: the next vehicle may have other objects.
+    // Forgets all types, because the next vehicle may have other objects.
     void clear() { isMaintenance_.clear(); }
 
 private:

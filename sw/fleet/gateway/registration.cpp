@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// registration: registers a vehicle in IceGrid when its session starts, and withdraws it when the
-// session ends.
+// registration: registers a vehicle in IceGrid when its session starts, and removes the entry when
+// the session ends.
 
 #include "registration.h"
 
@@ -11,10 +11,10 @@ namespace gateway {
 
 namespace {
 
-// Time after which a call in progress to a vehicle that has moved fails.
+// Time-out of the calls in progress when the vehicle has moved to another ground station.
 constexpr std::chrono::milliseconds late{500};
 
-// Returns whether the endpoints of a proxy refuse connections.
+// Returns whether connections to the endpoints of a proxy are refused.
 bool isDead(const std::shared_ptr<Ice::ObjectPrx>& proxy) {
     try {
         proxy->ice_invocationTimeout(Registration::patienceMs)->ice_getConnection();
@@ -57,7 +57,8 @@ void Events::tell(bool isHere) const {
     out.writeSize(0);
     out.endEncapsulation();
     const auto in = out.finished();
-    const auto ignored = [](std::exception_ptr) {}; // the next event follows
+    // errors are ignored; the next event is sent anyway
+    const auto ignored = [](std::exception_ptr) {};
     publisher_->ice_invokeAsync("vehicleState", Ice::OperationMode::Normal, in, nullptr, ignored,
                                 nullptr, {{"vehicle", vehicle_}});
 }
@@ -81,7 +82,7 @@ std::shared_ptr<Ice::ObjectPrx> Registration::find() const {
     }
 }
 
-// Writes the vehicle's endpoints into the registry; null removes them.
+// Writes the endpoints of the vehicle into the registry; null removes them.
 void Registration::enter(const std::shared_ptr<Ice::ObjectPrx>& proxy) const {
     const auto registry = locator_->getRegistry();
     registry->ice_invocationTimeout(patienceMs)->setAdapterDirectProxy(name_, proxy);
@@ -111,8 +112,8 @@ void Registration::come() {
     events_.tell(true);
 }
 
-// Closes the adapter, so that clients ask the registry again. Waiting calls were not sent; clients
-// may send them to another ground station.
+// Closes the adapter, so that clients ask the registry again. Calls that wait here have not been
+// sent; clients may send them to another ground station.
 void Registration::close() {
     if (!adapter_)
         return;
@@ -144,7 +145,7 @@ void Registration::look() {
     }
 }
 
-// Removes this ground station from the registry, unless another one is registered now.
+// Removes this ground station from the registry, unless another one is registered by now.
 void Registration::leave() {
     if (!isEntered_)
         return;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// rights: defines which clients of the gateway may call which operations, by a JSON file of rules:
+// rights: decides which clients of the gateway may call which operations, by a JSON file of rules:
 //
 //   [{"who": "CN=pilot*", "identities": ["*"], "operations": ["*"]},
 //    {"who": "",          "identities": ["uav", "hwengine*"], "operations": ["get*", "isAlive"]}]
 //
-// `who` is a shell pattern for the subject of the client's certificate; a client without a
-// certificate has the subject "". A call is allowed if one rule allows it. Every caller of an
-// object may also ask for its type and ping it.
+// `who` is a shell pattern for the subject of the client's certificate; the subject of a client
+// without a certificate is "". A call is allowed if at least one rule allows it. A client that may
+// call one operation of an object may also ask for the object's type and ping it.
 
 #pragma once
 
@@ -17,8 +17,8 @@ namespace gateway {
 
 class Rights {
 public:
-    Rights() = default; // every client may call every operation
-    // Throws std::runtime_error with the reason if the file has another form.
+    Rights() = default; // allows every client to call every operation
+    // Reads the rules. Throws std::runtime_error with the reason if the file has another format.
     explicit Rights(const std::string& path);
 
     bool permit(const std::string& subject, const std::string& identity,
@@ -33,7 +33,7 @@ private:
     std::vector<Rule> rules_;
 };
 
-// Returns the subject of the certificate of a connection's peer; empty without one.
+// Returns the subject of the certificate of a connection's peer; empty if it has no certificate.
 std::string subjectOf(const std::shared_ptr<Ice::Connection>& connection);
 
 } // namespace gateway

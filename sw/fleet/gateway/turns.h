@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// turns: fair turns by bytes among any number of flows (self-clocked fair queueing).
+// turns: shares bytes fairly among any number of flows (self-clocked fair queueing).
 //
-// A flow that begins to wait gets the current clock value as its tag, and each turn adds its bytes.
-// The flow that would end first is served next, so a flow with little to send waits only a little
-// longer than for the bytes in flight.
+// Each flow has a tag. A flow that begins to wait gets the current clock value as its tag, and each
+// of its turns adds the bytes sent. The flow that would have the lowest tag after its turn is
+// served next. So a flow that sends little waits only a little longer than the bytes in flight
+// take.
 
 #pragma once
 
@@ -24,9 +25,10 @@ public:
         if (!entry.isWaiting)
             entry = {std::max(entry.tag, clock_), true};
     }
-    // Returns the tag that a waiting flow has after its next `bytes`: the least goes next.
+    // Returns the tag that a waiting flow would have after sending `bytes`. The flow with the
+    // lowest result is next.
     uint64_t after(const Flow& flow, size_t bytes) const { return entries_.at(flow).tag + bytes; }
-    // Records that a waiting flow sends `bytes`.
+    // Records that a waiting flow sends `bytes`, and advances the clock.
     void take(const Flow& flow, size_t bytes) {
         uint64_t& tag = entries_.at(flow).tag;
         tag += bytes;
@@ -38,7 +40,8 @@ public:
         if (entry == entries_.end())
             return;
         entry->second.isWaiting = false;
-        for (auto each = entries_.begin(); each != entries_.end();) { // these begin as new flows do
+        // removes flows that would start like new flows
+        for (auto each = entries_.begin(); each != entries_.end();) {
             const bool isOver = !each->second.isWaiting && each->second.tag <= clock_;
             each = isOver ? entries_.erase(each) : std::next(each);
         }

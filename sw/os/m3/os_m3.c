@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_m3: the kernel's port to the Cortex-M3: first stack, first switch, PendSV's choice, stack
- * guard.
+ * os_m3: the kernel's port to the Cortex-M3: initial stack of a task, first switch, choice of the
+ * next task in PendSV, and stack guard.
  */
 #include "os_m3.h"
 #include "os_core.h"
@@ -13,11 +13,11 @@
 
 U32* OS_Switch(U32* sp); /* called by os_switch.S */
 
-/* The running task; 0 before the first one starts. Debuggers look for this name. */
+/* The running task; 0 before the first task starts. Debuggers look for this name. */
 static OS_Task* os_running;
 
 static void taskReturned(void) {
-    OS_StackFault(0xFFU); /* a task must not return: treated as an overflow */
+    OS_StackFault(0xFFU); /* a task must not return; handled like a stack overflow */
 }
 
 OS_STK* OSTaskStkInit(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT16U opt) {
@@ -38,14 +38,14 @@ OS_STK* OSTaskStkInit(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT1
 
 void OSCtxSw(OS_Task* from, OS_Task* to) {
     (void)from;
-    (void)to; /* os_kernel.current, when PendSV runs */
+    (void)to; /* PendSV switches to os_kernel.current */
     ICSR = ICSR_PENDSVSET;
     __asm__ volatile("dsb"); /* PendSV is pending before the caller enables interrupts */
 }
 
 void OSStartHighRdy(void) {
     os_running = 0;
-    SHPR3 |= 0xFFUL << 16; /* PendSV below everything */
+    SHPR3 |= 0xFFUL << 16; /* PendSV gets the lowest priority */
     __asm__ volatile("msr psp, %0" : : "r"(0));
     ICSR = ICSR_PENDSVSET;
     __asm__ volatile("cpsie i\n\tisb");
@@ -53,8 +53,8 @@ void OSStartHighRdy(void) {
         ;
 }
 
-/* Switches the context; PendSV calls it with interrupts off. `sp` points at the running task's
- * registers; the result points at the next task's. */
+/* Selects the next task; PendSV calls this function with interrupts disabled. `sp` points at the
+ * saved registers of the running task; returns the pointer to those of the next task. */
 U32* OS_Switch(U32* sp) {
     if (os_running) {
         os_running->stack = sp;

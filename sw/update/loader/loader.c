@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * loader: checks the slots' images and starts one. It has no variables: its stack is at the end of
- * RAM, where the firmware keeps nothing across a reset. At the end are the few functions of
- * libsodium's other files that signature checks need.
+ * loader: checks the images in the slots and starts one of them. It has no variables. Its stack is
+ * at the end of RAM, where the firmware keeps nothing that must survive a reset. The end of this
+ * file has the few functions from other files of libsodium that a signature check needs.
  */
 #include "loader.h"
 #include "backup.h"
@@ -14,8 +14,9 @@
 #include <sodium/crypto_hash_sha512.h>
 #include <sodium/utils.h>
 
-#define TRIAL_PRESCALER 6UL /* LSI / 256: 8 ms */
-#define TRIAL_RELOAD 1250UL /* 10 s until the new firmware serves the watchdog itself */
+#define TRIAL_PRESCALER 6UL /* divides LSI by 256: one count is 8 ms */
+/* 10 s, the time within which the new firmware must serve the watchdog itself */
+#define TRIAL_RELOAD 1250UL
 
 typedef void (*Vector)(void);
 
@@ -23,7 +24,7 @@ extern void stack_top(void); /* loader.ld */
 
 void Reset_Handler(void);
 
-/* Restarts after a fault in the loader: the next try may succeed. */
+/* Restarts after a fault in the loader; the next try may succeed. */
 static void restart(void) {
     SCB_AIRCR = SCB_AIRCR_RESET;
     for (;;)
@@ -43,7 +44,7 @@ static const Slots_Port port = {&slots_firmware,      0,
                                 Signature_digest,     LOADER_KEYS,
                                 (const U8*)FLASH_BASE};
 
-/* Starts the program with its vectors at this address. */
+/* Starts the program whose vector table is at this address. */
 static void __attribute__((naked, noreturn)) jump(const U32* at) {
     __asm__ volatile("ldrd r1, r2, [r0]\n\t"
                      "msr msp, r1\n\t"
@@ -56,7 +57,7 @@ void Reset_Handler(void) {
     Clock_start();
     RCC_AHB1ENR |= RCC_AHB1ENR_BKPSRAM;
     slot = Slots_choose(&port, LOADER_PRODUCT, BKPSRAM(BACKUP_AT(vehicle.flight)) != BACKUP_FLYING);
-    if (slot == SLOTS_NONE) /* no image can be started: only a programmer helps */
+    if (slot == SLOTS_NONE) /* no image can be started; the board must be reprogrammed */
         for (;;)
             __asm__ volatile("wfi");
     if (!Slots_is(&port, slot, SLOTS_CONFIRMED)) {
@@ -94,7 +95,8 @@ int sodium_is_zero(const unsigned char* bytes, const size_t count) {
     return all == 0;
 }
 
-/* Wipes memory for libsodium's intermediate results; the data checked here is public. */
+/* Replaces libsodium's function, which wipes intermediate results. Does nothing, because the data
+ * checked here is public. */
 void sodium_memzero(void* const at, const size_t bytes) {
     (void)at;
     (void)bytes;

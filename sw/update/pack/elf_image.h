@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// elf_image: a program for the Cortex-M3 as its ELF file describes it: bytes of flash, symbols,
+// elf_image: reads a program for the Cortex-M3 from its ELF file: bytes in flash, symbols,
 // checksum.
 
 #pragma once
@@ -13,36 +13,38 @@
 
 class ElfImage {
 public:
-    // Throws std::runtime_error with the reason.
+    // Reads the file. Throws std::runtime_error with the reason.
     explicit ElfImage(const std::string& path);
 
     struct Segment {
         uint32_t address; // load address, in flash
-        uint32_t runAt;   // address during execution: RAM for the initial values of variables
+        uint32_t runAt;   // address at run time; in RAM for the initial values of variables
         uint32_t offset;  // offset in the file
         std::vector<uint8_t> bytes;
     };
     const std::vector<Segment>& segments() const { return segments_; }
     bool has(const std::string& symbol) const { return symbols_.count(symbol) != 0; }
-    uint32_t symbol(const std::string& name) const; // throws for an unknown name
+    // Returns the value of a symbol. Throws if the name is unknown.
+    uint32_t symbol(const std::string& name) const;
     uint32_t size(const std::string& name) const { return sizes_.at(name); }
-    // Returns the name of the function at an address; "?" if none.
+    // Returns the name of the function at an address; "?" if there is no function.
     std::string functionAt(uint32_t address) const;
 
     // Writes the checksum of the words image_begin .. image_end into the file, at image_end.
     void stamp() const;
 
-    // Returns the bytes of flash since image_begin, relocated to another address, including the
-    // checksum. For programs linked with --emit-relocs.
+    // Returns the image (the bytes of flash from image_begin to the checksum), relocated to another
+    // address. The program must be linked with --emit-relocs.
     std::vector<uint8_t> movedTo(uint32_t address) const;
 
 private:
     struct Relocation {
-        uint32_t at, type, symbol; // address in the running program; of <elf.h>; its value
+        // address in the running program; type as in <elf.h>; value of the symbol
+        uint32_t at, type, symbol;
     };
     void readRelocations(const std::vector<uint8_t>& file, const Elf32_Ehdr& header,
                          const Elf32_Shdr& section);
-    std::vector<uint8_t> image() const; // since image_begin, including the checksum
+    std::vector<uint8_t> image() const; // Returns the image as it is in the file.
 
     std::string path_;
     std::vector<Segment> segments_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// check: rejects Slice that is valid but cannot become C90.
+// check: rejects valid Slice that cannot be mapped to C90.
 
 #include "c/context.h"
 #include "c/generator.h"
@@ -40,7 +40,7 @@ void checkText(const Literal& value, const Location& at, Diagnostics& diagnostic
                                   std::to_string(most) + " only");
 }
 
-// The names of the generated C at file scope, each with its Slice name.
+// The names at file scope in the generated C, each with its Slice name.
 class CNames {
 public:
     CNames(const Unit& unit, Diagnostics& diagnostics) : unit_(unit), diagnostics_(diagnostics) {}
@@ -78,8 +78,8 @@ public:
                  id, d.at);
         }
     }
-    // Checks the name of a member or parameter: it must not hide a name of file scope that its
-    // function may use, nor be a macro. Only names with an underscore can collide.
+    // Checks the C name of a member or parameter. It must not hide a name of file scope that its
+    // function may use, and must not be a macro. Only names with an underscore can collide.
     void checkInner(const std::string& c, const std::string& slice, const Location& at) {
         auto it = names_.find(c);
         if (it != names_.end())
@@ -101,7 +101,7 @@ private:
         for (const char* own : {"bases_", "dispatch_", "operations_"})
             add(own + c, id, d.at);
         if (d.fromInclude)
-            return; // its own file was checked for these names
+            return; // these names were checked when the included file was compiled
         for (const Declaration* from : lineage(d))
             for (const Operation& o : from->operations) {
                 std::string slice = from->id() + "::" + o.name;
@@ -154,7 +154,7 @@ void checkInner(const Declaration& d, CNames& names) {
 } // namespace
 
 void scopeEnumerators(Unit& unit) {
-    std::map<std::string, std::string_view> files; // files by name in C
+    std::map<std::string, std::string_view> files; // Slice files by their name in C
     for (const auto& d : unit.declarations)
         files.emplace(cName(*d), d->at.file);
     for (const auto& d : unit.declarations) {
@@ -181,7 +181,7 @@ void checkC(const Unit& unit, const CFileNames& files, Diagnostics& diagnostics)
         if (d->isLocal)
             continue;
         checkInner(*d, names);
-        if (d->ofClass) // the class reports the other errors
+        if (d->ofClass) // the class of the same name reports the other errors
             continue;
         checkMetadata(*d, diagnostics);
         checkText(d->value, d->at, diagnostics);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// operations: from operations to lists of C parameters.
+// operations: converts operations to lists of C parameters.
 
 #include "c/context.h"
 #include <algorithm>
@@ -10,8 +10,8 @@ namespace {
 
 const char* const resultName = "result";
 
-// Returns the declaration of an in parameter or response value. An optional one is a pointer, 0 if
-// absent.
+// Returns the declaration of an in parameter or of a response value. An optional one is a pointer,
+// which is 0 if the value is absent.
 std::string passed(const Type& t, const std::string& name, bool isOptional) {
     bool isPointer = isByPointer(t) || isOptional;
     if (isClass(t))
@@ -24,7 +24,8 @@ Slot passedSlot(const Type& t, const std::string& name, bool isOptional, int tag
     return {&t, pointer ? "*" + name : name, pointer ? name : "&" + name, isOptional, tag, name};
 }
 
-// One result of an operation, in the order of the mapping: outs, then the return value.
+// One result of an operation. The results are in the order of the mapping: out parameters, then the
+// return value.
 struct Result {
     const Type* type;
     std::string name;
@@ -78,8 +79,9 @@ bool throwsPreserved(const Unit& unit, const Operation& o) {
                        [](const Declaration* e) { return e->preserves(); });
 }
 
-// Returns whether an exception is the first one with its name, which it then keeps unchanged. The
-// exceptions of the operation come first, then the others, so adding one renames none of them.
+// Returns whether an exception is the first one with its name in this union; the first one keeps
+// the name unchanged. The exceptions that the operation declares come before the others, so adding
+// another exception never renames them.
 static bool isFirstOfName(const Operation& o, const std::vector<const Declaration*>& family,
                           const Declaration& exception) {
     for (const auto& list : {o.throws, family})
@@ -100,7 +102,7 @@ std::string exceptionLabel(const Operation& o, const std::vector<const Declarati
 
 std::string exceptionMember(const Operation& o, const std::vector<const Declaration*>& family,
                             const Declaration& exception) {
-    // C++ allows no member with the name of its type.
+    // In C++ a member cannot have the name of its own type.
     return isFirstOfName(o, family, exception) ? cIdentifier(exceptionLabel(o, family, exception))
                                                : cName(exception) + "_";
 }
@@ -168,7 +170,7 @@ std::string outParameters(const Declaration& owner, const Operation& o, bool isS
     return list;
 }
 
-// The results as values that a response sends.
+// Returns the results as parameters of the function that sends the response.
 static std::string responseParameters(const Operation& o) {
     std::string list;
     for (const Result& r : results(o))

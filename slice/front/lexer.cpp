@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// lexer: one pass over the text.
+// lexer: splits the text into tokens in one pass.
 
 #include "front/parser.h"
 #include <algorithm>
@@ -51,17 +51,18 @@ private:
         while (position_ < position)
             advance();
     }
-    // Adds a token from `begin` to the current position.
+    // Adds a token that extends from `begin` to the current position.
     void add(Token::Kind kind, size_t begin, const Location& at, bool escaped = false) {
         tokens_.push_back(
             {kind, text_.substr(begin, position_ - begin), doc_, linesAbove(at.line), at, escaped});
         doc_ = {};
         comments_.clear();
     }
-    // Returns the // lines that end directly above this line.
+    // Returns the block of // comments that ends on the line above this one.
     std::string linesAbove(int line) const {
         auto end = comments_.end();
-        while (end != comments_.begin() && (end - 1)->first >= line) // after the tokens of the line
+        // skips comments that follow the tokens of the line
+        while (end != comments_.begin() && (end - 1)->first >= line)
             --end;
         auto begin = end;
         while (begin != comments_.begin() && (begin - 1)->first == line - 1) {
@@ -205,7 +206,7 @@ private:
         if (position_ == begin + 1 &&
             std::string_view("{}()[];:,*=<>").find(c) == std::string_view::npos) {
             auto u = static_cast<unsigned char>(c);
-            if (u >= 0xC0) // a complete UTF-8 character
+            if (u >= 0xC0) // shows a whole UTF-8 character
                 while ((static_cast<unsigned char>(peek()) & 0xC0) == 0x80)
                     ++position_;
             std::string shown = u > 32 && u != 127
@@ -222,8 +223,8 @@ private:
     size_t position_ = 0;
     Location at_;
     std::string_view doc_;
-    std::vector<std::pair<int, std::string_view>> comments_; // // comments, with their lines
-    int moved_ = 0; // lines added by the preprocessor, one after each comment
+    std::vector<std::pair<int, std::string_view>> comments_; // // comments, each with its line
+    int moved_ = 0; // number of lines that the preprocessor has added, one after each comment
     std::vector<Token> tokens_;
 };
 

@@ -56,7 +56,7 @@ void collect(const Declaration& d, std::set<const Declaration*>& seen,
         list.push_back({&o, &d});
 }
 
-// Returns the operations of an interface or class, including inherited ones, each once.
+// Returns the operations of an interface or class, each once, including inherited ones.
 std::vector<OwnedOperation> allOperations(const Declaration& d) {
     std::set<const Declaration*> seen;
     std::vector<OwnedOperation> list;
@@ -66,7 +66,7 @@ std::vector<OwnedOperation> allOperations(const Declaration& d) {
 
 } // namespace
 
-// Checks that no two bases have different operations of one name.
+// Checks that no two bases have different operations with the same name.
 void Parser::checkBases(const Declaration& d) {
     std::vector<OwnedOperation> list = allOperations(d);
     for (size_t i = 0; i < list.size(); ++i)
@@ -115,7 +115,7 @@ void Parser::operation(Declaration& d) {
     checkLocal(o.result, d.isLocal, "operation '" + o.name + "'", begin);
     checkOperation(d, o);
     expect("(");
-    user_ += "::" + o.name; // parameters use names for the operation
+    user_ += "::" + o.name; // names in the parameter list are used by the operation
     parameters(o, d);
     user_ = d.id();
     expect(")");
@@ -148,7 +148,7 @@ void Parser::checkOperation(const Declaration& d, const Operation& o) {
                       "operation '" + o.name + "' has the name of a member, '" + f.name + "'");
 }
 
-// Checks that a member of a class does not have the name of an operation.
+// Checks that a class member does not have the same name as an operation.
 void Parser::checkMemberOfClass(const Declaration& d, const Field& f) {
     for (const auto& [operation, from] : allOperations(d))
         if (lowerCase(operation->name) == lowerCase(f.name))
@@ -201,7 +201,7 @@ void Parser::throwsClause(Operation& o, const Declaration& owner) {
         Location begin = token().at;
         std::string written = scopedName("an exception");
         Symbol* s = resolve(written, begin);
-        // The name of an operation must have no other meaning in the interface.
+        // The name of an operation must not mean anything else in its interface.
         std::string first = lowerCase(written.substr(0, written.find("::")));
         bool isOperation = first == lowerCase(o.name);
         for (const Operation& other : owner.operations)

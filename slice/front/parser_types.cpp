@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// parser_types: types, tags and values of constants.
+// parser_types: parses types, tags and values of constants.
 
 #include "front/parser.h"
 #include <algorithm>
@@ -37,7 +37,7 @@ Symbol* Parser::resolve(const std::string& written, const Location& at) {
     return symbols_.resolve(scopeId_, written, at, user_.empty() ? scopeId_ : user_);
 }
 
-// Checks that only local types contain local ones.
+// Checks that a type that is not local does not contain a local type.
 void Parser::checkLocal(const Type& type, bool local, const std::string& what, const Location& at) {
     bool isLocal =
         type.kind == Kind::LocalObject || (type.declaration && type.declaration->isLocal);
@@ -83,7 +83,7 @@ Type Parser::namedType() {
                          : symbol->declaration->kind == Declaration::Kind::Constant
                              ? "a constant, not a type"
                              : "an exception; it can only be thrown";
-        if (symbol || unknown_.insert(written).second) // an unknown name is reported once
+        if (symbol || unknown_.insert(written).second) // each unknown name is reported once
             error(begin, "'" + written + "' is " + is);
         throw SyntaxError();
     }
@@ -179,7 +179,8 @@ Symbol* Parser::resolveValue(const std::string& written, const Location& at) {
     return found.front();
 }
 
-// Finds an enumerator by its bare name, which something else in scope takes away in Ice.
+// Finds an enumerator by its name alone. Reports an error if the name means something else in this
+// scope, as Ice does.
 Symbol* Parser::ownEnumerator(const Declaration& d, const std::string& name, const Location& at) {
     Symbol* found = symbols_.find(d.id() + "::" + name);
     Symbol* other = found ? symbols_.innermost(scopeId_, name) : nullptr;
@@ -194,7 +195,7 @@ Symbol* Parser::ownEnumerator(const Declaration& d, const std::string& name, con
 Literal Parser::namedLiteral(const Type& type, const std::string& what) {
     Location begin = token().at;
     std::string written = scopedName("a value");
-    // An enumerator of the value's type needs no scope.
+    // An enumerator of the constant's type needs no scope.
     Symbol* s = nullptr;
     if (type.declaration && type.declaration->kind == Declaration::Kind::Enum &&
         written.find("::") == std::string::npos)
@@ -243,7 +244,7 @@ Literal Parser::literal(const Type& type, const std::string& what) {
     return convert(v, type, what, begin);
 }
 
-// The value as one of `type`, or an error and no value.
+// Converts a value to `type`. Reports an error and returns no value if that is not possible.
 Literal Parser::convert(Literal v, const Type& type, const std::string& what, const Location& at) {
     auto wrong = [&](const std::string& text) {
         error(at, what + " of type '" + typeName(type) + "' " + text);

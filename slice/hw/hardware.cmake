@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
 #
-# hardware.cmake: makes wrappers, registers and servants of [":hw"] interfaces (docs/hw-mapping.md).
+# hardware.cmake: generates wrappers, registers and servants of [":hw"] interfaces
+# (docs/hw-mapping.md).
 
-# icesoc_hardware(NAME file.ice BLOCKS block... [OWN_CLOCK]) generates in ${GEN_DIR} the wrappers
-# <block>_wrapper.v and <block>_wrapper.vhd, and the registers of each block as icesoc_regmap does,
-# and adds the library NAME_servants and the target NAME_hardware. BLOCKS: the file's hardware
-# interfaces in snake_case. OWN_CLOCK: these have a clock that may stop.
+# icesoc_hardware(NAME file.ice BLOCKS block... [OWN_CLOCK]) generates the wrappers
+# <block>_wrapper.v and <block>_wrapper.vhd in ${GEN_DIR}, and the registers of each block as
+# icesoc_regmap does. It adds the library NAME_servants and the target NAME_hardware. BLOCKS: the
+# hardware interfaces of the file, in snake_case. OWN_CLOCK: each block has a clock that may stop.
 function(icesoc_hardware name file)
   cmake_parse_arguments(A "OWN_CLOCK" "" "BLOCKS;INCLUDES" ${ARGN})
   get_filename_component(path ${file} ABSOLUTE)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// values: the servant's values: C into registers and buffers, and back.
+// values: generates the part of the servant that writes C values to registers and buffers, and
+// reads them back.
 
 #include "c/context.h"
 #include "hw/generator.h"
@@ -17,12 +18,12 @@ std::string macro(const Block& b, const Word& w, const Piece& p, const char* wha
     return upperCase(b.name) + "_" + w.name + "_" + upperCase(p.name) + half + "_" + what;
 }
 
-// Pointers are dereferenced in brackets.
+// Returns the C expression of a piece; a dereferenced pointer is put in parentheses.
 std::string lvalue(const Piece& p) {
     return p.c[0] == '*' ? "(" + p.c + ")" : p.c;
 }
 
-// The value as bits of a U32.
+// Returns the expression that converts a value to the bits of a U32.
 std::string bitsOf(const Piece& p) {
     std::string c = lvalue(p);
     if (p.isCount)
@@ -43,7 +44,8 @@ std::string bitsOf(const Piece& p) {
     }
 }
 
-// Returns a read or write of a word, up to the parenthesis; a word behind PAGE takes more accesses.
+// Returns the call that reads or writes a word, up to its first arguments. For a word on a page,
+// the call also selects the page.
 std::string access(const Block& b, const Word& word, const std::string& what) {
     std::string name = upperCase(b.name) + "_" + word.name;
     return b.isPaged(word.number)
@@ -70,7 +72,7 @@ std::string roomOf(const Call& c, const Piece& p) {
     return c.name + "_" + p.name.substr(0, p.name.size() - 5) + "data";
 }
 
-// Writes the reading of a sequence; its layout in DDR3 is the layout of the array in C.
+// Writes code that reads a sequence; its layout in DDR3 equals the layout of the array in C.
 void readSequence(Writer& w, const Call& c, const Piece& p, const std::string& count) {
     std::string sequence = lvalue(p), bytes = std::to_string(p.elementBytes) + "U";
     w.line(sequence + ".size = (Ice_Int)" + count + ";");
@@ -118,7 +120,8 @@ void readPiece(Writer& w, const Block& b, const Call& c, const Word& word, const
     w.line(to + " = (" + cType(p.type) + ")" + whole + ";");
 }
 
-// Reads the words with values of an exception, or of the call (0).
+// Writes code that reads the words with the values of an exception; `exception` 0 means the results
+// of the call.
 void readWords(Writer& w, const Block& b, const Call& c, unsigned exception) {
     for (const Word& word : c.words) {
         bool isRead = false;

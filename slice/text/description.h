@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// description: the declarations of a unit as JSON, for programs that call operations without
+// description: writes the declarations of a unit as JSON, for programs that call operations without
 // generated code (docs/call.md).
 
 #pragma once
@@ -8,10 +8,11 @@
 #include "front/ast.h"
 #include <nlohmann/json.hpp>
 
-// Adds each declaration of the unit and of included files under its full name:
+// Adds the declarations of the unit and of included files, each under its full name:
 //
 //   "::Autopilot::Feature": {"kind": "struct", "file": "Autopilot.ice", "doc": "...", "fields":
 //   [...]}
 //
-// A type is a text: "short", "::Cores::Samples", a proxy as "::Demo::Watcher*" or "Object*".
+// A type is written as text: "short", "::Cores::Samples"; a proxy as "::Demo::Watcher*" or
+// "Object*".
 void describeUnit(const Unit& unit, nlohmann::ordered_json& declarations);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// writer: indented text for generators: templates look like their output, {name} is filled in.
+// writer: writes indented text for generators. Templates look like their output; {name} is replaced
+// by a value.
 
 #pragma once
 
@@ -17,10 +18,10 @@ class Writer {
 public:
     using Values = std::vector<std::pair<std::string_view, std::string>>;
 
-    // Replaces `{name}` for a known name; any other brace is text. A line of code longer than 100
-    // columns is broken after a comma or an operator.
+    // Writes a line. Replaces `{name}` if the name is known; any other brace is plain text. Breaks
+    // a line of code longer than 100 columns after a comma or an operator.
     void line(std::string_view text = {}, const Values& values = {});
-    // Writes `body` one step to the right.
+    // Writes `body` with one more level of indentation.
     template <class Body> void indented(Body body) {
         ++indent_;
         body();
@@ -33,7 +34,7 @@ public:
         indented(body);
         line(tail, values);
     }
-    // Writes a block after an empty line.
+    // Writes an empty line, then a block.
     template <class Body> void function(std::string_view head, const Values& values, Body body) {
         blank();
         block(head, values, body);
@@ -42,11 +43,11 @@ public:
     template <class Body> void type(const std::string& kind, const std::string& name, Body body) {
         block("typedef " + kind + " " + name, {}, body, "} " + name + ";");
     }
-    // The one statement of an `if` or a loop.
+    // Writes the only statement of an `if` or a loop.
     void nested(std::string_view text, const Values& values = {}) {
         indented([&] { line(text, values); });
     }
-    // An `if`, a loop or a case with its one statement.
+    // Writes an `if`, a loop or a case with its only statement.
     void single(std::string_view head, std::string_view statement, const Values& values = {}) {
         line(head, values);
         nested(statement, values);

@@ -15,7 +15,8 @@ namespace IceHeader {
 enum Type : uint8_t { Request, Batch, Reply, Validate, CloseConnection };
 
 constexpr size_t bytes = 14;
-constexpr size_t requestIdAt = bytes; // 4 bytes, in a request and a reply; 0 means oneway
+// offset of the request id, 4 bytes, in a request and a reply; id 0 means one-way
+constexpr size_t requestIdAt = bytes;
 
 inline uint32_t get32(const uint8_t* at) {
     return static_cast<uint32_t>(at[0]) | static_cast<uint32_t>(at[1]) << 8 |
@@ -26,17 +27,17 @@ inline uint8_t typeOf(const uint8_t* message) {
     return message[8];
 }
 
-// Returns the bytes of the message, header included.
+// Returns the size of the message, including the header, bytes.
 inline uint32_t sizeOf(const uint8_t* message) {
     return get32(message + 10);
 }
 
-// Returns whether a header begins with Ice's magic, and counts itself in its size.
+// Returns whether a header begins with Ice's magic and has a size of at least the header's.
 inline bool isValid(const uint8_t* message) {
     return std::memcmp(message, "IceP", 4) == 0 && sizeOf(message) >= bytes;
 }
 
-// Returns a message: its header and `body`.
+// Returns a message that consists of its header and `body`.
 inline std::vector<uint8_t> pack(uint8_t type, const std::vector<uint8_t>& body = {},
                                  uint8_t compression = 0) {
     const size_t size = bytes + body.size();

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * guard: a task that runs over the end of its stack gets a MemManage fault before it harms
- * another's: an MPU region, read-only, over the lowest 32 bytes of the running task's stack.
+ * guard: protects the stacks of other tasks against a task that overflows its stack. An MPU region
+ * over the lowest 32 bytes of the running task's stack is read-only, so an overflow causes a
+ * MemManage fault.
  */
 #pragma once
 
@@ -9,12 +10,12 @@
 #include "ucos_ii.h"
 
 #define GUARD_BYTES 32UL
-#define REGION_0 0x10UL /* RBAR.VALID: the region is in the low bits */
-/* Never execute, read only (for OSTaskStkChk), 2^(4+1) bytes, on. */
+#define REGION_0 0x10UL /* RBAR.VALID: the low bits select the region */
+/* Never executable, read-only (OSTaskStkChk reads it), 2^(4+1) bytes, enabled. */
 #define GUARD_RASR (1UL << 28 | 5UL << 24 | 4UL << 1 | 1UL)
 
-/* Forbids writing to the lowest 32 bytes of a stack (aligned to 32); 0 removes the guard. Called at
- * each switch, with interrupts off. */
+/* Makes the lowest 32 bytes of a stack (aligned to 32) read-only; 0 removes the guard. Called at
+ * each task switch with interrupts disabled. */
 static void Guard_place(const OS_STK* bottom) {
     if (!bottom) {
         MPU_CTRL = 0;

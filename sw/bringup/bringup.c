@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
  * bringup: a self-test for the first power-on of a board. It runs from RAM, without a kernel, and
- * reports on the console's UART (console.h).
+ * reports on the UART of the console (console.h).
  *
- * Each step relies on the ones before it. The wires are tested with the FPGA loaded with
- * line_tester, the rest with the chip itself.
+ * Each step relies on the earlier steps. The wires are tested while the FPGA is loaded with
+ * line_tester, everything else with the chip itself.
  */
 #include "bringup.h"
 #include "board_pins.h"
@@ -33,7 +33,7 @@ static void testClock(const Timing_Clock* clock) {
     }
 }
 
-/* Returns the channels on which line_tester answers. */
+/* Returns the channels on which line_tester answers, one bit each. */
 static U32 testContact(void) {
     U32 found = Lines_find();
     Report_step("contact", "the FPGA answers with line_tester or with the chip");

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * timing: the microcontroller's clock, and waits.
+ * timing: sets the microcontroller's clock, and waits.
  */
 #pragma once
 
@@ -8,17 +8,18 @@
 
 typedef struct Timing_Clock {
     U32 hclkHz;
-    int isCrystal; /* 0: the crystal does not oscillate, and the internal oscillator is used */
+    int isCrystal; /* 0 if the crystal does not oscillate; the internal oscillator is used then */
 } Timing_Clock;
 
-/* Switches to the highest clock that the board allows: 120 MHz. */
+/* Switches to the highest clock that the board allows, 120 MHz. */
 const Timing_Clock* Timing_start(void);
-/* Switches HCLK to `hz`, 20 to 120 MHz in steps of 1 MHz. Bus timings in cycles stay as they are.
+/* Switches HCLK to `hz`, 20 to 120 MHz in steps of 1 MHz. The bus timings, in cycles, do not
+ * change.
  */
 void Timing_setHclk(U32 hz);
 U32 Timing_mhz(void); /* HCLK */
-/* Waits for at least these HCLK cycles. */
+/* Waits for at least this number of HCLK cycles. */
 void Timing_pause(U32 cycles);
 void Timing_wait(U32 us);
-/* Returns HCLK cycles since Timing_start, modulo 2^24. */
+/* Returns the number of HCLK cycles since Timing_start, modulo 2^24. */
 U32 Timing_cycles(void);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_setup: finds a modem's baud rate on a serial port and sets it up by AT commands.
+// modem_setup: finds the baud rate of the modem on a serial port, and configures the modem by AT
+// commands.
 
 #pragma once
 
@@ -12,18 +13,19 @@ namespace XBeeAT {
 
 class ModemSetup {
 public:
-    // Pauses, or (`forBytes`) waits until the port has bytes to read. Returns the elapsed
-    // microseconds; negative: abort.
+    // Pauses for `ms`; with `forBytes`, only until the port has bytes to read. Returns the elapsed
+    // time in us; a negative result aborts the set-up.
     using Wait = std::function<int(int ms, bool forBytes)>;
 
     ModemSetup(SerialPort& serial, const Settings& settings, const Log& log, Wait wait)
         : serial_(serial), settings_(settings), log_(log), wait_(std::move(wait)) {}
 
-    // Sets the modem up. Returns false with the reason in `trouble()`, which is empty if `wait`
-    // aborted. Takes about two guard times at the right rate, and one more for each wrong rate
-    // tried.
+    // Configures the modem. Returns false on failure; trouble() then returns the reason, which is
+    // empty if `wait` has aborted. Takes about two guard times if the port has the modem's rate,
+    // and one more for each wrong rate tried.
     bool run();
-    // After run(): EE; AP is not 0, and is 2.
+    // Results of run(): encryption (EE) is on; the modem uses API frames (AP is not 0); the frames
+    // are escaped (AP is 2).
     bool encrypts() const { return encrypts_; }
     bool isApi() const { return isApi_; }
     bool escapes() const { return escapes_; }
@@ -48,8 +50,8 @@ private:
     Wait wait_;
     std::string trouble_, reply_; // reply to the last command
     bool stopped_ = false, encrypts_ = false, isApi_ = false, escapes_ = false;
-    int rate_ = 0;     // rate of the port
-    int silentMs_ = 0; // time since the last byte was sent
+    int rate_ = 0;     // baud rate of the port
+    int silentMs_ = 0; // time since the last byte was sent, ms
 };
 
 } // namespace XBeeAT

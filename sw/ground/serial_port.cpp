@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// serial_port: a terminal made raw, at any rate.
+// serial_port: opens a terminal in raw mode, at any baud rate.
 
 #include "serial_port.h"
 
-#include <asm/termbits.h> // struct termios2: any rate, 111,111 too
+#include <asm/termbits.h> // for struct termios2, which allows any rate, including 111,111
 #include <cerrno>
 #include <fcntl.h>
 #include <sys/ioctl.h>
@@ -17,7 +17,7 @@ namespace XBeeAT {
 
 namespace {
 
-// Returns the process that has locked a file; the kernel frees the lock with the process.
+// Returns the process that has locked a file. The kernel releases the lock when the process ends.
 int userOf(int fd) {
     struct flock lock{};
     lock.l_type = F_WRLCK;
@@ -46,7 +46,8 @@ void SerialPort::open(const std::string& device) {
         why = ": process " + std::to_string(userOf(fd_)) + " uses it";
     }
     if (!error) {
-        // Also excludes terminal programs; a pty would stay locked if this process is killed.
+        // Exclusive use also keeps terminal programs away. Not for a pty, which would stay locked
+        // if this process were killed.
         if (!isPty(fd_))
             ioctl(fd_, TIOCEXCL);
         return;
@@ -76,14 +77,15 @@ ssize_t SerialPort::write(const void* bytes, size_t size) {
     return count;
 }
 
-// The queue of a pty reads as empty: there the simulator counts.
+// A pty reports an empty queue, so the simulator counts its bytes.
 size_t SerialPort::waiting() const {
     int queued = 0;
     ioctl(fd_, TIOCOUTQ, &queued);
     return static_cast<size_t>(queued) + clock_.waiting();
 }
 
-// Drops arrived bytes by reading them, not by TCFLSH: clock.h counts consumed bytes.
+// Reads and drops the bytes that have arrived. TCFLSH would not count them as read, which clock.h
+// requires.
 void SerialPort::drop() {
     char bytes[256];
     while (read(bytes, sizeof bytes) > 0)
@@ -94,7 +96,7 @@ void SerialPort::setSpeed(int baud) {
     termios2 t{};
     if (ioctl(fd_, TCGETS2, &t) != 0)
         return;
-    // A modem that is idle has CTS on, so one that is off is not wired.
+    // An idle modem asserts CTS; if CTS is off, it is not wired, and flow control stays off.
     int lines = 0;
     const bool hasCts = ioctl(fd_, TIOCMGET, &lines) == 0 && (lines & TIOCM_CTS);
     t.c_iflag = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// serial_port: the modem's serial port; the clock counts its bytes.
+// serial_port: the serial port of the modem. It reports the bytes that it reads and writes to the
+// clock.
 
 #pragma once
 
@@ -18,18 +19,19 @@ public:
     SerialPort(const SerialPort&) = delete;
     SerialPort& operator=(const SerialPort&) = delete;
 
-    // Throws std::system_error, also if it is not a terminal or another process has opened it for
-    // exclusive use.
+    // Opens a device. Throws std::system_error if that fails, if the device is not a terminal, or
+    // if another process has opened it for exclusive use.
     void open(const std::string& device);
     void close();
     int fd() const { return fd_; }
-    // Work as the system's read and write do; never wait.
+    // Work like the system calls read and write; never wait.
     ssize_t read(void* bytes, size_t room);
     ssize_t write(const void* bytes, size_t size);
-    // Returns the number of bytes written but not sent yet: CTS is off, or the line is slower.
+    // Returns the number of bytes that were written but not sent yet, because CTS is off or the
+    // line is slower.
     size_t waiting() const;
-    void drop(); // throws away the bytes that have arrived
-    // Sets the rate, in baud.
+    void drop(); // drops the bytes that have arrived
+    // Sets the baud rate.
     void setSpeed(int baud);
 
 private:

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * hw_core: starting operations of a core, and waiting for their events.
+ * hw_core: starts the operations of a core, and waits for their events.
  */
 #include "hw_core.h"
 #include "fsmc.h"
@@ -70,7 +70,8 @@ int Hw_Core_answers(const Hw_Core* self) {
 Hw_Status Hw_Core_run(Hw_Core* self, U32 operation, U32 ms) {
     self->done[operation] = 0;
     Hw_Core_act(self, operation);
-    /* A post left from an abandoned call ends one wait early, so the event itself decides. */
+    /* A post that an abandoned call has left ends one wait too early, so the flag of the event
+     * decides. */
     while (!self->done[operation])
         if (!self->port->wait(self->context, operation, ms) && !self->done[operation]) {
             FSMC_write(self->slot, CONTROL, RESET);
@@ -87,8 +88,8 @@ void Hw_Core_begin(Hw_Core* self, U32 operation, U32 ms) {
 
 void Hw_Core_later(Hw_Core* self, U32 operation) {
     self->later[operation] = 1;
-    /* A post wakes the polling task: the event may already be pending, or this deadline may be the
-     * earliest. */
+    /* Wakes the polling task, because the event may already be pending or this deadline may be the
+     * earliest one. */
     self->port->post(self->context, operation);
 }
 

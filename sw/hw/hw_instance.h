@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * hw_instance: the chip's cores with their servants; the table is generated from ip/cores.list
+ * hw_instance: the cores of the chip with their servants. The table is generated from ip/cores.list
  * (soc_cores.c).
  */
 #pragma once
@@ -15,12 +15,13 @@ typedef struct Hw_Instance {
     Ice_ObjectPtr servant;
     Hw_Status (*start)(const Hw_Port* port, void* context);
     void (*interrupt)(void);
-    /* Answers calls that are done or late. Returns the time to the next call without an event, ms,
-     * or HW_NEVER. */
+    /* Replies to calls that are done or have timed out. Returns the time until it must be called
+     * again even without an event, ms, or HW_NEVER. */
     U32 (*poll)(U32 nowMs);
 } Hw_Instance;
 
 extern const Hw_Instance hw_instances[];
 
-/* The hashes of the registers that the firmware was built with, a line a slot; `chip` is 0. */
+/* Hashes of the registers for which the firmware was built, one entry per slot; the member `chip`
+ * is 0. */
 extern const Hw_Contract hw_contracts[MAP_CONTRACTS];

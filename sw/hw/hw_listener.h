@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * hw_listener: the proxy that a core's events go to. One task sets it, another one uses it.
+ * hw_listener: the proxy that receives a core's events. One task sets it, and another task uses it.
  */
 #pragma once
 
@@ -8,13 +8,13 @@
 
 typedef struct Hw_Listener {
     Ice_ObjectPrx proxies[2];
-    volatile U8 count; /* number of changes; its lowest bit selects the valid proxy */
+    volatile U8 count; /* number of changes; the lowest bit selects the valid one of two proxies */
 } Hw_Listener;
 
-/* Makes a listener without a proxy. */
+/* Initialises a listener without a proxy. */
 void Hw_Listener_init(Hw_Listener* self);
-/* Stores the proxy that a call passed. A proxy without endpoints is called over the connection of
- * that call, until the connection ends. */
+/* Stores a proxy that was passed in a call. A proxy without endpoints is called over the connection
+ * of this call, until the connection ends. */
 void Hw_Listener_set(Hw_Listener* self, const Ice_ObjectPrx* proxy, const Ice_Current* current);
-/* Copies the proxy. Returns 0 if no listener is set. */
+/* Copies the proxy. Returns 0 if no proxy is set. */
 int Hw_Listener_get(const Hw_Listener* self, Ice_ObjectPrx* proxy);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_stream: Ice's encodings 1.0 and 1.1 of the basic types. Little-endian, whatever the machine
- * is.
+ * ice_stream: marshals the basic types in Ice's encodings 1.0 and 1.1. The encodings are
+ * little-endian on every machine.
  */
 #include "ice_stream.h"
 
@@ -15,7 +15,7 @@ Ice_String Ice_String_from(const char* terminated) {
 }
 
 int Ice_String_same(const Ice_String* a, const Ice_String* b) {
-    /* An empty string may have no address. */
+    /* The address of an empty string may be 0. */
     return a->size == b->size && (a->size == 0 || memcmp(a->data, b->data, (size_t)a->size) == 0);
 }
 
@@ -96,7 +96,8 @@ void Ice_OutputStream_writeFloat(Ice_OutputStreamPtr os, Ice_Float v) {
     writeWord(os, bits, 4);
 }
 
-/* The machine's doubles are IEEE 754 in its integers' byte order, on the Cortex-M3 as on hosts. */
+/* Doubles have the IEEE 754 format with the byte order of integers, on the Cortex-M3 and on
+ * hosts. */
 void Ice_OutputStream_writeDouble(Ice_OutputStreamPtr os, Ice_Double v) {
     U32 bits[2];
     memcpy(bits, &v, sizeof bits);
@@ -153,7 +154,7 @@ const Ice_Byte* Ice_InputStream_readBlob(Ice_InputStreamPtr is, Ice_Int size) {
     const Ice_Byte* at = is->data + is->position;
     if (is->failed)
         return 0;
-    if ((U32)size > (U32)(is->size - is->position)) { /* also a negative one */
+    if ((U32)size > (U32)(is->size - is->position)) { /* the cast also catches negative sizes */
         is->failed = ICE_FAILED_MALFORMED;
         return 0;
     }
@@ -260,7 +261,7 @@ void* Ice_InputStream_allocate(Ice_InputStreamPtr is, Ice_Int count, Ice_Int byt
         return 0;
     }
     words = (count * bytes + 3) / 4;
-    /* Doubles and pointers need an alignment of 8 on hosts, wherever the arena begins. */
+    /* On hosts, doubles and pointers need an alignment of 8, wherever the arena begins. */
     if ((size_t)(is->arena + is->arenaUsed) & 7U)
         ++is->arenaUsed;
     if (words > is->arenaSize - is->arenaUsed) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link: the entrance of the layer. It connects the parts, and passes calls on to them.
+ * link: the functions that programs call. It connects the parts of the layer and passes calls on to
+ * them.
  */
 #include "link.h"
 
@@ -46,7 +47,8 @@ void Link_setKey(Link* link, int slot, const U8* key, U32 side) {
         env->codec = &link_codecKeyed;
         link_limitPacket(&link->pacing, bytes);
         link_useRules(&link->session.handshake, &link_keyedHandshake);
-        link_drawNonce(&link->session.handshake); /* a longer nonce */
+        /* a nonce of the length that a link with a key needs */
+        link_drawNonce(&link->session.handshake);
     }
     if (Link_keyInUse(link) == slot)
         link_lose(&link->session);
@@ -84,7 +86,8 @@ Link_State Link_state(const Link* link) {
     return (Link_State)link->session.handshake.state;
 }
 
-/* Returns whether the channel can be used, or, without `mustBeOpen`, can be opened. */
+/* Checks whether the channel can be used. Without `mustBeOpen`, a channel that can still be opened
+ * is also accepted. */
 static Link_Status check(const Link* link, int channel, int mustBeOpen) {
     if (channel < 0 || channel >= LINK_CHANNELS)
         return LINK_CLOSED;
@@ -158,14 +161,16 @@ void Link_poll(Link* link, U32 nowUs) {
     if (link_pollSession(session)) {
         if (!link_pollReceiver(&link->session.receiver) || !link_pollSender(&link->session.sender))
             link_abort(session);
-        else if (!link->session.sender.hasWork) /* otherwise the next fragment carries it */
+        /* otherwise the next fragment carries the acknowledgement */
+        else if (!link->session.sender.hasWork)
             link_pollAck(&link->session.receiver);
     }
-    if (link->pacing.packed) /* also a frame of the handshake that found no room */
+    /* also sends a frame of the handshake for which the radio had no room */
+    if (link->pacing.packed)
         (void)link_flush(&link->pacing);
 }
 
-/* Returns the earlier of two times; `at` counts only if `isDue`. */
+/* Returns the earlier of two times; `at` is ignored unless `isDue`. */
 static U32 sooner(int isDue, U32 at, U32 first) {
     return isDue && LINK_BEFORE(at, first) ? at : first;
 }
@@ -188,7 +193,7 @@ U32 Link_deadline(const Link* link, U32 nowUs) {
     first = sooner(handshake->isAnswered, handshake->firstAnswer + LINK_NONCE_LIFE, first);
     if (handshake->state == LINK_STATE_UP) {
         first = sooner(1, link_livenessDeadline(&link->session.liveness), first);
-        if (!pacing->waiting) /* otherwise the next result of the radio decides about repetition */
+        if (!pacing->waiting) /* otherwise the next result from the radio triggers a repetition */
             first = sooner(sender->base != sender->next, sender->timerAt, first);
         if (!pacing->mostWaiting || pacing->radio->waiting < pacing->mostWaiting) {
             first = sooner(pacing->packed, soon, first);

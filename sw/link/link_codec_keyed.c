@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_codec_keyed: encrypts and authenticates frames by Ascon-AEAD128. The parts of a frame that
- * are not encrypted belong to its nonce, so the tag covers them as well.
+ * link_codec_keyed: encrypts and authenticates frames with Ascon-AEAD128. The parts of a frame that
+ * are not encrypted are copied into its nonce, so the tag also covers them.
  */
 #include "link_codec_keyed.h"
 
@@ -9,11 +9,11 @@
 
 #include <string.h>
 
-#define CLEAR_AT 11U  /* offset of the unencrypted payload in a nonce */
+#define CLEAR_AT 11U  /* offset in the nonce of the unencrypted payload */
 #define CLEAR_MOST 5U /* largest size of an unencrypted payload, bytes */
 
-/* Returns the number of unencrypted bytes at the start of the payload: all of a control frame, the
- * acknowledgement of a PIGGYBACK, the nonces of HELLO-ACK and CONFIRM. */
+/* Returns the number of unencrypted bytes at the start of the payload: the whole payload of a
+ * control frame, the acknowledgement in a PIGGYBACK, the nonces in HELLO-ACK and CONFIRM. */
 static U32 clearOf(const U8* frame) {
     U32 most = frame[2] >> 5 >= LINK_KIND_PIGGYBACK ? 1U : 2U * LINK_NONCE_BYTES;
     if (!(frame[0] & LINK_CONTROL))
@@ -28,14 +28,15 @@ static void makeNonce(U8* nonce, const U8* frame, U32 clear, U32 number, U32 ack
     link_put32(nonce + 4, acked);
     if ((frame[0] & LINK_CONTROL) && LINK_IS_HANDSHAKE(kind))
         memcpy(nonce, frame + LINK_HEADER, LINK_NONCE_BYTES);
-    else if (clear > CLEAR_MOST) /* an acknowledgement: at most 9 bytes */
+    /* an acknowledgement has at most 9 bytes; the last ones do not fit at CLEAR_AT */
+    else if (clear > CLEAR_MOST)
         memcpy(nonce + 4, frame + LINK_HEADER + CLEAR_MOST,
                clear < LINK_BITMAP + 1U ? clear - CLEAR_MOST : LINK_BITMAP + 1U - CLEAR_MOST);
     memcpy(nonce + 8, frame, LINK_HEADER);
     memcpy(nonce + CLEAR_AT, frame + LINK_HEADER, clear < CLEAR_MOST ? clear : CLEAR_MOST);
 }
 
-/* Encrypts or decrypts the payload, and computes its tag. */
+/* Encrypts or decrypts the payload and computes the tag. */
 static void crypt(U8* frame, const U8* key, U32 number, U32 acked, int isDecryption, U8* tag) {
     U8 nonce[ASCON_NONCE_BYTES];
     U32 clear = clearOf(frame);

@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_contention: measures traffic and losses, and chooses waits from them.
+ * link_contention: measures traffic and losses, and chooses from them how long to wait before
+ * sending.
  */
 #include "link_contention.h"
 
 #include "link_config.h"
 
-/* A loss that took the radio no longer than other packets had no failed tries, as there are when
- * two modems begin together. A side that sends little rests after a loss: twice as long after each
- * further one, a quarter after a packet that arrives, longest while the peer is silent. */
+/* A loss is quick if it took the radio no longer than other packets, so that there were no retries.
+ * This happens if two modems start at the same time. After a loss, a side that sends little must
+ * rest: twice as long after each further loss, a quarter as long after each delivered packet, and
+ * longest while the peer is silent. */
 U32 link_noteAnswer(Link_Contention* c, U32 now, int isDelivered, U32 silence, int isBusy) {
     U32 took = now - c->answeredAt;
     U32 last = LINK_REST_LAST + 4U * silence;
@@ -32,7 +34,8 @@ U32 link_noteAnswer(Link_Contention* c, U32 now, int isDelivered, U32 silence, i
     return c->own.isStream || c->peers.isStream ? 0U : c->rest;
 }
 
-/* Decides whether a side sends much, by the bytes of `spans` whole spans; 0: of part of one. */
+/* Decides whether a side sends much, from its total of bytes after `spans` whole spans. If `spans`
+ * is 0, the current span has not ended yet. */
 static void judge(Link_Traffic* traffic, U32 bytes, U32 spans) {
     U32 more = bytes - traffic->before;
     if (more >= LINK_SPAN_MANY * (spans ? spans : 1U))

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_queue: a ring of entries, and a ring of their bytes.
+ * link_queue: a ring of entries, and a ring with the bytes of these entries.
  */
 #include "link_queue.h"
 
@@ -64,10 +64,10 @@ void link_rewind(Link_Queue* queue, int isWiped) {
         memset(queue->bytes, 0, queue->mask + 1U);
 }
 
-/* Finds an entry of at most `most` bytes that may overtake the current long message: it is on a
- * different channel than all entries that it overtakes, keeps the order of the headers that the
- * peer learns, and does not follow another one that has overtaken. Sets `start` to the offset of
- * its bytes. Returns 0 if none. */
+/* Finds an entry that may overtake the current long message. The entry has at most `most` bytes.
+ * Its channel differs from the channels of all entries that it overtakes. It does not overtake a
+ * header that the peer must learn first. It does not follow another entry that has overtaken. Sets
+ * `start` to the offset of its bytes. Returns 0 if no entry qualifies. */
 static Link_Entry* findAhead(Link_Queue* queue, U32 most, U32* start) {
     Link_Entry* entry = entryAt(queue, queue->cutEntry);
     U32 channels = 0;

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_session: life of a session, and dispatch of its frames.
+ * link_session: starts and ends sessions, and dispatches their frames.
  */
 #include "link_session.h"
 
-/* Rounds of Ascon for a frame of the session. */
+/* Number of Ascon rounds for a frame of the session. */
 #define ROUNDS_OF(payload) (24U + (payload) / 2U)
 
 void link_endSession(Link_Session* session, Link_State next) {
@@ -36,7 +36,7 @@ void link_abort(Link_Session* session) {
     link_lose(session);
 }
 
-/* Begins the session of the candidate. */
+/* Starts the session that the candidate keys belong to. */
 static void begin(Link_Session* session, int isUnconfirmed) {
     Link_Env* env = &session->handshake.pacing->env;
     if (session->handshake.state == LINK_STATE_UP)
@@ -75,7 +75,7 @@ int link_expect(Link_Session* session, const U8* frame, U32 attempt, Link_Seal* 
     Link_Handshake* handshake = &session->handshake;
     const Link_Identity* present = &handshake->present;
     Link_Kind kind = LINK_KIND_OF(frame);
-    U32 expected = session->sender.base; /* expected number of an ACK */
+    U32 expected = session->sender.base; /* frame number that an ACK must have */
     if (attempt || LINK_IS_HANDSHAKE(kind))
         return handshake->rules->expect(handshake, frame, attempt, seal);
     if (handshake->state != LINK_STATE_UP || !link_isOfEpoch(frame, present->key))
@@ -117,7 +117,7 @@ static int onPiggyback(Link_Session* session, const U8* frame, U32 early) {
     U32 flags = early | LINK_FIRST | LINK_LAST | LINK_CHANNEL(frame[2]);
     if (LINK_KIND_OF(frame) == LINK_KIND_PIGGYBACK_ASK)
         flags |= LINK_ACK_NOW;
-    /* A peer sends no PIGGYBACK while it holds a message: the whole window is open. */
+    /* A peer only sends a PIGGYBACK if it holds no message, so it has room for the whole window. */
     if (link_onAck(sender, payload[0], sender->fullCredit, 0, 0))
         LINK_NOTE_ALIVE(&session->liveness);
     return link_onData(&session->receiver, frame[1], flags, payload + 1, LINK_LENGTH(frame) - 1U);
@@ -135,7 +135,7 @@ void link_onFrame(Link_Session* session, const U8* frame, U32 attempt) {
         onHandshake(session, frame, attempt);
         return;
     }
-    if (attempt) /* the first frame of the candidate's session */
+    if (attempt) /* this is the first frame of the candidate's session */
         begin(session, 0);
     early = link_epochBits(frame, session->handshake.present.key) << 4;
     LINK_NOTE_CONFIRMED(&session->handshake);
@@ -152,7 +152,7 @@ void link_onFrame(Link_Session* session, const U8* frame, U32 attempt) {
         link_onPing(&session->liveness, frame);
     else
         link_scheduleAck(&session->receiver);
-    /* A duplicate frame may be an attacker's recording, and is not a sign of life. link_onAck and
+    /* A duplicate frame may be an attacker's recording, so it is not a sign of life. link_onAck and
      * link_onPing check this themselves. */
     if (kind >= LINK_KIND_PIGGYBACK && duplicates == env->statistics.duplicates)
         LINK_NOTE_ALIVE(&session->liveness);

@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""ground: the ground station of the minimal program, in stock ZeroC Ice.
+"""ground: the ground station of the minimal program, with unmodified ZeroC Ice.
 
 Usage: ground.py DEVICE [--reference PROGRAM --frame PICTURE] [Ice options]
 
-Serves Station, which the vehicle calls, and calls back on the proxy that it gets; then works with
-the vehicle's engine: both encodings, one-way calls, what the minimal run time refuses.
+Serves the object Station, which the vehicle calls, and calls the vehicle on the proxy that it
+receives. It then calls the vehicle's engine with both encodings and with one-way calls, and checks
+which calls the minimal run time refuses.
 """
 
 import argparse
@@ -27,7 +28,7 @@ CALLS = 20
 
 
 class StationI(Autopilot.Station):
-    """Counts the vehicle's calls: one is two-way, one is one-way."""
+    """Counts the calls from the vehicle: the first one is two-way, the second one is one-way."""
 
     def __init__(self):
         self.called = threading.Semaphore(0)
@@ -76,7 +77,7 @@ def fly(communicator, args):
     old.setParameterA(THRESHOLD)
     Autopilot.HwProcessingEnginePrx.uncheckedCast(engine.ice_oneway()).startProcessing()
     result = engine.getResult()
-    while result.cycles == 0:  # the core is still at work
+    while result.cycles == 0:  # the core is still working
         result = old.getResult()
     print("%d corners at threshold %d, in %d cycles" % (result.found, THRESHOLD, result.cycles))
     expect("the core found corners", result.found > 0)

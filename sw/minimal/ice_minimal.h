@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_minimal: communicator and adapter of the minimal run time. Included by icec.h only.
+ * ice_minimal: communicator and object adapter of the minimal run time. Only icec.h includes it.
  */
 #pragma once
 
@@ -14,20 +14,21 @@ struct Ice_ObjectAdapter {
     } servants[ICE_SERVANTS];
 };
 
-/* Small members first: their offsets are short in the code. */
+/* Small members come first, because small offsets give shorter code. */
 struct Ice_Communicator {
     const Ice_Endpoint* endpoint;
     void* endpointContext;
-    Ice_ObjectAdapterPtr adapter; /* the active one */
+    Ice_ObjectAdapterPtr adapter; /* the active adapter */
     Ice_Byte stopping;
-    Ice_Byte busy; /* an operation runs */
-    /* Ice_Status: ICE_OK the connection is open, the reply has arrived; ICE_LATER it is awaited. */
+    Ice_Byte busy; /* 1 while an operation runs */
+    /* Ice_Status of the call: ICE_OK if the connection is open or the reply has arrived, ICE_LATER
+     * while it is awaited. */
     Ice_Byte call;
     Ice_Byte connections[ICE_CONNECTIONS];
-    int connection;      /* connection of the call */
-    Ice_Int id;          /* id of the call; odd */
+    int connection;      /* connection of the current call */
+    Ice_Int id;          /* id of the current call; always odd */
     Ice_Int body;        /* start of the encapsulation in `os` */
-    Ice_OutputStream os; /* in `out`: a request, or a reply */
+    Ice_OutputStream os; /* writes to `out`: a request or a reply */
     Ice_InputStream is;  /* in `in` */
     U32 arena[ICE_ARENA_BYTES / 4];
     Ice_Byte in[ICE_MESSAGE_MAX], out[ICE_RESULT_MAX];

@@ -1,10 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Figure 5 of the paper, lower half: the client on the ground, as printed but for what is marked.
+"""Figure 5 of the paper, lower half: the client on the ground. It is as printed, except for the
+marked lines:
 
-[1] the figure has HwProcessEnginePrx and uncheckCast
-[2] the proxy names the serial port of the ground's modem, the UAV's address, and how long
-setting up may take [3] results need a twoway proxy: "-o" is Ice's oneway flag
+[1] The figure has HwProcessEnginePrx and uncheckCast.
+[2] The proxy names the serial port of the ground's modem, the UAV's address, and the time-out,
+    which includes the set-up of the modem.
+[3] Results need a two-way proxy: "-o" makes a proxy one-way.
 """
 
 import os
@@ -31,7 +33,7 @@ class Client(Ice.Application):
         # [3]
         twoway = Autopilot.HwProcessingEnginePrx.checkedCast(ic.stringToProxy("hwengine1" + where))
         found = twoway.getResult().found
-        while found == 0:  # the core is still at work
+        while found == 0:  # the core is still working
             found = twoway.getResult().found
         print("figure 5: %d corners at threshold %d" % (found, paramValue))
         return 0

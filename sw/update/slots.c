@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * slots: the boot loader's choice of an image, and the check of the FPGA's bitstream at a start.
+ * slots: chooses the image that the boot loader starts, and checks the FPGA's bitstream at the
+ * start.
  */
 #include "slots.h"
 
 #include <string.h>
 
-#define SYNC_WORD 0x665599AAU /* AA 99 55 66 (UG380, Table 5-6), the low byte first */
+#define SYNC_WORD 0x665599AAU /* AA 99 55 66 (UG380, Table 5-6), with the low byte first */
 
 const Slots_Layout slots_firmware = {0x20000U,   0x60000U, 0x20000U, SLOTS_READY,
                                      SLOTS_TRUE, 0xC000U,  0};
@@ -88,8 +89,8 @@ static int isSound(const Slots_Port* port, U32 slot, U32 product) {
            Slots_isSigned(port, Slots_keys(port), &header) && Slots_isWhole(port, slot, &header);
 }
 
-/* Returns the highest version in the log. An entry is a version and its complement; any other entry
- * was cut by a loss of power. `end` is set to the offset of the first empty entry. */
+/* Returns the highest version in the log. An entry is a version and its complement; other entries
+ * were cut by a loss of power. Sets `end` to the offset of the first empty entry. */
 static U32 readLog(const Slots_Port* port, U32* end) {
     U32 highest = 0, entry[2];
     for (*end = 0; *end < SLOTS_LOG_BYTES; *end += (U32)sizeof entry) {
@@ -153,7 +154,7 @@ U32 Slots_choose(const Slots_Port* port, U32 product, int mayTry) {
             Slots_set(port, slot, SLOTS_TRIED))
             return slot;
     }
-    for (i = 0; i < 2U * SLOTS_COUNT; ++i) { /* confirmed images first, then any that is sound */
+    for (i = 0; i < 2U * SLOTS_COUNT; ++i) { /* confirmed images first, then others */
         slot = newer ^ (i % SLOTS_COUNT);
         if ((i >= SLOTS_COUNT || Slots_is(port, slot, SLOTS_CONFIRMED)) &&
             isSound(port, slot, product))
@@ -162,7 +163,7 @@ U32 Slots_choose(const Slots_Port* port, U32 product, int mayTry) {
     return SLOTS_NONE;
 }
 
-/* Reads a bitstream as it was signed, without its sync word. */
+/* Reads a bitstream with an erased sync word, as it was when it was signed. */
 static void readUnready(void* context, U32 offset, U8* bytes, U32 count) {
     const Slots_Port* port = (const Slots_Port*)context;
     port->read(port->context, offset, bytes, count);

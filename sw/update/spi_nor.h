@@ -1,23 +1,23 @@
 /* SPDX-License-Identifier: MIT
  *
- * spi_nor: a Slots_Port on a serial NOR flash with the usual instructions (W25Q, M25P: 03, 02, D8,
- * 05, 06, 9F). Its context is the bus.
+ * spi_nor: a Slots_Port for a serial NOR flash with the usual instructions 03, 02, D8, 05, 06, 9F
+ * (such as W25Q and M25P). Its context is the bus.
  */
 #pragma once
 
 #include "base.h"
 
 typedef struct SpiNor_Bus {
-    /* Drives chip select and the bus; 0: releases both. */
+    /* With 1, drives chip select low and drives the bus; with 0, releases both. */
     void (*select)(int isLow);
     U8 (*transfer)(U8 byte);
-    void (*pause)(void); /* lets other tasks work for a while */
+    void (*pause)(void); /* lets other tasks run for a while */
 } SpiNor_Bus;
 
-/* Returns 1 if a flash answers. */
+/* Returns 1 if a flash answers on the bus. */
 int SpiNor_isThere(void* bus);
 void SpiNor_read(void* bus, U32 offset, U8* bytes, U32 count);
-/* Erases 64 KiB. Returns 1 when done. */
+/* Erases 64 KiB. Returns 1 when done, 0 on failure. */
 int SpiNor_erase(void* bus, U32 offset);
-/* Programs up to 256 bytes of a page. Returns 1 when done. */
+/* Programs up to 256 bytes within a page. Returns 1 when done, 0 on failure. */
 int SpiNor_program(void* bus, U32 offset, const U8* bytes, U32 count);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * firmware: starts the kernel with the application and the watchdog's task. That task is below all
- * others, so it runs as long as no other task and no interrupt keeps the processor for itself.
+ * firmware: starts the kernel with the application and the task of the watchdog. This task has the
+ * lowest priority, so it only runs if no other task and no interrupt occupies the processor
+ * permanently.
  */
 #include "board.h"
 #include "boot.h"
@@ -47,10 +48,10 @@ void Program_run(void) {
         (void)OSTaskCreateExt(watchTask, 0, &watchStack[WATCH_WORDS - 1], PRIO_WATCH, 0, watchStack,
                               WATCH_WORDS, 0, OS_TASK_OPT_STK_CHK | OS_TASK_OPT_STK_CLR);
     } else {
-        /* The watchdog is not served and resets the chip: the next try is in a second. */
+        /* The watchdog is not served, so it resets the chip; the next try follows in one second. */
         Boot_note(status == UAV_NO_KEY ? BOOT_NO_KEY : BOOT_NO_FPGA);
     }
-    /* Interrupts call the kernel, so they stay masked until the first task runs. */
+    /* Interrupt routines call the kernel, so interrupts stay masked until the first task runs. */
     __asm__ volatile("cpsid i");
     Board_startInterrupts();
     OSStart();

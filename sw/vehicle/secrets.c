@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * secrets: the random number generator by RM0033, 20.3. Its errors are waited out, since guessable
- * numbers are worse than a restart by the watchdog. The backup SRAM is ST's place for keys: the
- * battery keeps it, and removing the read protection erases it with the flash.
+ * secrets: reads the random number generator (RM0033, 20.3), and stores keys in the backup SRAM.
+ * After an error of the generator it waits for the watchdog's reset, because predictable numbers
+ * would be worse. ST intends the backup SRAM for keys: the battery powers it, and removing the read
+ * protection erases it together with the flash.
  */
 #include "secrets.h"
 #include "stm32f2.h"
@@ -33,7 +34,7 @@ static U32 load(void* context, U32 word) {
 static void store(void* context, U32 word, U32 value) {
     (void)context;
     BKPSRAM(word) = value;
-    __asm__ volatile("dsb"); /* in order, since power may fail */
+    __asm__ volatile("dsb"); /* keeps the order of writes, because power may fail in between */
 }
 
 const UAV_Board secrets_board = {random, load, store};
@@ -41,7 +42,7 @@ const UAV_Board secrets_board = {random, load, store};
 void Secrets_start(void) {
     RCC_AHB2ENR |= RCC_AHB2ENR_RNG;
     RNG_CR = RNG_CR_RNGEN;
-    (void)random(0); /* the second number is compared with this first one */
+    (void)random(0); /* discards the first number; the generator compares the second one with it */
     RCC_APB1ENR |= RCC_APB1ENR_PWR;
     PWR_CR |= PWR_CR_DBP;
     RCC_AHB1ENR |= RCC_AHB1ENR_BKPSRAM;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_keys: keeps keys in slots, and changes from one to the next.
+ * uav_keys: stores the vehicle's keys in slots, and replaces a key by the next one.
  */
 #include "uav_keys.h"
 #include "ascon.h"
@@ -8,17 +8,19 @@
 #include <string.h>
 
 #define SLOT_WORDS ((U32)(sizeof(Backup_Slot) / sizeof(U32)))
-#define STATE_NEXT 0x4E455830U /* + slot of the next key, if both have one */
+#define STATE_NEXT 0x4E455830U /* STATE_NEXT + the slot of the next key, if both slots have a key \
+                                */
 #define CHECK_SEED 0x4B455931U
 
-static int nextSlot[UAV_PEERS]; /* slot of the next key; -1: there is one key */
+static int nextSlot[UAV_PEERS]; /* slot of the next key; -1 if there is only one key */
 
 /* Returns the index of the first word of a slot. */
 static U32 slotAt(int role, int slot) {
     return (U32)role * UAV_PEER_WORDS + (U32)slot * SLOT_WORDS;
 }
 
-/* Returns the check of a key: against lost power, not against attackers. Never 0. */
+/* Returns the check word of a key, which is never 0. It detects a key that was written only in part
+ * because of a loss of power; it does not protect against attackers. */
 static U32 checkOf(const U32* words) {
     U32 check = CHECK_SEED, i;
     for (i = 0; i < BACKUP_KEY_WORDS; ++i)
@@ -91,7 +93,8 @@ int UAV_hasGroundsPart(void) {
     return UAV_address() < UAV_addressOf(UAV_VEHICLE);
 }
 
-/* Sessions are bound to the address of the vehicle that has the vehicle's part. */
+/* Gives a key to a link. A session is bound to an address: between two vehicles, the address of the
+ * one that acts as the vehicle. */
 static void giveKey(int role, Link* link, int slot, const U8* key) {
     Link_setKey(link, slot, key,
                 role == UAV_VEHICLE && UAV_hasGroundsPart()
@@ -122,7 +125,8 @@ int UAV_setNextKey(int role, Link* link, const U8* key) {
     Ascon_wipe(present, sizeof present);
     if (isSame)
         return 1;
-    /* The state is written first: if both slots have a key, the state selects the next one. */
+    /* The state is written before the key: once both slots have a key, the state selects the next
+     * one. */
     UAV_writeKey(role, slot, 0);
     UAV_store(UAV_STATE_AT(role), STATE_NEXT + (U32)slot);
     UAV_writeKey(role, slot, key);

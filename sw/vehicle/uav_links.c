@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_links: the links with the peers: what they send, receive and report.
+ * uav_links: the links to the vehicle's peers: sending, receiving, and changes of their state.
  */
 #include "uav_links.h"
 #include "radio.h"
 #include "uav.h"
 #include "uav_keys.h"
 
-#define MOST_UNANSWERED 2U /* packets that the modem has */
+#define MOST_UNANSWERED 2U /* limit of the packets that were sent and have no status yet */
 
 static U8 areUp; /* peers with a session, one bit each */
 
-/* Hands a packet over; in transparent mode, which serves the first ground only, at most one packet
- * waits for the line. The link layer then knows how fast the modem is, and decides late which
- * packet is next. */
+/* Sends a packet. In transparent mode, which only serves the first ground station, at most one
+ * packet waits for the line: the link layer then notices how fast the modem is, and can choose the
+ * next packet as late as possible. */
 static int transmit(void* peer, const U8* frame, U32 size) {
     U32 wait, i;
     if (!uav_isAnswered)
@@ -45,7 +45,7 @@ static void onChannel(void* peer, int channel, int isOpen) {
 static void onState(void* peer, Link_State state) {
     const U32 role = (U32)roleOf(peer);
     areUp = (U8)((areUp & ~(1U << role)) | (U32)(state == LINK_STATE_UP) << role);
-    uav_pollsAll = 1; /* the session's key may have to be confirmed */
+    uav_pollsAll = 1; /* the key of the session may have to be confirmed */
 }
 
 const Link_Port uav_linkPort = {transmit, UAV_random, onMessage, onChannel, onState, 0, 0};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_links: the links with the vehicle's peers: what they send, receive and report.
+ * uav_links: the links to the vehicle's peers: sending, receiving, and changes of their state.
  */
 #pragma once
 
@@ -8,22 +8,23 @@
 
 #define UAV_BYTE_TIME_US16 1440U /* 111,111 baud */
 
-extern const Link_Port uav_linkPort; /* its context is the UAV_Peer */
+/* functions that a link calls; their context is the UAV_Peer */
+extern const Link_Port uav_linkPort;
 
-/* Forgets all sessions. */
+/* Ends all sessions without a message to the peers. */
 void UAV_resetLinks(void);
 
-/* Sets the limits of the links to the limits of the modem. */
+/* Sets the frame size, and the number of packets without a status, that the modem allows. */
 void UAV_limitLinks(void);
 
-/* Gives a packet to the link of the peer that sent it; packets of others are dropped. */
+/* Passes a packet to the link of the peer that sent it. Drops packets from unknown peers. */
 void UAV_onPacketOf(void* context, const U8* bytes, U32 size);
 
-/* Returns 1 if a peer has a session. */
+/* Returns 1 if at least one peer has a session. */
 int UAV_isUp(void);
 
 /* Returns the role of the peer that called a servant. */
 int UAV_peerOf(const Ice_Current* current);
 
-/* Gives a peer its next key (UAV_setNextKey), for a servant. */
+/* Gives a peer its next key (UAV_setNextKey); called by a servant. */
 int UAV_nextKey(int role, const U8* key);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_modem: the FPGA's interrupt, and the radio task: sets the modem up, passes its packets to the
- * links, polls the links, and sets the modem up again if no link comes up.
+ * uav_modem: handles the FPGA's interrupt, and runs the radio task. The task configures the modem,
+ * passes its packets to the links, polls the links, and configures the modem again if no link comes
+ * up.
  */
 #include "uav_modem.h"
 #include "map_regs.h"
@@ -14,7 +15,9 @@
 #include "uav_links.h"
 #include "uav_os.h"
 
-#define DOWN_LIMIT 15000000U /* us without a link: the modem may have lost its settings */
+/* time without a link after which the modem is configured again, because it may have lost its
+ * settings, us */
+#define DOWN_LIMIT 15000000U
 
 U16 uav_guardMs;
 U8 uav_wire;
@@ -22,8 +25,8 @@ U8 uav_transparent;
 
 static Radio_OnPacket receiver;
 static Link_Buffers buffers;
-static U8 turn;      /* the peer that is polled first */
-static U8 hasOthers; /* there are peers besides the first ground */
+static U8 turn;      /* index of the peer that is polled first */
+static U8 hasOthers; /* 1 if there are peers besides the first ground station */
 
 static const Link_Config config = {&uav_linkPort, &uav_peers[UAV_GROUND], UAV_BYTE_TIME_US16,
                                    LINK_USE(buffers)};
@@ -66,7 +69,7 @@ static void setUpModem(void) {
     xbeeConf.source = (U16)UAV_address();
     xbeeConf.key = uav_modemKey;
     xbeeConf.guardMs = uav_guardMs;
-    /* The vehicle continues to fly without its modem, and retries. */
+    /* Without a modem the vehicle continues to fly and retries. */
     while (xbeeInit(&xbeeConf, &rings) != RADIO_OK)
         OSTimeDly(OS_TICKS_PER_SEC);
     uav_isAnswered = (U8)Radio_answers();
@@ -74,7 +77,8 @@ static void setUpModem(void) {
     UAV_limitLinks();
 }
 
-/* Does the work that is due on all links; each link is first in turn. */
+/* Polls all links; in each call another link is the first one. Returns the time until the next
+ * poll, us. */
 static U32 pollAll(void) {
     U32 wait = 0xFFFFFFFFU, due;
     int left, role = turn;
@@ -124,7 +128,7 @@ void UAV_radioTask(void* argument) {
             setUpModem();
             upAt = UAV_nowUs();
         }
-        /* The wait is at least a tick, so that a full ring is not polled. */
+        /* The wait is at least one tick, so that the task does not spin while a ring is full. */
         wait = wait > 1000000U ? OS_TICKS_PER_SEC : wait * OS_TICKS_PER_SEC / 1000000U;
         OSSemPend(uav_radioWork, wait ? wait : 1U, &error);
     }

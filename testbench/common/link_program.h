@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// link_program: what a link layer calls, its Link_Port, as virtual functions. A class that owns a
-// link derives from LinkProgram, overrides the functions it needs, and configures the link with
-// linkPort() and linkProgram().
+// link_program: offers the functions that a link layer calls (Link_Port) as virtual functions. A
+// class with a link derives from LinkProgram, overrides the functions that it needs, and configures
+// the link with linkPort() and linkProgram().
 
 #pragma once
 
@@ -16,7 +16,7 @@ public:
     LinkProgram(const LinkProgram&) = delete;
     LinkProgram& operator=(const LinkProgram&) = delete;
 
-    // Link_Config.port. Link_Config.context is linkProgram().
+    // Returns the value for Link_Config.port; Link_Config.context is linkProgram().
     static const Link_Port* linkPort() {
         static const Link_Port port = {
             [](void* c, const U8* frame, U32 size) { return of(c).transmit(frame, size) ? 0 : 1; },
@@ -40,7 +40,7 @@ protected:
     // Sends a frame. Returns whether there was room.
     virtual bool transmit(const U8* frame, U32 size) = 0;
     virtual U32 random() = 0;
-    // Takes a message. Returns false if the link must deliver it again later.
+    // Accepts a message. Returns false if the link must deliver it again later.
     virtual bool take(int channel, const U8* data, U32 size) {
         (void)channel, (void)data, (void)size;
         return true;

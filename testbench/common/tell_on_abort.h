@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// tell_on_abort: states of models, printed when the program is aborted, as the regression does with
-// a test that hangs.
+// tell_on_abort: prints the state of the models when the program is aborted, as the test runner
+// does with a test that hangs.
 
 #pragma once
 
@@ -12,16 +12,17 @@
 #include <map>
 #include <string>
 
-// The clock of the model that ran last, for failed assertions.
+// Number of the clock of the model that ran last; failed assertions print it.
 inline uint64_t observedClock = 0;
 
-// One line per live model, by the model's address; a model removes its line when it is destroyed.
+// Functions that return one line about each live model, by the address of the model. A model
+// removes its entry when it is destroyed.
 inline std::map<const void*, std::function<std::string()>> tellers;
 
 inline void tellOnAbort(const void* model, std::function<std::string()> tell) {
     tellers[model] = std::move(tell);
-    std::signal(SIGABRT, [](int signal) { // the program ends anyway, so functions that are not
-                                          // signal-safe are allowed
+    // the program ends anyway, so functions that are not signal-safe are allowed
+    std::signal(SIGABRT, [](int signal) {
         std::signal(signal, SIG_DFL);
         for (const auto& [_, line] : tellers)
             std::fprintf(stderr, "%s\n", line().c_str());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// instruction: lengths, cycles and kinds of the Thumb and Thumb-2 instructions.
+// instruction: decodes length, cycles and kind of the Thumb and Thumb-2 instructions.
 
 #include "instruction.h"
 
@@ -72,7 +72,8 @@ unsigned wideCycles(uint16_t first, uint16_t second) {
 }
 
 // Sets the alignment check of LDM, STM, LDRD, STRD, LDREX, STREX and similar instructions. Their
-// offsets are multiples of the alignment; SP is always aligned.
+// offsets are multiples of the alignment, and SP is always aligned, so only the base register needs
+// a check.
 void decodeAligned(Instruction& i, uint16_t first, uint16_t second) {
     const bool isTable = (first & 0xFFF0) == 0xE8D0 && (second & 0xFFE0) == 0xF000; // TBB, TBH
     const bool isMultiple = !(first & 0x0040), isDouble = !isMultiple && (first & 0x0120);

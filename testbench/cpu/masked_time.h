@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// masked_time: the longest time in which PRIMASK, FAULTMASK or BASEPRI block interrupts.
+// masked_time: measures the longest time during which PRIMASK, FAULTMASK or BASEPRI block
+// interrupts.
 
 #pragma once
 
@@ -8,11 +9,12 @@
 
 class MaskedTime {
 public:
-    // Longest time since start() in which the masks blocked interrupts of the watched priority and
-    // below, in cycles, and the end of that time.
+    // Longest time since start() during which interrupts of the watched priority and below were
+    // blocked, and the end of this time; both in cycles.
     struct Longest {
         uint64_t cycles = 0;
-        uint32_t from = 0, to = 0; // addresses of the instructions that masked and unmasked
+        // address of the instruction that blocked them, and of the instruction that unblocked them
+        uint32_t from = 0, to = 0;
     };
 
     void start(uint8_t priority) {
@@ -21,7 +23,8 @@ public:
         isMasked_ = false;
     }
     void reset() { isMasked_ = false; }
-    // Called after an instruction at `executed` has changed a mask; `next` follows it.
+    // Called after the instruction at `executed` has changed a mask; `next` is the address of the
+    // next instruction.
     void update(bool blocksAll, uint32_t basepri, uint64_t cycles, uint32_t executed,
                 uint32_t next) {
         const bool isMasked = blocksAll || (basepri && basepri <= priority_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// mac: carrier sense, tries and rounds as events of the air.
+// mac: implements carrier sense, tries and rounds as events on the air.
 
 #include "mac.h"
 #include <algorithm>
@@ -9,10 +9,11 @@
 namespace {
 
 constexpr uint64_t backoffUnitNs = 320'000;
-constexpr uint64_t ackWaitNs = 864'000; // macAckWaitDuration: 54 symbols after the frame
+constexpr uint64_t ackWaitNs = 864'000; // macAckWaitDuration: 54 symbols after the frame, ns
 constexpr unsigned longestBackoff = 5, mostBackoffs = 4; // macMaxBE, macMaxCSMABackoffs
-constexpr uint64_t roundNs = 200'000'000;                // RR: the wait for an acknowledgement
-constexpr uint32_t roundSpreadUs = 48'000;               // random extra wait, at most
+// wait for an acknowledgement before the next round (RR), ns
+constexpr uint64_t roundNs = 200'000'000;
+constexpr uint32_t roundSpreadUs = 48'000; // longest random extra wait, us
 
 } // namespace
 
@@ -34,7 +35,7 @@ void Mac::startRound(uint64_t now, uint64_t ready) {
     startTry(now, ready);
 }
 
-// With RN there is a random wait before the first carrier sense.
+// Starts a try. If RN is not 0, it begins with a random wait before the first carrier sense.
 void Mac::startTry(uint64_t now, uint64_t ready) {
     --triesLeft_;
     busySenses_ = 0;
@@ -75,7 +76,8 @@ void Mac::wake(uint64_t now) {
         finish(now, fate_);
 }
 
-// Makes the next try of the round or, with RR, the first try of the next round.
+// Handles a failed try: makes the next try of the round or, with RR, the first try of the next
+// round.
 void Mac::failed(uint64_t now, uint64_t ready, Fate fate) {
     if (triesLeft_) {
         air_.countRetry();
@@ -93,10 +95,11 @@ void Mac::failed(uint64_t now, uint64_t ready, Fate fate) {
 
 void Mac::ended(uint64_t now, const RfPacket& arrived, RfOutcome outcome, bool isAnswered) {
     const bool isLost = outcome == RfOutcome::Lost || outcome == RfOutcome::Nobody;
-    const bool isDrawnLost = drawn_ == RfOutcome::Lost; // represents tries that all failed
+    // this outcome means that all tries have failed
+    const bool isDrawnLost = drawn_ == RfOutcome::Lost;
     if (packet_.acknowledged && !isAnswered && !isDrawnLost && (triesLeft_ || roundsLeft_)) {
         if (!isLost)
-            drawn_ = RfOutcome::Delivered; // its repetition is not damaged as well
+            drawn_ = RfOutcome::Delivered; // only one try of the packet is damaged
         return failed(now, now + ackWaitNs, Fate::NoAck);
     }
     const uint64_t done = now + (packet_.acknowledged ? RfTimes::ackNs : 0) + RfTimes::gapNs;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// icesoc-xbee: two XBee modems, each on a pseudo-terminal, and the air between them, to try any
-// program that talks to an XBee.
+// icesoc-xbee: simulates two XBee modems, each on a pseudo-terminal, and the air between them, to
+// test any program that uses an XBee.
 
 #include "rf_channel.h"
 #include "xbee.h"
@@ -20,7 +20,7 @@ namespace {
 volatile std::sig_atomic_t stopped = 0;
 
 struct Settings {
-    std::string link; // a path that points to the pty
+    std::string link; // path of a symbolic link to the pty
     std::vector<std::string> set;
 };
 
@@ -44,7 +44,7 @@ struct Modem {
     }
 };
 
-// Parses "MY=1" into a parameter of this modem; throws CLI::ValidationError with the reason.
+// Parses "MY=1" and sets this parameter of the modem. Throws CLI::ValidationError with the reason.
 void setParameter(std::map<std::string, uint32_t>& set, const std::string& profile,
                   const std::string& text) {
     std::string letters = text.substr(0, text.find('='));
@@ -112,7 +112,7 @@ void say(uint64_t now, const RfPacket& packet, RfChannel::Outcome outcome) {
                packet.from, packet.to, packet.bytes.size(), outcomes[static_cast<int>(outcome)]);
 }
 
-// Runs until Ctrl-C, or for `duration` seconds unless that is 0, and prints statistics.
+// Runs for `duration` seconds, or until Ctrl-C if it is 0, and prints statistics.
 void run(RfChannel& air, XBee& a, XBee& b, double duration) {
     std::signal(SIGINT, [](int) { stopped = 1; });
     std::signal(SIGTERM, [](int) { stopped = 1; });

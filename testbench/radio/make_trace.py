@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""make_trace: prints a trace: out to 300 m at 10 m/s, most of a minute there, and back.
+"""make_trace: prints a trace of a flight: out to 300 m at 10 m/s, most of a minute there, and back.
 
-It is made up, not recorded: free space and Rayleigh fading of the four tries of a packet, as in
-rf_channel.h, and bursts as frequent as "bursts, long" (docs/simulation.md), drawn again each
-second."""
+The trace is computed, not recorded. It has free-space loss, Rayleigh fading of each of the four
+tries of a packet (as in rf_channel.h), and bursts of losses as frequent as in "bursts, long"
+(docs/simulation.md), drawn again each second."""
 import math
 import random
 import sys
 
 SENSITIVITY, FIRST_METRE = -92, 40  # dBm, dB
-# Probabilities per second (about ten packets) that a burst begins and ends; packets lost in it
+# Probabilities per second (about ten packets) that a burst begins and that it ends; probability
+# that a packet in a burst is lost
 BEGIN, END, INSIDE = 0.01 * 10, 0.08 * 10, 0.9
 
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee: API frames: 0x7E, length (2), type and contents, checksum; with AP 2 some bytes are
-// escaped.
+// xbee: handles API frames, which consist of 0x7E, length (2 bytes), type, contents and checksum.
+// With AP 2 some bytes are escaped.
 
 #include "xbee.h"
 
 namespace {
 
 constexpr uint8_t delimiter = 0x7E, escape = 0x7D, escapeXor = 0x20;
-constexpr size_t longestHead = 23; // more bytes of a frame than of its data
+constexpr size_t longestHead = 23; // largest number of bytes in a frame besides the data
 
 bool mustEscape(uint8_t byte) {
     return byte == delimiter || byte == escape || byte == 0x11 || byte == 0x13;
@@ -26,7 +26,7 @@ uint8_t sum(const uint8_t* bytes, size_t count) {
 void XBee::apiByte(uint8_t byte, uint64_t now) {
     bool escapes = active_.at("AP") == 2;
     if (byte == delimiter && (escapes || !inFrame_)) {
-        inFrame_ = true; // in escaped mode a delimiter always starts a frame
+        inFrame_ = true; // in escaped mode, a delimiter always starts a frame
         escaped_ = false;
         frame_.clear();
         return;
@@ -55,12 +55,12 @@ void XBee::apiByte(uint8_t byte, uint64_t now) {
 
 void XBee::apiFrame(const Bytes& frame, uint64_t now) {
     switch (frame[0]) {
-    case 0x00: // transmit request, 64-bit address
+    case 0x00: // transmit request to a 64-bit address
     case 0x01: // 16-bit address
         apiSend(frame, now);
         break;
     case 0x08: // AT command
-    case 0x09: // ... that waits for AC
+    case 0x09: // AT command that takes effect with AC
         apiCommand(frame, now);
         break;
     default:
@@ -83,7 +83,7 @@ void XBee::apiSend(const Bytes& frame, uint64_t now) {
         packet.to64 = packet.to64 << 8 | frame[2 + i];
     packet.to = static_cast<uint16_t>(packet.to64);
     if (packet.wide && packet.to64 == 0xFFFF)
-        packet.wide = false; // the broadcast address
+        packet.wide = false; // 64-bit form of the broadcast address
     const uint8_t options = frame[head - 1];
     const bool noAck = options & 0x01;
     if (options & 0x04)
@@ -105,7 +105,8 @@ void XBee::sendApiPacket(uint64_t now) {
     launch(std::move(next.packet), now);
 }
 
-// 0x88: reply to a command; status 0 OK, 1 ERROR, 2 invalid command, 3 invalid value.
+// Handles a command and replies with a frame 0x88, with status 0 OK, 1 ERROR, 2 invalid command, or
+// 3 invalid value.
 void XBee::apiCommand(const Bytes& frame, uint64_t now) {
     if (frame.size() < 4) {
         ++counters_.badFrames;
@@ -141,7 +142,7 @@ void XBee::apiCommand(const Bytes& frame, uint64_t now) {
         answer[4] = 2;
     }
     counters_.refused += answer[4] != 0;
-    if (frame[1] != 0) // id 0: no answer
+    if (frame[1] != 0) // frame id 0 asks for no reply
         apiReply(answer);
     line_.wake(now);
 }
@@ -159,7 +160,8 @@ void XBee::apiReply(const Bytes& frame) {
     }
 }
 
-// 0x81: a packet from a 16-bit address: source, RSSI, options, data. 0x80: from one of 64 bits.
+// Reports a received packet: a frame 0x81 from a 16-bit address, or 0x80 from a 64-bit address,
+// with source, RSSI, options and data.
 void XBee::apiReceived(const RfPacket& packet) {
     Bytes frame = {static_cast<uint8_t>(packet.from64 ? 0x80 : 0x81)};
     for (int byte = packet.from64 ? 7 : 1; byte >= 0; --byte)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee: command mode.
+// xbee: handles the command mode.
 
 #include "xbee.h"
 #include <algorithm>
@@ -20,7 +20,7 @@ bool isHex(const std::string& text, size_t most) {
 
 } // namespace
 
-// The OK waits until received data has drained out.
+// Enters command mode. The OK waits until all received data has been sent to the host.
 void XBee::enterCommandMode(uint64_t now) {
     mode_ = Mode::Command;
     flushCount_ = input_.size();
@@ -57,15 +57,15 @@ bool XBee::setParameter(const std::string& letters, uint32_t value) {
         return false;
     if (letters == "BD" && value > profile_.highestCode)
         value =
-            static_cast<uint32_t>(std::lround(xbeeBaud(profile_, value))); // rounded to the nearest
-                                                                           // possible rate
+            // the nearest possible rate
+            static_cast<uint32_t>(std::lround(xbeeBaud(profile_, value)));
     pending_[letters] = value;
     if (letters == "EC" || letters == "EA")
         active_[letters] = value;
     return true;
 }
 
-// Write-only: a query is refused.
+// Sets the key, which can be written but not read: a query is refused.
 bool XBee::setKey(const std::string& value) {
     if (!isHex(value, keyDigits))
         return false;
@@ -73,7 +73,7 @@ bool XBee::setKey(const std::string& value) {
     return true;
 }
 
-// Commands without a value; "" for any other name.
+// Executes a command without a value; returns "" if the name is not such a command.
 std::string XBee::order(const std::string& letters, uint64_t now) {
     if (letters == "CN") {
         leaveCommandMode();
@@ -86,7 +86,7 @@ std::string XBee::order(const std::string& letters, uint64_t now) {
         pending_ = factory();
         for (auto& [own, value] : options_.set)
             if (!table_.at(own).writable)
-                pending_[own] = value; // the serial number stays
+                pending_[own] = value; // the serial number is not reset
         key_.clear();
     } else if (letters == "FR") {
         boot(now); // the OK is still sent at the old rate
@@ -96,7 +96,8 @@ std::string XBee::order(const std::string& letters, uint64_t now) {
     return "OK\r";
 }
 
-// Replies to each command of a line such as ATDL2,WR,CN separately. AT alone replies OK.
+// Executes one line. A line with several commands, such as ATDL2,WR,CN, gets a reply for each; AT
+// alone gets OK.
 std::string XBee::execute(const std::string& line, uint64_t now) {
     if (line.size() < 2 || std::toupper(static_cast<unsigned char>(line[0])) != 'A' ||
         std::toupper(static_cast<unsigned char>(line[1])) != 'T')
@@ -120,7 +121,8 @@ std::string XBee::executeOne(const std::string& command, uint64_t now) {
         value.erase(0, 2);
     for (char& c : letters)
         c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    if (letters == refuse_ || letters + value == refuse_) // or with one value alone
+    // refuses a command in general, or with one value
+    if (letters == refuse_ || letters + value == refuse_)
         return "ERROR\r";
     std::string answer = value.empty() ? order(letters, now) : "";
     if (answer.empty() && letters == "KY")
@@ -143,7 +145,7 @@ std::string XBee::executeOne(const std::string& command, uint64_t now) {
     return answer;
 }
 
-// BD takes effect after the OK has been sent (XBee::advance).
+// Applies the settings; BD takes effect after the OK has been sent (XBee::advance).
 void XBee::apply() {
     active_ = pending_;
     line_.setHeedRts(active_.at("D6") == 1);

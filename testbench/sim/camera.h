@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// camera: reads a grey-scale frame from a picture file (PNG, JPEG, PGM and others of stb_image).
+// camera: reads a grey-scale frame from a picture file in a format that stb_image can read (PNG,
+// JPEG, PGM and others).
 
 #pragma once
 
@@ -13,9 +14,10 @@ struct Frame {
     std::vector<uint8_t> pixels;
 };
 
-// Returns the middle of the picture, reduced by an integer factor if it is at least twice the
-// requested size. The width becomes a multiple of 8. Throws std::runtime_error with the reason.
+// Returns the middle of the picture. If the picture is at least twice the requested size, it is
+// first reduced by an integer factor. The width becomes a multiple of 8. Throws std::runtime_error
+// with the reason.
 Frame loadFrame(const std::string& path, int width, int height);
-// Returns the picture as seen from another position: its columns rotated to the left.
+// Returns the picture as seen from another position: rotates its columns to the left.
 Frame movedBy(Frame frame, int columns);
 void savePng(const std::string& path, const Frame& frame);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// core_pins: turns a script's lines into changes of pins, in the order of their times; or connects
-// the sensor's model.
+// core_pins: applies the lines of a script to pins, in the order of their times, or connects the
+// model of the sensor.
 
 #include "core_pins.h"
 #include "map_regs.h"
@@ -30,8 +30,8 @@ uint32_t maskOf(const CorePin& pin) {
     return static_cast<uint32_t>((uint64_t(1) << pin.width) - 1) << pin.lsb;
 }
 
-// The file ends after the last line of this process: if a debugger goes back in time, the process
-// that continues overwrites the later lines.
+// Log of the outputs. Each line ends the file: if a debugger goes back in time, the process that
+// continues overwrites the later lines.
 class PinLog {
 public:
     explicit PinLog(const std::string& file)
@@ -125,7 +125,7 @@ void connectSensor(SocModel& soc, const Frame& frame, std::function<bool()> send
     soc.onClock([&soc, frame, sends, note, sensor = SensorModel({200, 9}),
                  pins = SensorModel::Pins(), clock = false, still = 0]() mutable {
         clock = !clock;
-        if (!clock) { // its pins change at the falling edge
+        if (!clock) { // the sensor changes its pins at the falling edge
             if (sensor.isIdle() && sends())
                 sensor.addFrame(frame.pixels, frame.width, frame.height);
             pins = sensor.next();
@@ -136,7 +136,7 @@ void connectSensor(SocModel& soc, const Frame& frame, std::function<bool()> send
                              uint32_t(pins.data) << MAP_PIN_CAMERA_DATA_I;
         soc.setCorePins(all, true);
         note(all);
-        // VSYNC goes high after the last line, and some more clocks show it to the core.
+        // After the last line VSYNC goes high; the core needs some more clocks to see this.
         still = sensor.isIdle() && pins.vsync ? still + 1 : 0;
         return soc.cycles() + (still > 32 ? SocModel::clkHz / 1000 : 1);
     });

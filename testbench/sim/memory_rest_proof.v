@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// memory_rest_proof: proves that the memory keeps its state while sim_soc.v stops its clock, which
-// it does while no port has a request and no transfer is pending (rests.vh). Used only by the
+// memory_rest_proof: proves that the memory keeps its state while sim_soc.v stops its clock. The
+// clock stops while no port has a request and no transfer is pending (rests.vh). Used only by the
 // prover.
 //
-// When the gate closes, no register of the memory takes another value, whatever the inputs are
+// When the gate closes, no register of the memory takes another value, whatever its inputs are
 // (compare hdl/system/idle_proof.v).
 
 `default_nettype none
@@ -23,7 +23,8 @@ module memory_rest_proof #(
     input wire [PORTS-1:0]    npi_rd_pop_i, npi_rd_flush_i,
     input wire                mcb_cmd_full_i, mcb_wr_full_i, mcb_rd_empty_i, mcb_calib_done_i,
     input wire [63:0]         mcb_rd_data_i,
-    output wire [PORTS-1:0]   npi_rd_empty_o, npi_wr_almost_full_o // keep the FIFOs in the proof
+    // outputs, so that the FIFOs are part of the proof
+    output wire [PORTS-1:0]   npi_rd_empty_o, npi_wr_almost_full_o
 );
     (* hierconn *) wire [PORTS-1:0] \u_core.npi_addr_req_i ;
     (* hierconn *) wire [PORTS-1:0] \u_core.npi_wr_push_i ;

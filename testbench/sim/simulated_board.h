@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// simulated_board: replaces the vehicle's source of secrets if its firmware runs on the host:
-// random numbers from a seed, by the Cortex-M3 model's generator, and words that keep their values
-// without power. Initially the vehicle is open.
+// simulated_board: provides secrets to firmware that runs on the host. Random numbers come from a
+// seed, by the generator of the Cortex-M3 model; some words keep their values without power.
+// Initially the vehicle has no key.
 
 #pragma once
 
@@ -19,20 +19,20 @@ public:
     using Words = std::array<uint32_t, BACKUP_WORDS>;
 
     explicit SimulatedBoard(uint64_t seed = 1) : random_(seed) {
-        (void)RandomBlock::next(random_); // as in secrets.c
+        (void)RandomBlock::next(random_); // drops the first number, as secrets.c does
         provide({});
     }
-    // Gives it to the firmware.
+    // Makes the firmware use this board.
     void use() { UAV_useBoard(&port(), this); }
-    // Stores the vehicle's key, 16 bytes, and its address, as its factory does; an empty key opens
-    // it.
+    // Stores the key of the vehicle, 16 bytes, and its address, as the factory does. With an empty
+    // key, the vehicle accepts a link without a key.
     void provide(const std::vector<uint8_t>& key, uint32_t address = 1) {
         use();
         UAV_provide(address, key.empty() ? nullptr : key.data());
     }
-    // Whom it serves besides its ground.
+    // A peer that the vehicle serves besides its first ground station.
     struct Peer {
-        int ground; // UAV_OBSERVER, UAV_VEHICLE, UAV_GROUP
+        int ground; // role: UAV_OBSERVER, UAV_VEHICLE or UAV_GROUP
         uint32_t address;
         std::vector<uint8_t> key;
     };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// standstill: samples simulated time by a timer of CPU time; a process that waits is not sampled.
+// standstill: samples simulated time with a timer of CPU time, so a process that waits is not
+// sampled.
 
 #include "standstill.h"
 #include <algorithm>
@@ -29,7 +30,7 @@ void setTimer(double seconds) {
     setitimer(ITIMER_PROF, &timer, nullptr);
 }
 
-// Returns the program counter that a signal has interrupted.
+// Returns the program counter at which a signal has interrupted the program.
 void* interruptedAt(const void* context) {
     const mcontext_t& machine = static_cast<const ucontext_t*>(context)->uc_mcontext;
 #if defined(__x86_64__)
@@ -39,14 +40,15 @@ void* interruptedAt(const void* context) {
 #endif
 }
 
-// Returns the program counter of interrupted code, and the return addresses of its callers.
+// Returns the program counter of the interrupted code, and the return addresses of its callers.
 std::vector<void*> interruptedCode(const void* context) {
     void* frames[mostFrames];
     void** end = frames + backtrace(frames, mostFrames);
     void** at = std::find(frames, end, interruptedAt(context));
     std::vector<void*> code(at, end);
     if (!code.empty())
-        code[0] = static_cast<char*>(code[0]) + 1; // not a return address
+        // functionsAt() subtracts 1, because the others are return addresses
+        code[0] = static_cast<char*>(code[0]) + 1;
     return code;
 }
 
@@ -67,7 +69,7 @@ std::vector<std::string> functionsAt(const std::vector<void*>& addresses) {
     char line[1000];
     for (unsigned number = 0; output && std::fgets(line, sizeof line, output); ++number) {
         line[std::strcspn(line, "\n")] = 0;
-        if (number % 2 == 0 && line[0] != '?') // each name is followed by its file
+        if (number % 2 == 0 && line[0] != '?') // a line with the file follows each name
             names.push_back(line);
     }
     if (output)
@@ -78,7 +80,7 @@ std::vector<std::string> functionsAt(const std::vector<void*>& addresses) {
 Standstill::Standstill(std::function<uint64_t()> now, double seconds) : now_(std::move(now)) {
     theOne = this;
     void* first[1];
-    backtrace(first, 1); // loads its library, which a signal's handler must not
+    backtrace(first, 1); // loads the library of backtrace now; a signal handler must not load it
     struct sigaction action{};
     action.sa_sigaction = [](int, siginfo_t*, void* context) { theOne->onTick(context); };
     action.sa_flags = SA_RESTART | SA_SIGINFO;
@@ -92,8 +94,8 @@ Standstill::~Standstill() {
     theOne = nullptr;
 }
 
-// A program that stands still has nothing to lose: the functions called here need not be safe in a
-// signal's handler.
+// Functions called here need not be safe in a signal handler: a program that stands still cannot
+// get worse.
 void Standstill::onTick(const void* context) {
     const uint64_t now = now_();
     same_ = now == last_ ? same_ + 1 : 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// keep_step: the part of SimStatus with which a program keeps step with simulated time.
+// keep_step: the members of SimStatus that keep a program in step with simulated time.
 //
 // Simulated time stops while the program works, and until the program has read all bytes that its
 // serial port has received.
@@ -16,8 +16,8 @@ inline bool isSimStatus(const void* bytes) {
     return std::memcmp(bytes, SIM_MAGIC, sizeof SIM_MAGIC) == 0;
 }
 
-// toGround has a session in its upper 24 bits, so that bytes given to one keeper do not count for
-// the next.
+// The upper 24 bits of toGround are the number of the session, so that bytes given to one program
+// are not counted for the next one.
 constexpr int simCountBits = 40;
 constexpr uint64_t simCount(uint64_t toGround) {
     return toGround & ((uint64_t(1) << simCountBits) - 1);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// simulated_clock: lets an engine on the ground use the time of a simulated modem as its clock. A
-// simulator names this library in XBEEAT_CLOCK (clock.h) for the programs that it starts, with its
-// SimStatus file as the argument.
+// simulated_clock: lets a ground engine use the time of a simulated modem as its clock. A simulator
+// sets XBEEAT_CLOCK (clock.h) for the programs that it starts: it names this library, with the
+// simulator's SimStatus file as the argument.
 
 #pragma once
 
@@ -12,7 +12,7 @@ struct SimStatus;
 
 class SimulatedClock : public XBeeAT::Clock {
 public:
-    // Maps a file of SimStatus. Throws std::system_error.
+    // Maps a SimStatus file into memory. Throws std::system_error.
     explicit SimulatedClock(const std::string& file);
     ~SimulatedClock() override;
     SimulatedClock(const SimulatedClock&) = delete;
@@ -34,7 +34,7 @@ private:
 
     SimStatus* simulation_ = nullptr;
     XBeeAT::SystemClock machine_;
-    uint64_t token_ = 0; // same as SimStatus::keeper; 0 while it does not keep step
+    uint64_t token_ = 0; // value of SimStatus::keeper while this program keeps step; otherwise 0
     uint64_t taken_ = 0;
     int serial_ = -1;
 };

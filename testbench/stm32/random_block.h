@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// random_block: the STM32F2's random number generator (RM0033, 20): a number each 40 periods of its
-// 48 MHz, from a seed instead of noise.
+// random_block: models the random number generator of the STM32F2 (RM0033, 20). It delivers a
+// number every 40 periods of its 48 MHz clock, from a seed instead of noise.
 //
 //   0  CR  bit 2 RNGEN
-//   4  SR  bit 0 DRDY, 1 CECS, 2 SECS: now; 5 CEIS, 6 SEIS: since they were written 0
-//   8  DR  the number; 0 while none is ready
+//   4  SR  bit 0 DRDY, 1 CECS, 2 SECS: current state; 5 CEIS, 6 SEIS: set until 0 is written
+//   8  DR  the number; 0 while no number is ready
 
 #pragma once
 
@@ -41,10 +41,11 @@ public:
         }
         control_ = value & (enable | 8);
     }
-    // Stops the noise, until RNGEN is cleared and set.
+    // Simulates a failure of the noise source, until RNGEN is cleared and set.
     void fail() { errors_ |= 0x44; }
 
-    // Returns the number of a state, SplitMix64's: a counter's steps, mixed.
+    // Advances the state and returns the next number, by SplitMix64: the state counts in constant
+    // steps, the result mixes its bits.
     static uint32_t next(uint64_t& state) {
         uint64_t x = state += 0x9E3779B97F4A7C15ull;
         x = (x ^ x >> 30) * 0xBF58476D1CE4E5B9ull;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// spartan6_boot: packets by UG380, tables 5-23 to 5-30; the CRC's 22 bits by public readers of
-// bitstreams (prjcombine).
+// spartan6_boot: interprets a bitstream's packets (UG380, tables 5-23 to 5-30). The CRC of 22 bits
+// is known from public programs that read bitstreams (prjcombine).
 
 #include "spartan6_boot.h"
 #include <random>
@@ -19,7 +19,7 @@ enum Register : unsigned {
     General1 = 19
 };
 enum Command : uint16_t { Wcfg = 1, Start = 5, Rcrc = 7, Desync = 13, Iprog = 14 };
-constexpr uint16_t crcBypass = 0x10;                            // CRC bypass bit of COR1
+constexpr uint16_t crcBypass = 0x10;                            // bit in COR1 that disables the CRC
 constexpr uint32_t noCrc = 0x9876DEFC, watchdogClocks = 0xFFFF; // CWDT's default
 
 void addCrc(uint32_t& crc, unsigned reg, uint16_t word) {
@@ -32,22 +32,22 @@ void addCrc(uint32_t& crc, unsigned reg, uint16_t word) {
 } // namespace
 
 void Spartan6Boot::configure(const std::vector<uint8_t>& flash) {
-    constexpr uint64_t clearing = 2000; // clocks to clear the configuration memory, about a
-                                        // millisecond
+    // time to clear the configuration memory, clocks: about a millisecond
+    constexpr uint64_t clearing = 2000;
     running.reset();
     isStuck = false;
     strikes = 0;
     clocks = 0;
     reads.clear();
     uint32_t address = 0;
-    for (unsigned stage = 0; stage < 3; ++stage) { // header, MultiBoot, golden
+    for (unsigned stage = 0; stage < 3; ++stage) { // the three stages: header, MultiBoot, golden
         if (stage)
             address = uint32_t(general_[2 * stage - 1] & 0xFF) << 16 | general_[2 * stage - 2];
         End end = End::Failed;
         for (unsigned i = 0; i < 3 && end == End::Failed; ++i) {
             clocks += clearing;
             reads.push_back({address, clocks, clocks});
-            clocks += 32; // the flash's instruction, and the address
+            clocks += 32; // the read instruction and the address, sent to the flash
             end = load(flash, address);
             reads.back().to = end == End::Stuck ? ~0ull : clocks;
             strikes += end == End::Failed;
@@ -91,7 +91,7 @@ Spartan6Boot::End Spartan6Boot::load(const std::vector<uint8_t>& flash, uint32_t
             if (reg != Crc && reg != Lout && reg != Csbo)
                 addCrc(crc, reg, data);
         }
-        if (reg == Fdri) { // its CRC follows without a command
+        if (reg == Fdri) { // the CRC follows the data without a separate command
             if (!isOurs)
                 return End::Failed;
             value = read(4);
@@ -140,15 +140,15 @@ std::vector<uint8_t> standInBitstream(uint32_t seed, uint32_t frameWords, uint32
     write(Cmd, {Rcrc});
     crc = 0;
     write(IdCode, {static_cast<uint16_t>(idCode >> 16), static_cast<uint16_t>(idCode)});
-    for (int i = 0; i < 32; ++i) // about as many words as ISE writes between the sync word and the
-                                 // frames
+    // about as many words as ISE writes between the sync word and the frames
+    for (int i = 0; i < 32; ++i)
         put(0x2000);
     write(Cmd, {Wcfg});
     put(2 << 13 | 2 << 11 | Fdri << 5);
     put32(frameWords);
     std::mt19937 random(seed);
     for (uint32_t i = 0; i < frameWords; ++i) {
-        // Most of a design's frames are empty.
+        // Most frames of a design are empty.
         const auto word = i % 64 < 16 ? static_cast<uint16_t>(random()) : uint16_t(0);
         put(word);
         addCrc(crc, Fdri, word);

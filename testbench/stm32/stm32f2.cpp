@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// stm32f2: the bus matrix by address, and the effects of time.
+// stm32f2: routes accesses by address, and handles what depends on time.
 
 #include "stm32f2_map.h"
 #include <algorithm>
@@ -9,7 +9,8 @@ using namespace stm32f2;
 
 namespace {
 
-// The pins of ports D..G that the FSMC has (data sheet of the STM32F207, alternate functions).
+// The pins of ports D to G that the FSMC can use (data sheet of the STM32F207, alternate
+// functions).
 struct Pins {
     unsigned port;
     uint16_t pins;
@@ -65,10 +66,10 @@ void Stm32F2::powerOn() {
 void Stm32F2::resetPeripherals() {
     flash_.reset();
     registers_.clear();
-    registers_[rcc] = 0x83;           // HSI on and ready
+    registers_[rcc] = 0x83;           // reset value: HSI is on and ready
     registers_[rcc + 4] = 0x24003010; // PLLCFGR
-    registers_[gpio] = 0xA8000000;    // debug pins of port A
-    registers_[gpio + 0x400] = 0x280; // the same register of port B
+    registers_[gpio] = 0xA8000000;    // reset value: debug pins of port A
+    registers_[gpio + 0x400] = 0x280; // reset value of the same register of port B
     updateFpgaPins();
     for (unsigned port = 0; wires_ && port < 9; ++port)
         wires_->changed(port);
@@ -93,7 +94,7 @@ void Stm32F2::pass(unsigned cycles) {
     lookAround();
 }
 
-// Serves the watchdog, and calls the listener for passed time.
+// Does what is due: the watchdog, a changed level of the FPGA, the listener for passed time.
 void Stm32F2::lookAround() {
     if (watchdog_.on && now_() >= watchdog_.due) {
         watchdog_.fired = true;
@@ -112,7 +113,7 @@ unsigned Stm32F2::sleep(unsigned limit) {
     unsigned passed = 0;
     lineChanged_ = false;
     do {
-        // Skips most of it at once if the design is quiet; otherwise advances by HCLK.
+        // While the design is idle, skips many HCLK cycles at once; otherwise advances by one.
         const uint64_t now = now_();
         const unsigned hclks =
             now < until ? fsmc_.idleQuiet((carry_ + limit - passed) / each, until - now) : 0;
@@ -188,7 +189,7 @@ void Stm32F2::writeFlash(uint32_t offset, unsigned bytes, uint32_t value) {
     waitForFlash();
 }
 
-// One bank: no instruction can be fetched while it is erased or written.
+// Flash has one bank: no instruction can be fetched while it is erased or written.
 void Stm32F2::waitForFlash() {
     if (const uint64_t ns = flash_.busyNs())
         cpu_.stallFlash(ns * (config_.hclkHz / 1000) / 1'000'000 + 1);
@@ -199,7 +200,8 @@ void Stm32F2::requireFsmc() {
         return;
     if (!(stored(ahb3Enable) & 1))
         throw Error("the FSMC's clock is off (RCC_AHB3ENR)");
-    if (wires_) { // a pin that is not switched to the FSMC leaves its wire alone
+    // a pin that is not switched to the FSMC does not drive its wire, so there is nothing to check
+    if (wires_) {
         fsmcUsable_ = true;
         return;
     }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// bringup_main: icesoc-bringup, the self-test of a new board on a simulated one. It runs the
-// self-test with line_tester and then with the chip, and prints what the console would show.
+// bringup_main: icesoc-bringup, which runs the self-test of a new board on a simulated board. It
+// runs the self-test first with line_tester and then with the chip, and prints the output of the
+// console.
 //
 //     icesoc-bringup bringup_flash.elf [--wire D3:open]...
 
@@ -13,7 +14,7 @@
 
 namespace {
 
-// Bringup_Limits (sw/bringup/bringup.h), short enough for a simulation.
+// Bringup_Limits (sw/bringup/bringup.h) with values that are short enough for a simulation.
 struct Limits {
     uint32_t steps = ~0u, modemBootMs = 2, guardMs = 20, patternKib = 64, retentionMs = 1;
 };
@@ -27,7 +28,7 @@ bool isOfChip(const WireFault& fault) {
     return fault.kind == WireFault::Late || fault.wire.rfind("DDR_", 0) == 0;
 }
 
-// Prints the report; returns whether the self-test has passed.
+// Prints the report. Returns whether the self-test has passed.
 bool show(const std::string& report) {
     std::cout << report << std::flush;
     return report.find("\nEND 0") != std::string::npos;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// line_kit: a board whose FPGA is loaded with line_tester: the microcontroller's pins, the tester's
-// RTL, an idle modem, and the wires between them.
+// line_kit: simulates a board whose FPGA is loaded with line_tester: the pins of the
+// microcontroller, the tester's RTL, an idle modem, and the wires between them.
 
 #pragma once
 
@@ -18,15 +18,17 @@ class LineKit : private PinWires {
 public:
     struct Options {
         std::vector<WireFault> faults;
-        double fpgaMhz = BOARD_FPGA_HZ / 1e6; // the FPGA's clock
-        bool isConfigured = true; // line_tester is loaded; if not, the FPGA pulls its pins up
+        double fpgaMhz = BOARD_FPGA_HZ / 1e6; // frequency of the FPGA's clock, MHz
+        // true if line_tester is loaded; if not, the FPGA has pull-ups on its pins
+        bool isConfigured = true;
     };
     explicit LineKit(const Options& options);
 
-    // Loads the self-test into RAM or flash and runs it until it prints a line that begins with
-    // END, or until this time (ms). Returns what it has printed.
+    // Loads the self-test into RAM or flash, and runs it until it prints a line that begins with
+    // END or `limitMs` has passed. Returns what it has printed.
     std::string run(const std::string& elf, unsigned limitMs);
-    // Sets a variable of the program, before run().
+    // Sets a function that changes the microcontroller before the program runs, for example one of
+    // its variables.
     void onStart(std::function<void(Stm32F2&)> change) { change_ = std::move(change); }
 
     Wires& wires() { return wires_; }
@@ -34,8 +36,10 @@ public:
     Stm32F2& stm32() { return stm32_; }
 
 private:
-    static constexpr uint64_t oscNs = 40;      // 25 MHz, the slowest CFGMCLK (DS162: 50 MHz, 50 %)
-    static constexpr unsigned unitClocks = 64; // clocks of the board that the tester counts as one
+    // period of 25 MHz, the slowest CFGMCLK (DS162: 50 MHz, 50 %)
+    static constexpr uint64_t oscNs = 40;
+    // number of clocks of the board that the tester counts as one
+    static constexpr unsigned unitClocks = 64;
     static constexpr unsigned lines = 50, pins = 55;
 
     uint16_t levels(unsigned port, uint16_t inside) override;
@@ -59,7 +63,7 @@ private:
     Stm32F2 stm32_;
     std::function<void(Stm32F2&)> change_;
     uint64_t now_ = 0;
-    double clockAt_ = 0, clockHalfNs_ = 0; // 0: no clock
+    double clockAt_ = 0, clockHalfNs_ = 0; // 0 means that the clock is missing
     uint64_t inputs_ = 0, outputs_ = ~0ull, enables_ = ~0ull;
     bool isModemFitted_ = true, inReset_ = false;
     std::string printed_;

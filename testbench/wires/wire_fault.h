@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// wire_fault: a fault of a wire, as --wire names it.
+// wire_fault: parses a fault of a wire, as written in the option --wire:
 //
 //     D3:open  A5:stuck0  A5:stuck1  D1-D2:short  D0-D1:swapped  NWAIT:inverted  NWE:ringing
 //     NWE:late=12ns  CLK:none  CLK:off=2%  D:second-driver  D:shifted  MODEM:none
@@ -24,12 +24,13 @@ struct WireFault {
         SecondDriver,
         Shifted
     };
-    std::string wire, other; // other: of a pair, else empty
+    // wire, and the other wire of a pair; `other` is empty for a single wire
+    std::string wire, other;
     Kind kind = Open;
-    double value = 0; // Late: ns; Off: percent
+    double value = 0; // delay of a late wire, ns; error of a clock, percent
 
-    // Reads one fault. Throws std::runtime_error with the expected form.
+    // Parses one fault. Throws std::runtime_error, whose text shows the expected form.
     static WireFault parse(const std::string& text);
-    // The name of a wire, or of a pair in alphabetical order of the report: "D1-D2".
+    // Returns the name of the wire, or of the pair, as in the report: "D1-D2".
     std::string name() const { return other.empty() ? wire : wire + "-" + other; }
 };

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// addressees: the client to which a request of the vehicle belongs: the only one that has passed
-// the vehicle a proxy of the object; without such a client, the only one with a two-way call in
-// progress. It has no lock: the forwarder calls it under its own.
+// addressees: finds the client to which a request of the vehicle belongs. It is the only client
+// that has passed the vehicle a proxy of the called object. If no client has passed such a proxy,
+// it is the only client with a two-way call in progress. Addressees has no lock: the forwarder
+// calls it while it holds its own lock.
 
 #pragma once
 
@@ -25,8 +26,8 @@ public:
             owner = owner->second.empty() ? owners_.erase(owner) : std::next(owner);
         }
     }
-    // Returns the addressee of a call to an object, or null if no client or several clients
-    // qualify. `sent`: the clients' requests without a reply so far.
+    // Returns the client that a call to an object is for; null if no client or several clients
+    // qualify. `sent`: requests of clients that have no reply yet.
     Connection of(const Ice::Identity& object,
                   const std::set<std::shared_ptr<Request>>& sent) const {
         std::set<Connection> candidates;
@@ -41,7 +42,8 @@ public:
     }
 
 private:
-    std::map<Ice::Identity, std::set<Connection>> owners_; // by object that the vehicle calls
+    // clients that have passed a proxy of an object, by object
+    std::map<Ice::Identity, std::set<Connection>> owners_;
 };
 
 } // namespace gateway

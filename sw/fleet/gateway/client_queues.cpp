@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// client_queues: the waiting requests by client and by subject.
+// client_queues: stores the waiting requests by client and by subject.
 
 #include "client_queues.h"
 
@@ -10,7 +10,8 @@ namespace gateway {
 
 namespace {
 
-constexpr size_t requestCost = 100; // fixed cost of a request in a turn, in addition to its bytes
+// fixed cost of a request in its turn, counted as bytes in addition to its size
+constexpr size_t requestCost = 100;
 
 size_t costOf(const Client& client) {
     return client.requests.front()->parameters.size() + requestCost;
@@ -31,8 +32,8 @@ std::shared_ptr<Client> ClientQueues::clientOf(const Request& request) {
     return client;
 }
 
-// Ends the turns of a client that has nothing more to send. Also ends the turns of its subject, if
-// no other client of the subject has anything to send.
+// Ends the turns of a client that has nothing more to send, and the turns of its subject if all its
+// clients have nothing more to send.
 void ClientQueues::restIfEmpty(const Client& client) {
     if (!client.requests.empty())
         return;
@@ -114,7 +115,7 @@ std::shared_ptr<Request> ClientQueues::pop(const std::shared_ptr<Client>& client
     return request;
 }
 
-// Returns the client of a subject with the next turn, among those that may send now.
+// Returns the client whose turn is next, among the clients of a subject that may send now.
 std::shared_ptr<Client> ClientQueues::firstOf(const Subject& subject, const MayGo& mayGo) const {
     std::shared_ptr<Client> first;
     uint64_t least = 0;
@@ -153,7 +154,7 @@ std::shared_ptr<Request> ClientQueues::popNext(const MayGo& mayGo) {
 
 Requests ClientQueues::popOlder(std::chrono::steady_clock::time_point due) {
     Requests out;
-    const auto clients = clients_; // pop removes disconnected clients
+    const auto clients = clients_; // a copy, because pop removes disconnected clients
     for (const auto& [connection, client] : clients)
         while (!client->requests.empty() && client->requests.front()->since < due)
             out.push_back(pop(client));

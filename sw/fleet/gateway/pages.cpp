@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// pages: compares origins and cookies, and starts the program that serves the page.
+// pages: checks origins and cookies of browsers, and starts the program that serves the page.
 
 #include "pages.h"
 
@@ -25,7 +25,8 @@ std::string drawSecret() {
     return secret;
 }
 
-// Returns the connection or endpoint information of a class in a chain of transports; or null.
+// Returns the connection or endpoint information of this class in a chain of transports; null if
+// there is none.
 template <class Wanted, class Info> std::shared_ptr<Wanted> layer(std::shared_ptr<Info> info) {
     for (; info; info = info->underlying)
         if (auto found = std::dynamic_pointer_cast<Wanted>(info))
@@ -33,7 +34,7 @@ template <class Wanted, class Info> std::shared_ptr<Wanted> layer(std::shared_pt
     return nullptr;
 }
 
-// Returns the value of a header; names differ in case between browsers.
+// Returns the value of a header. Ignores the case of names, because browsers differ.
 std::string header(const Ice::HeaderDict& headers, const char* name) {
     for (const auto& [key, value] : headers)
         if (strcasecmp(key.c_str(), name) == 0)
@@ -133,7 +134,8 @@ void Pages::start(const std::string& certificate) {
     for (std::string& word : words)
         arguments.push_back(word.data());
     arguments.push_back(nullptr);
-    setenv("ICESOC_PAGE_SECRET", secret_.c_str(), 1); // not an argument: others could read it
+    // in the environment, because other users can read arguments
+    setenv("ICESOC_PAGE_SECRET", secret_.c_str(), 1);
     server_ = fork();
     if (server_ == 0) {
         sigset_t none;

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""places: the files that the ground's programs need, in the source tree or installed.
+"""places: finds the files that the ground programs need, in the source tree or installed.
 
-Installed, this module is part of the package `icesoc` in PREFIX/lib/python3/dist-packages.
+When installed, this module is part of the package `icesoc` in PREFIX/lib/python3/dist-packages.
 """
 import importlib.util
 import os
@@ -12,17 +12,17 @@ IS_INSTALLED = os.path.isfile(os.path.join(HERE, "__init__.py"))
 TOP = os.path.normpath(os.path.join(HERE, "../../../.." if IS_INSTALLED else "../../.."))
 SHARE = os.path.join(TOP, "share/icesoc")
 SLICE_FILES = {"Autopilot.ice": "sw/vehicle", "Registers.ice": "sw/hw/registers",
-               "Update.ice": "sw/update"}  # with their folders in the source tree
+               "Update.ice": "sw/update"}  # Slice files and their folders in the source tree
 
 
 def slice_file(name):
-    """Returns the path of a Slice file of SLICE_FILES."""
+    """Returns the path of a Slice file in SLICE_FILES."""
     folder = os.path.join(SHARE, "slice") if IS_INSTALLED else os.path.join(TOP, SLICE_FILES[name])
     return os.path.join(folder, name)
 
 
 def plugin():
-    """Returns the folder of libxbeeat.so.37."""
+    """Returns the folder that contains libxbeeat.so.37."""
     if not IS_INSTALLED:
         return os.path.join(TOP, "build/main/ground")
     multiarch = os.path.join(TOP, "lib", sysconfig.get_config_var("MULTIARCH") or "")
@@ -30,12 +30,12 @@ def plugin():
 
 
 def core(name):
-    """Returns the folder of a core's Slice file and its part in a mission."""
+    """Returns the folder with the core's Slice file and the core's part of a mission."""
     return os.path.join(SHARE if IS_INSTALLED else TOP, "ip", name)
 
 
 def record_of(description):
-    """Returns the record that a TOML file of the tree describes (icesoc.util.record)."""
+    """Returns the record type that a TOML file of the tree describes (icesoc.util.record)."""
     module = os.path.join(HERE if IS_INSTALLED else os.path.join(TOP, "tools/icesoc/util"),
                           "record.py")
     spec = importlib.util.spec_from_file_location("record", module)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""plugged: a communicator of stock ZeroC Ice with the radio plugin in it."""
+"""plugged: creates an Ice communicator with the radio plugin, for unmodified ZeroC Ice."""
 
 import os
 
@@ -7,17 +7,17 @@ import Ice
 
 
 def use_second_clock():
-    """Follows the simulator's second ground station, if a simulator has started this program: its
-    counters' file is named as the first one's, with a 2."""
+    """Uses the clock of the simulator's second ground station, if a simulator has started this
+    program. The file of its counters has the name of the first one, with a 2."""
     clock = os.environ.get("XBEEAT_CLOCK")
     if clock and not clock.endswith("2"):
         os.environ["XBEEAT_CLOCK"] = clock + "2"
 
 
 def initialize(settings, plugin, guard, key):
-    """Returns a communicator with these properties. plugin: folder of libxbeeat.so.37, empty or
-    None: no radio; guard: the modem's guard time in ms; key: file with the link's key, empty: in
-    the clear."""
+    """Returns a communicator with these properties. plugin: folder with libxbeeat.so.37; empty or
+    None means no radio. guard: guard time of the modem, ms. key: file with the key of the link;
+    empty means no key."""
     if plugin:
         settings = {"Ice.Plugin.XBeeAT": os.path.join(plugin, "xbeeat") + ":createXBeeAT",
                     "XBeeAT.Guard": str(guard),

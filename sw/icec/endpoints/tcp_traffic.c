@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * tcp_traffic: traffic of a connection: its use, heartbeats, sending within a bound.
+ * tcp_traffic: records the use of a connection, sends heartbeats, and limits the time for sending.
  */
 #define _POSIX_C_SOURCE 200809L
 #include "ice_message.h"
@@ -45,11 +45,11 @@ void TcpEndpoint_note(TcpEndpoint_Connection* c, const Ice_Byte* message, Ice_In
         --c->owed;
 }
 
-/* Sends a message, if the system takes it at once. */
+/* Sends a message if the system accepts it immediately. */
 static void sendNow(TcpEndpoint_Connection* c, const Ice_Byte* message, Ice_Int size) {
     if (c->fd >= 0 && !c->sending && !c->over &&
         send(c->fd, message, (size_t)size, MSG_NOSIGNAL | MSG_DONTWAIT) != size)
-        (void)shutdown(c->fd, SHUT_RDWR); /* part of a message is useless */
+        (void)shutdown(c->fd, SHUT_RDWR); /* a message sent in part makes the connection unusable */
     c->sentMs = TcpEndpoint_nowMs(0);
 }
 
@@ -61,7 +61,7 @@ void TcpEndpoint_sendHead(TcpEndpoint_Connection* c, Ice_Byte type) {
     sendNow(c, bytes, os.size);
 }
 
-/* Answers a request by an UnknownLocalException. */
+/* Answers a request with an UnknownLocalException. */
 static void sendReason(TcpEndpoint_Connection* c, const char* reason) {
     Ice_Byte bytes[ICEC_HEADER + 6 + REASON_MAX];
     Ice_OutputStream os;
@@ -82,13 +82,14 @@ int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size) {
     char reason[REASON_MAX];
     if (c->data[COMPRESSION_AT] == 2) {
         fprintf(stderr, "icec: refused a compressed %s: IceC has no bzip2\n", what);
-        TcpEndpoint_sendHead(c, ICEC_CLOSE); /* informs its caller that it was not executed */
+        /* CLOSE informs the caller that its request was not executed */
+        TcpEndpoint_sendHead(c, ICEC_CLOSE);
         return 0;
     }
     sprintf(reason, "::Ice::MemoryLimitException: over ICE_MESSAGE_MAX (%d)", ICE_MESSAGE_MAX);
     fprintf(stderr, "icec: refused a %s of %d bytes: %s\n", what, size, reason);
     if (type != ICEC_REQUEST || memcmp(c->data + ICEC_HEADER, noId, 4) == 0)
-        return 0; /* no reply can report it; the end of the connection does */
+        return 0; /* no reply can report the error, so the connection ends */
     sendReason(c, reason);
     c->served = 1;
     c->usedMs = TcpEndpoint_nowMs(0);
@@ -97,7 +98,7 @@ int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size) {
     return 1;
 }
 
-/* Returns whether a message is arriving that cannot be reported to the peer if it is lost. */
+/* Returns whether a message has arrived in part or completely and has not been handled. */
 static int isArriving(const TcpEndpoint_Connection* c) {
     Ice_Byte byte;
     return c->have > 0 || c->skip > 0 || recv(c->fd, &byte, 1, MSG_PEEK | MSG_DONTWAIT) > 0;

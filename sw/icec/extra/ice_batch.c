@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_batch: one-way requests that are sent together. A batch is a separate message: its head, a
- * count, and requests without ids. */
+ * ice_batch: one-way requests that are sent together. A batch is a separate message: a head, the
+ * number of requests, and the requests without ids.
+ */
 #include "ice_private.h"
 
 static void restart(Ice_Batch* batch) {
@@ -10,7 +11,7 @@ static void restart(Ice_Batch* batch) {
     Ice_OutputStream_writeInt(&batch->os, 0);
 }
 
-/* Sends the batch on an open connection; under ICE_LOCK_SEND. */
+/* Sends the batch on an open connection; the caller holds ICE_LOCK_SEND. */
 static Ice_Status flush(Ice_ObjectPrxPtr prx) {
     Ice_Batch* batch = prx->batch;
     Ice_Status status;
@@ -21,8 +22,9 @@ static Ice_Status flush(Ice_ObjectPrxPtr prx) {
     return status;
 }
 
-/* Adds the finished request. A full batch is sent if it already has a connection: opening one here
- * would receive while the request's buffer is in use. */
+/* Adds a finished request to the batch. If the batch is full and already has a connection, it is
+ * sent. Opening a connection here is not possible, because it would receive into the buffer that
+ * the request uses. */
 static Ice_Status keep(Ice_ObjectPrxPtr prx) {
     Ice_Batch* batch = prx->batch;
     Ice_OutputStreamPtr request = &prx->communicator->request;
@@ -59,7 +61,7 @@ Ice_Status Ice_ObjectPrx_ice_flushBatchRequests(Ice_ObjectPrxPtr prx) {
     int connection;
     if (!batch || batch->count == 0)
         return ICE_OK;
-    prx->batch = 0; /* connect as any call does */
+    prx->batch = 0; /* connect like any other call */
     status = Ice_ObjectPrx_ice_getConnection(prx, &connection);
     prx->batch = batch;
     if (status != ICE_OK)

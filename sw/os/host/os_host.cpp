@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// os_host: coroutines by ucontext, interrupts at chosen points, exceptions carried out of tasks.
+// os_host: implements tasks as coroutines (ucontext), delivers interrupts at chosen points, and
+// passes exceptions out of tasks.
 
 #include "os_host.h"
 
@@ -20,7 +21,8 @@ extern "C" {
 
 namespace {
 
-// The stacks of the firmware are sized for a Cortex-M3; host code called by it needs more.
+// Stack size of a task on the host. The firmware's stacks are sized for a Cortex-M3; host code that
+// it calls needs more.
 constexpr size_t stackBytes = 256 * 1024;
 
 struct Coroutine {
@@ -36,7 +38,7 @@ struct Coroutine {
 struct Port {
     OsHost::Machine machine;
     std::deque<Coroutine> coroutines;
-    Coroutine caller; // the coroutine that called run()
+    Coroutine caller; // the coroutine that has called run()
     Coroutine* active = nullptr;
     std::exception_ptr failure;
     bool masked = false, serving = false;
@@ -105,7 +107,7 @@ void run() {
 
 void stop() {
     switchTo(port.caller);
-    std::terminate(); // no code resumes a task after stop
+    std::terminate(); // unreachable: no code resumes a task after stop
 }
 
 void interruptPoint() {
@@ -116,7 +118,7 @@ void interruptPoint() {
         OSIntEnter();
         port.machine.serve();
         port.serving = false;
-        OSIntExit(); // may switch to another task; this one continues here later
+        OSIntExit(); // may switch to another task; this task continues here later
     }
 }
 
@@ -135,7 +137,7 @@ void OS_CPU_SR_Restore(OS_CPU_SR cpu_sr) {
 }
 
 OS_STK* OSTaskStkInit(void (*task)(void*), void* p_arg, OS_STK* ptos, INT16U opt) {
-    (void)ptos; // the port allocates larger stacks
+    (void)ptos; // ignored, because the port allocates larger stacks
     (void)opt;
     port.coroutines.emplace_back();
     Coroutine& c = port.coroutines.back();

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_m3: functions that the Cortex-M3 port requires from the board (sw/board), besides an idle
+ * os_m3: functions that the Cortex-M3 port needs from the board (sw/board), in addition to the idle
  * hook.
  */
 #pragma once
 
 #include "ucos_ii.h"
 
-/* Called by PendSV with interrupts disabled, before a task continues, to place the stack guard.
- * `bottom`: lowest address of the task's stack, or 0 if unknown (OSTaskCreate). */
+/* Places the stack guard. PendSV calls it with interrupts disabled before a task continues.
+ * `bottom`: lowest address of the task's stack, or 0 if it is unknown (OSTaskCreate). */
 void OS_TaskSwitched(OS_STK* bottom);
 
-/* Called when the task with this priority has overflowed its stack (255: a task has returned). Does
- * not return. */
+/* Called when the task with this priority has overflowed its stack; 255 means that a task has
+ * returned. Must not return. */
 void OS_StackFault(INT8U priority);

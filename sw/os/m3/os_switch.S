@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_switch: task switch in PendSV: saves the registers that the processor has not saved, calls
- * OS_Switch for the next stack, and restores.
+ * os_switch: switches tasks in PendSV: saves the registers that the processor has not saved, calls
+ * OS_Switch to get the stack of the next task, and restores its registers.
  *
  * Stack of a suspended task, from its stack pointer upwards: r4..r11, then the frame pushed by the
  * processor: r0..r3, r12, lr, pc, xPSR (ARMv7-M ARM, B1.5.6).
@@ -14,14 +14,14 @@
 PendSV_Handler:
     cpsid   i
     mrs     r0, psp
-    cbz     r0, 1f              /* the first switch: nothing to save */
+    cbz     r0, 1f              /* first switch: there is no task to save */
     stmdb   r0!, {r4-r11}
-1:  push    {r3, lr}            /* r3 for the alignment only */
+1:  push    {r3, lr}            /* r3 only keeps the stack aligned */
     bl      OS_Switch
     pop     {r3, lr}
     ldmia   r0!, {r4-r11}
     msr     psp, r0
-    orr     lr, lr, #4          /* back to thread mode on the process stack */
+    orr     lr, lr, #4          /* returns to thread mode on the process stack */
     cpsie   i
     bx      lr
     .size PendSV_Handler, . - PendSV_Handler

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// context: names of the whole unit, the heads of its files, and members: defaults and marshalling.
+// context: collects names of the whole unit, and writes heads of files, defaults of members, and
+// their marshalling.
 
 #include "c/context.h"
 
 CContext::CContext(const Unit& ofFile, const CFileNames& ofFiles) : unit(ofFile), names(ofFiles) {
-    std::map<std::vector<std::string>, std::string> first; // first user, by constants and their
-                                                           // types
+    // first operation with these constants, by the constants and their types
+    std::map<std::vector<std::string>, std::string> first;
     eachOperation([&](const Declaration& d, const Operation& o) {
         auto family = mayThrow(unit, o);
         std::vector<std::string> key;
@@ -65,7 +66,8 @@ namespace {
 
 using DKind = Declaration::Kind;
 
-// Sets a member to its default, unless that is the zero that initFunction has written.
+// Sets a member to its default, unless the default is the zero that initFunction has already
+// written.
 void initMember(Writer& w, const Declaration& d, const Field& f) {
     std::string name = "v->" + cMember(d, f), value = cValue(f.value, f.type);
     if (f.isOptional && f.value.kind != Literal::Kind::None)

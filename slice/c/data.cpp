@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// data: the types file: marshalling of structs, sequences and dictionaries, defaults, constants.
+// data: generates the file of types: marshalling of structs, sequences and dictionaries; defaults;
+// constants.
 
 #include "c/context.h"
 
@@ -17,7 +18,7 @@ int leastElementSize(const Declaration& d) {
            (d.kind == DKind::Dictionary ? factsOf(d.key).leastWireSize : 0);
 }
 
-// The slots of one element: a key and a value, or the element alone.
+// Returns the slots of one element: a key and a value for a dictionary, otherwise the element.
 std::vector<Slot> elementSlots(const Declaration& d) {
     Slot s{&d.element, "v->data[i]", "&v->data[i]", false, 0, ""};
     if (d.kind == DKind::Sequence)
@@ -36,7 +37,7 @@ void loop(Writer& w, const Declaration& d, void (*each)(Writer&, const std::vect
     }
 }
 
-// Fails a stream if a sequence has more elements than Slice allows.
+// Writes code that fails the stream if a sequence has more elements than its bound.
 static void overBound(Writer& w, const Declaration& d, const std::string& stream) {
     w.line(stream + "->failed = ICE_FAILED_BOUND;");
     w.line(stream + "->bound = \"::Ice::MarshalException: over [\\\"c:max:" +

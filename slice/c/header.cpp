@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// header: generates the header: types, constants, proxies, servants. The list of all generated
-// files.
+// header: generates the header with types, constants, proxies and servants, and returns the list of
+// all generated files.
 
 #include "c/context.h"
 #include "text/doc_comment.h"
@@ -10,7 +10,8 @@ namespace {
 
 using DKind = Declaration::Kind;
 
-// Several files may declare an interface or class, but C90 allows one typedef.
+// Writes forward declarations. Several files may declare an interface or class, but C90 allows only
+// one typedef.
 void forwardDeclarations(Writer& w, const CContext& c) {
     for (const auto& d : c.unit.declarations) {
         bool isClass = d->kind == DKind::Class;
@@ -63,7 +64,7 @@ void declareFields(Writer& w, const Declaration& d) {
     }
 }
 
-// The members of a sequence or dictionary of `element`.
+// Writes the members of a sequence or dictionary of `element`.
 void declareElements(Writer& w, const Declaration& d, const std::string& element) {
     int maximum = statedMaximum(d);
     bool pointer = element.back() == '*';
@@ -77,7 +78,7 @@ void declareElements(Writer& w, const Declaration& d, const std::string& element
 void declareStruct(Writer& w, const Declaration& d) {
     Writer::Values v = {{"c", cName(d)}};
     bool isClass = d.kind == DKind::Class;
-    // A class already has its typedef.
+    // The forward declaration of a class already has the typedef.
     w.block(
         isClass ? "struct {c}" : "typedef struct {c}", v,
         [&] {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// limits: reads C metadata from Name.limits next to Name.ice, so that a third-party Slice file need
-// not be changed.
+// limits: reads C metadata from Name.limits next to Name.ice, so that third-party Slice files need
+// no change.
 
 #include "c/generator.h"
 #include <algorithm>

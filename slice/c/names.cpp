@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// names: spells the C names of Slice names.
+// names: converts Slice names to C names.
 
 #include "c/context.h"
 #include <cstdio>
@@ -33,7 +33,7 @@ std::string cIdentifier(const std::string& name) {
         "enum", "extern", "float", "for", "goto", "if", "inline", "int", "long", "register",
         "restrict", "return", "short", "signed", "sizeof", "static", "struct", "switch", "typedef",
         "union", "unsigned", "void", "volatile", "while",
-        // keywords of C++, which may include the header
+        // keywords of C++, because C++ programs may include the header
         "alignas", "alignof", "and", "and_eq", "asm", "bitand", "bitor", "bool", "catch",
         "char16_t", "char32_t", "char8_t", "class", "co_await", "co_return", "co_yield", "compl",
         "concept", "const_cast", "consteval", "constexpr", "constinit", "decltype", "delete",
@@ -42,7 +42,7 @@ std::string cIdentifier(const std::string& name) {
         "public", "reinterpret_cast", "requires", "static_assert", "static_cast", "template",
         "this", "thread_local", "throw", "true", "try", "typeid", "typename", "using", "virtual",
         "wchar_t", "xor", "xor_eq",
-        // macros of the C library, and of compilers
+        // macros of the C library and of compilers
         "assert", "errno", "offsetof", "stderr", "stdin", "stdout", "va_arg", "va_end", "va_start",
         "EOF", "NULL", "linux", "unix",
         // functions that generated functions call
@@ -111,7 +111,7 @@ std::string cFileName(const CFileNames& names, const std::string& what) {
     return s + what;
 }
 
-// Returns "text" with escapes for all bytes.
+// Returns the bytes as a C string literal, with escape sequences where necessary.
 static std::string cString(const std::string& bytes) {
     std::string s = "\"";
     for (char c : bytes) {

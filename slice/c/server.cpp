@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// server: dispatch: from requests to servants.
+// server: generates the dispatch functions, which read requests and call servants.
 
 #include "c/context.h"
 #include <set>
 
 namespace {
 
-// Returns the statement that calls the servant with the dispatch function's variables.
+// Returns the statement that calls the servant with the variables of the dispatch function.
 std::string servantCall(const Declaration& d, const Operation& o) {
     std::string call =
         "status = ice_operations->" + cIdentifier(o.name) + "((" + cName(d) + "Ptr)self";
@@ -86,7 +86,7 @@ void dispatchOperation(Writer& w, const CContext& c, const Declaration& d, const
             for (const Slot& s : outSlots(o, ""))
                 if (s.isOptional)
                     w.line(s.has + " = 0;");
-            if (throwsPreserved(c.unit, o)) // also with the list of slices
+            if (throwsPreserved(c.unit, o)) // with one more parameter, the list of unknown slices
                 w.line("memset(&ex, 0, sizeof ex);");
             if (!o.throws.empty())
                 w.line("ex.type = " + operationName(d, o) + "_none;");
@@ -155,7 +155,8 @@ void interfaceTable(Writer& w, const Declaration& d) {
            v);
 }
 
-// Returns the initialiser of the default table, the application's functions, bases nested.
+// Returns the initialiser of the default table, with the functions of the application; tables of
+// bases are nested.
 std::string defaultOperations(const Declaration& top, const Declaration& d) {
     std::string list;
     for (const Declaration* base : d.bases)

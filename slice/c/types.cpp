@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// types: the mapping, type by type.
+// types: maps each type to C.
 
 #include "c/context.h"
 #include <algorithm>
@@ -14,7 +14,7 @@ bool isNamed(const Type& t, DKind kind) {
     return t.kind == Kind::Named && t.declaration->kind == kind;
 }
 
-// The <word> of Ice_OutputStream_write<word> and Ice_InputStream_read<word>.
+// Returns the <word> in Ice_OutputStream_write<word> and Ice_InputStream_read<word>.
 std::string streamWord(const Type& t) {
     return cType(t).substr(4);
 }
@@ -43,8 +43,8 @@ std::string optionalFormat(const Type& t) {
     return varies || (d.kind == DKind::Dictionary && factsOf(d.key).isVariable) ? "FSIZE" : "VSIZE";
 }
 
-// The expression of the size before an optional of format VSIZE; empty if the value begins with its
-// size.
+// Returns the expression for the size that precedes an optional value with format VSIZE; empty if
+// the value itself begins with its size.
 std::string sizeBefore(const Slot& s) {
     const Type& t = *s.type;
     if (optionalFormat(t) != "VSIZE" || t.kind == Kind::String)
@@ -110,7 +110,7 @@ std::string readStatement(const Type& t, const std::string& value, const std::st
     return value + " = Ice_InputStream_read" + streamWord(t) + "(is);";
 }
 
-// Sorts slots: required ones in order, then the optional ones by tag.
+// Sorts slots: the required ones in order, then the optional ones by tag.
 std::vector<Slot> wireOrder(std::vector<Slot> slots) {
     std::stable_sort(slots.begin(), slots.end(), [](const Slot& a, const Slot& b) {
         if (a.isOptional != b.isOptional)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// ast: names and relations of declarations.
+// ast: computes names and relations of declarations.
 
 #include "front/ast.h"
 #include <algorithm>
@@ -27,7 +27,8 @@ Declaration::Facts factsOf(const Type& type) {
     using Kind = Type::Kind;
     if (type.kind == Kind::Named)
         return type.declaration->facts;
-    static const int sizes[] = {1, 1, 1, 2, 4, 8, 4, 8, 1, 1, 2, 1, 1}; // indexed by kind
+    // smallest size on the wire, bytes, indexed by kind
+    static const int sizes[] = {1, 1, 1, 2, 4, 8, 4, 8, 1, 1, 2, 1, 1};
     bool isProxy = type.kind == Kind::Proxy;
     Declaration::Facts f;
     f.leastWireSize = sizes[static_cast<int>(type.kind)];
@@ -41,7 +42,7 @@ Declaration::Facts factsOf(const Type& type) {
 void Declaration::complete() {
     auto join = [&](const Type& type) {
         Facts f = factsOf(type);
-        // The bound prevents overflow; no message reaches this size.
+        // The limit prevents an overflow; no message reaches this size.
         facts.leastWireSize = std::min(facts.leastWireSize + f.leastWireSize, 1000000);
         facts.isVariable |= f.isVariable;
         facts.hasClass |= f.hasClass;
@@ -72,7 +73,7 @@ void Declaration::complete() {
         facts.leastWireSize = 1;
         facts.isNumeric = facts.isKey = false;
         break;
-    default: // a class, as a type
+    default: // a class
         facts.hasClass = true;
         facts.isNumeric = false;
     }

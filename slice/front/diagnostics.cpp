@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// diagnostics: printing.
+// diagnostics: prints errors and warnings.
 
 #include "front/ast.h"
 #include <fstream>
 
 void Diagnostics::error(const Location& at, const std::string& text) {
-    // Number of errors of a file that are printed.
+    // prints at most this number of errors for a file
     if (++errors_ <= 100)
         print(at, "error", text);
 }

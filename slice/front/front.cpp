@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// front: runs the steps from text to unit. The last step creates interfaces from the operations of
-// classes, including inherited ones, with the type id of the class, so that a class can be called
-// and served as in Ice's C++11 mapping.
+// front: runs the steps from text to unit. The last step makes classes callable, as in Ice's C++11
+// mapping: for each class with operations it creates an interface, which has these operations (also
+// inherited ones) and the type id of the class.
 
 #include "front/front.h"
 #include "front/parser.h"
@@ -28,9 +28,9 @@ std::unique_ptr<Declaration> interfaceOf(const Declaration& c, const Declaration
     return i;
 }
 
-// Adds, after each class that can be called, an interface with its operations.
+// After each class that can be called, adds an interface with its operations.
 void addClassInterfaces(Unit& unit) {
-    std::map<const Declaration*, const Declaration*> made; // interface by class
+    std::map<const Declaration*, const Declaration*> made; // created interfaces, by class
     std::vector<std::unique_ptr<Declaration>> all;
     for (auto& d : unit.declarations) {
         const Declaration* c = d.get();

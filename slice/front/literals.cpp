@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// literals: numbers by the C library, strings by hand.
+// literals: reads numbers with functions of the C library, and strings with its own code.
 
 #include "front/parser.h"
 #include <cerrno>
@@ -56,7 +56,7 @@ private:
         at.column += static_cast<int>(position_);
         diagnostics_.error(at, text);
     }
-    // Reads up to `most` digits of the base.
+    // Reads up to `most` decimal or hexadecimal digits; sets `count` to their number.
     uint32_t digits(size_t most, bool hex, size_t& count) {
         uint32_t v = 0;
         for (count = 0; count < most && position_ < text_.size(); ++count, ++position_) {
@@ -138,7 +138,7 @@ double floatingValue(const Token& token, Diagnostics& diagnostics) {
         diagnostics.error(token.at, "'" + std::string(token.text) + "' is not a number");
         return 0;
     }
-    if (errno == ERANGE && (v == 0 || std::fabs(v) > 1)) { // a denormal is a number
+    if (errno == ERANGE && (v == 0 || std::fabs(v) > 1)) { // a denormal number is valid
         diagnostics.error(token.at, "number '" + text +
                                         (std::fabs(v) > 1 ? "' is too large" : "' is too small"));
         return 0;

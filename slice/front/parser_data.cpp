@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// parser_data: enums, structs, exceptions, classes, sequences, dictionaries and constants.
+// parser_data: parses enums, structs, exceptions, classes, sequences, dictionaries and constants.
 
 #include "front/parser.h"
 
@@ -102,7 +102,7 @@ void Parser::classDefinition() {
     braces(d, [&] { member(d, true); });
 }
 
-// Parses a data member; in a class, an operation too.
+// Parses a data member; in a class, also an operation.
 void Parser::member(Declaration& d, bool mayBeOptional) {
     size_t start = position_;
     Field f;
@@ -133,7 +133,7 @@ void Parser::member(Declaration& d, bool mayBeOptional) {
         error(begin, "a member cannot be void");
     checkLocal(f.type, d.isLocal, "member '" + f.name + "'", begin);
     checkMember(d, f);
-    // A type that contains itself would be infinite, and so would a traversal.
+    // A type that contains itself would have an infinite size, and traversing it would never end.
     bool containsItself = f.type.declaration == &d && f.type.kind == Type::Kind::Named && !isClass;
     if (containsItself)
         error(f.at, "a " + std::string(kindName(d.kind)) + " cannot contain itself");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// symbols: the rules of Ice 3.7's scanner, and lookup by Slice's scoping rules.
+// symbols: implements the rules of Ice 3.7's scanner for names, and looks names up by Slice's
+// scoping rules.
 
 #include "front/symbols.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// calls: maps operations and events of a hardware interface to words and buffers; checks what is
-// allowed.
+// calls: maps operations and events of a hardware interface to words and buffers, and checks that
+// their types are allowed.
 
 #include "c/context.h"
 #include "hw/generator.h"
@@ -118,7 +118,7 @@ private:
             }
     }
 
-    // void listen(Watcher* watcher): the operations of Watcher are events.
+    // Handles void listen(Watcher* watcher): the operations of Watcher are events.
     void addListener(const Operation& o) {
         const Type& type = o.parameters.front().type;
         if (o.parameters.size() != 1 || o.parameters.front().isOut || !type.declaration ||
@@ -205,7 +205,7 @@ private:
     const Unit& unit_;
     Block& block_;
     Diagnostics& diagnostics_;
-    unsigned offset_ = 0; // bytes of buffers so far
+    unsigned offset_ = 0; // size of all buffers so far, bytes
 };
 
 } // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// proxy: for test benches in C++: the core in a simulated slot, called as an object with the
-// interface's operations.
+// proxy: generates a C++ class for test benches. It calls a core in a simulated slot like an object
+// with the operations of the interface.
 
 #include "c/context.h"
 #include "hw/generator.h"
@@ -58,7 +58,7 @@ void method(Writer& w, const Block& b, const Call& c) {
             });
 }
 
-// Writes the method that returns whether the event was raised, and its values.
+// Writes the method that returns whether an event was raised, and the values of the event.
 void event(Writer& w, const Block& b, const Call& c) {
     std::string parameters, arguments;
     for (const Slot& s : inVariables(*c.operation)) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// registers: the register description that icesoc.regs.generate turns into headers and pages.
+// registers: writes the register description from which icesoc.regs.generate makes headers and
+// pages.
 
 #include "c/context.h"
 #include "hw/generator.h"
@@ -13,7 +14,7 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// Returns the first line of a doc comment, without the end of a C comment in it.
+// Returns the first line of a doc comment, or `otherwise`. Removes the end of a C comment from it.
 std::string firstLine(const std::string& doc, const std::string& otherwise) {
     auto lines = docLines(doc);
     return lines.empty() ? otherwise : lines.front();
@@ -48,7 +49,7 @@ json fieldsOf(const Word& word) {
 
 json registers(const Block& b) {
     json act = json::array(), busy = json::array(), refused = json::array(), list = json::array();
-    std::string reset = "RESET"; // unless an operation has that name
+    std::string reset = "RESET"; // changed below if an operation has this name
     for (const Call& c : b.calls) {
         std::string name = upperCase(c.name);
         std::string what = (c.isEvent ? "the event was taken: " : "begins ") + c.operation->name;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// servant: generates the servant's two files in C90: operations that are answered at once, waited
-// for, or answered later; events.
+// servant: generates the two C90 files of a servant. Its operations are answered immediately, after
+// a wait, or later by a task; it also has events.
 
 #include "c/context.h"
 #include "hw/generator.h"
@@ -64,7 +64,8 @@ std::string nameOf(const Block& b, const Call& c) {
     return operationName(*b.interface, *c.operation);
 }
 
-// M_I_Core_op_begin moves the parameters in and starts the core; M_I_Core_op_end moves results out.
+// Returns the name of the function M_I_Core_op_begin, which writes the parameters and starts the
+// core, or M_I_Core_op_end, which reads the results.
 std::string part(const Block& b, const Call& c, const char* which) {
     return coreType(b) + "_" + cOperation(c.operation->name) + "_" + which;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// words: packs scalars into words, and words into the slot.
+// words: packs scalars into words, and assigns words to addresses in the slot.
 
 #include "c/context.h"
 #include "hw/generator.h"
@@ -47,7 +47,8 @@ struct Layout {
     unsigned size, alignment;
 };
 
-// Size 0: not laid out alike by all compilers (an enum's size is the compiler's choice).
+// Returns the layout of a type. Size 0 means that compilers differ in the layout, for example
+// because the size of an enum is the compiler's choice.
 Layout layoutOf(const Type& t) {
     if (t.kind == Kind::Named && t.declaration->kind == DKind::Struct) {
         Layout whole{0, 1};
@@ -64,7 +65,7 @@ Layout layoutOf(const Type& t) {
     if (t.kind == Kind::Named)
         return {0, 1};
     unsigned bytes = t.kind == Kind::Bool ? 1 : scalarWidth(t) / 8;
-    return {bytes, t.kind == Kind::Long ? 4 : bytes}; // a long is two words
+    return {bytes, t.kind == Kind::Long ? 4 : bytes}; // a long consists of two words
 }
 
 } // namespace

@@ -47,7 +47,7 @@ const char* kindName(Declaration::Kind kind) {
     return names[static_cast<size_t>(kind)];
 }
 
-// Adds the documentation and the metadata that there are.
+// Adds the documentation and the metadata, if there are any.
 void annotate(json& target, const std::string& doc, const std::vector<std::string>& metadata) {
     std::string text;
     for (const std::string& line : docLines(doc))
@@ -67,7 +67,7 @@ json valueOf(const Literal& value) {
     case Literal::Kind::Floating:
         return value.floating;
     default:
-        return value.text; // a string, or the name of an enumerator
+        return value.text; // text of a string, or name of an enumerator
     }
 }
 

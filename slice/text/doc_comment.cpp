@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// doc_comment: cleans and rewords doc comments.
+// doc_comment: cleans doc comments and replaces their tags by words.
 
 #include "text/doc_comment.h"
 
@@ -11,7 +11,7 @@ void replaceAll(std::string& s, std::string_view from, std::string_view to) {
         s.replace(at, from.size(), to);
 }
 
-// "{@link Name#op}" becomes "Name.op".
+// Replaces "{@link Name#op}" by "Name.op".
 void plainLinks(std::string& s) {
     for (size_t at = 0; (at = s.find("{@link", at)) != std::string::npos;) {
         size_t close = s.find('}', at);
@@ -26,11 +26,11 @@ void plainLinks(std::string& s) {
     }
 }
 
-// "@param name text" becomes "name: text".
+// Replaces "@param name text" by "name: text".
 void plainTag(std::string& s) {
     static const struct {
         std::string_view tag, text;
-        bool isNamed; // a name follows, which gets a colon
+        bool isNamed; // true if a name follows the tag; it gets a colon
     } tags[] = {{"@param ", "", true},
                 {"@return ", "result: ", false},
                 {"@throws ", "throws ", true},
@@ -49,7 +49,8 @@ void plainTag(std::string& s) {
     }
 }
 
-// Takes apart character sequences with a meaning in a comment of C; the last is a backslash in C90.
+// Inserts spaces into character sequences that have a meaning in a C comment; in C90 this includes
+// a backslash at the end of a line.
 void apart(std::string& s) {
     replaceAll(s, "*/", "* /");
     replaceAll(s, "/*", "/ *");

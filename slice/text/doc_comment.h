@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// doc_comment: doc comments of Slice as comments of C.
+// doc_comment: converts doc comments of Slice to C comments.
 
 #pragma once
 
@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-// Returns the text without stars and margins, with @param, @return, @throws and {@link} in words.
+// Returns the lines of the text without stars and margins; @param, @return, @throws and {@link} are
+// replaced by words.
 std::vector<std::string> docLines(const std::string& doc);
-// Writes it, with a line for ["deprecate"]; nothing if there is neither.
+// Writes the comment, with a line for ["deprecate"]; writes nothing if both are absent.
 void writeDoc(Writer& w, const std::string& doc, const std::vector<std::string>& metadata = {});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// writer: fills templates in, indents, breaks lines.
+// writer: fills in templates, indents lines, and breaks long ones.
 
 #include "text/writer.h"
 #include <algorithm>
@@ -19,7 +19,7 @@ std::string Writer::fill(std::string_view text, const Values& values) {
         if (known != values.end()) {
             result += known->second;
             text.remove_prefix(close + 1);
-        } else if (!text.empty()) { // a brace of the text
+        } else if (!text.empty()) { // a brace that is part of the text
             result += '{';
             text.remove_prefix(1);
         }
@@ -43,7 +43,7 @@ void Writer::line(std::string_view text, const Values& values) {
                 break;
             }
         }
-        // A line is not broken within a string.
+        // Never breaks a line within a string.
         if (at == std::string::npos || at >= filled.size() || filled.find('"') < at)
             break;
         out_.append(indent, ' ').append(filled, 0, at - 1) += '\n';

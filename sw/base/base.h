@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * base: integer types of stated width for C90, which has no <stdint.h>.
+ * base: integer types of fixed width for C90, which has no <stdint.h>.
  */
 #pragma once
 
@@ -10,6 +10,6 @@ typedef unsigned int U32;
 typedef signed short S16;
 typedef signed int S32;
 
-/* Fails to compile if integer types have other widths. */
+/* A compiler whose integer types have other widths rejects these lines. */
 typedef char base_check_u16[sizeof(U16) == 2 ? 1 : -1];
 typedef char base_check_u32[sizeof(U32) == 4 ? 1 : -1];

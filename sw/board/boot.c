@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * boot: reason of the start, checksum of the image, record of faults.
+ * boot: determines the reason of the start, checks the image's checksum, and records faults.
  */
 #include "boot.h"
 #include "board.h"
@@ -11,7 +11,8 @@
 
 #define MAGIC 0x1CE50C01UL
 
-extern U32 image_begin[], image_end[]; /* from firmware.ld; the checksum is the word at image_end */
+/* symbols from firmware.ld; the checksum is the word at image_end */
+extern U32 image_begin[], image_end[];
 
 Boot_Record boot_record __attribute__((section(".noinit")));
 static Boot_Reason reason;
@@ -64,7 +65,7 @@ void Boot_fail(Boot_Reason why, U32 pc, U32 lr, U32 address) {
     boot_record.lr = lr;
     boot_record.address = address;
     boot_record.status = SCB_CFSR;
-    __asm__ volatile("dsb"); /* the record is in memory before the reset */
+    __asm__ volatile("dsb"); /* the record must be in memory before the reset */
     SCB_AIRCR = SCB_AIRCR_RESET;
     for (;;)
         ;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * own_kernel: implements the board's functions for sw/os.
+ * own_kernel: implements the functions of the board that depend on the kernel, for sw/os.
  */
 #include "board.h"
 #include "boot.h"

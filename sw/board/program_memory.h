@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * program_memory: symbols that firmware.ld places, and the first step of a program, which gives its
- * variables their values.
+ * program_memory: symbols that firmware.ld defines, and the first step of a program, which
+ * initialises its variables.
  */
 #pragma once
 

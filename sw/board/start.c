@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * start: vectors, what runs before main, fault handlers.
+ * start: vector table, code that runs before main, fault handlers.
  */
 #include "board.h"
 #include "boot.h"
@@ -14,8 +14,8 @@ void Reset_Handler(void);
 void Fault_Handler(void);
 void Fault_entered(const U32* frame, U32 number);
 
-/* Calls the handler of a fault with the frame's address: bit 2 of EXC_RETURN selects the stack in
- * use. */
+/* Calls the handler of a fault with the address of the exception frame; bit 2 of EXC_RETURN selects
+ * the stack. */
 void __attribute__((naked)) Fault_Handler(void) {
     __asm__ volatile("tst lr, #4\n\t"
                      "ite eq\n\t"
@@ -41,7 +41,7 @@ __attribute__((section(".vectors"), used)) static const Vector vectors[16 + 7] =
     Reset_Handler,
     Fault_Handler, /* NMI */
     Fault_Handler, /* HardFault */
-    Fault_Handler, /* MemManage: the MPU guards the ends of the stacks */
+    Fault_Handler, /* MemManage: a stack overflow, because the MPU guards the ends of the stacks */
     Fault_Handler, /* BusFault */
     Fault_Handler, /* UsageFault */
     0,
@@ -53,7 +53,7 @@ __attribute__((section(".vectors"), used)) static const Vector vectors[16 + 7] =
     0,
     PendSV_Handler,
     SysTick_Handler,
-    Fault_Handler, /* interrupts 0..5 are never enabled */
+    Fault_Handler, /* first of interrupts 0 to 5, which are never enabled */
     Fault_Handler,
     Fault_Handler,
     Fault_Handler,

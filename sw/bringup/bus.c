@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * bus: accesses, and the tests of registers, writes and interrupt.
+ * bus: accesses to the bus, and the tests of registers, writes, interrupt and modem.
  */
 #include "bus.h"
 #include "bringup.h"
@@ -16,7 +16,7 @@
 #define BCR(bank) REG(0xA0000000UL + 8UL * (bank))
 #define BTR(bank) REG(0xA0000004UL + 8UL * (bank))
 #define BWTR(bank) REG(0xA0000104UL + 8UL * (bank))
-#define BCR_ON 0x1091UL /* enabled, 16 bits, bit 7, writes allowed */
+#define BCR_ON 0x1091UL /* enabled, 16 bits wide, reserved bit 7 set, writes allowed */
 #define BCR_EXTMOD (1UL << 14)
 #define BCR_ASYNCWAIT (1UL << 15)
 #define BUSTURN (1UL << 16)
@@ -144,7 +144,8 @@ void Bus_testData(void) {
     }
     reportBits(LINE_D0, 16, (wrong | wrong >> 16) & 0xFFFFU, "wrong",
                "a bit of a register is not read as it was written");
-    /* Address lines beyond the slots: an error each, and 0. */
+    /* An access to an address beyond the slots must read 0 and report an error; this tests each of
+     * these address lines. */
     wrong = 0;
     for (i = 11; i < 25U; ++i) {
         Bus_write(MAP_SLOT_SYSTEM, SYSTEM_EVENT, SYSTEM_EVENT_BUS_ERROR_MASK);
@@ -189,7 +190,8 @@ void Bus_testInterrupt(void) {
 
 /* ---- modem ---- */
 
-#define SETUP_LIMIT_MS 30000UL /* three rates, with two guard times each */
+/* longest set-up of the modem, ms: three rates with two guard times each */
+#define SETUP_LIMIT_MS 30000UL
 #define POLL_US 1000U
 
 void Bus_testModem(void) {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * console: text on USART 1, and the lines of a report.
+ * console: writes text to USART 1, and the lines of a report.
  */
 #include "console.h"
 #include "stm32f2.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * lines: pins by hand, and the frames to the tester in the FPGA.
+ * lines: sets and reads single pins, and exchanges frames with the tester in the FPGA.
  */
 #include "lines.h"
 #include "bringup_pins.h"
@@ -15,7 +15,8 @@
 #define EARLY_AT (PINS_AT + FPGA_PINS)
 #define ANSWER_BITS (EARLY_AT + 5U)
 #define AF_FSMC 12UL
-#define HALF_BIT 36U /* HCLK cycles: 300 ns, seven clocks of an oscillator of 25 MHz */
+/* half a bit, HCLK cycles: 300 ns, which are seven clocks of an oscillator of 25 MHz */
+#define HALF_BIT 36U
 
 typedef struct Line {
     const char* name;
@@ -25,7 +26,7 @@ typedef struct Line {
 #define ROW(name, place) {#name, place},
 static const Line lines[LINES] = {BRINGUP_LINES(ROW)};
 
-/* Clock, data and answer of each channel. */
+/* Lines for clock, data and answer of each channel. */
 static const U8 channels[CHANNELS][3] = {{LINE_NE1, LINE_NE2, LINE_NWAIT},
                                          {LINE_NOE, LINE_NWE, LINE_IRQ},
                                          {LINE_NBL0, LINE_NBL1, LINE_D0}};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * timing: clock tree and SysTick.
+ * timing: configures the clock tree and SysTick.
  */
 #include "timing.h"
 #include "board_pins.h"
@@ -8,7 +8,7 @@
 
 #define CYCLES_MASK 0xFFFFFFUL
 #define HSI_HZ 16000000UL
-#define READY_POLLS 200000UL /* a crystal starts within some ms */
+#define READY_POLLS 200000UL /* enough for a crystal, which starts within some ms */
 
 static Timing_Clock now;
 
@@ -32,16 +32,16 @@ void Timing_wait(U32 us) {
     Timing_pause(now.hclkHz / 1000000U * us);
 }
 
-/* Makes the PLL run at 2 * hz from an input of 1 MHz, and HCLK at hz. */
+/* Sets the PLL to 2 * hz, from an input of 1 MHz, and HCLK to hz. */
 static void startPll(U32 hz) {
     U32 mhz = hz / 1000000UL, source = now.isCrystal ? BOARD_HSE_HZ : HSI_HZ;
-    RCC_CFGR &= ~3UL; /* from HSI while the PLL changes */
+    RCC_CFGR &= ~3UL; /* runs from HSI while the PLL changes */
     while (RCC_CFGR & RCC_CFGR_SWS_MASK)
         ;
     RCC_CR &= ~RCC_CR_PLLON;
     while (RCC_CR & RCC_CR_PLLRDY)
         ;
-    /* The PLL's own rate is 192 to 432 MHz: divided by 2, 4, 6 or 8. */
+    /* The PLL's oscillator needs 192 to 432 MHz; its output is divided by 2, 4, 6 or 8. */
     RCC_PLLCFGR = source / 1000000UL |
                   (mhz >= 96UL   ? mhz * 2UL << 6
                    : mhz >= 48UL ? mhz * 4UL << 6 | 1UL << 16

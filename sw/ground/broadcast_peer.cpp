@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// broadcast_peer: one call at a time, from programs to the packet line.
+// broadcast_peer: passes calls from programs to the packet line, one at a time.
 
 #include "broadcast_peer.h"
 
@@ -11,7 +11,8 @@ namespace XBeeAT {
 BroadcastPeer::BroadcastPeer(Host& host, const LinkKeys& keys)
     : Peer(host, everybody, keys), broadcast_(host.settings, keys_) {}
 
-// A program that closes waits until its calls are on the air.
+// Handles the next message of a program. If the program closes the connection, this waits until its
+// calls have been sent.
 bool BroadcastPeer::send(int channel, U32 now) {
     ProgramConnection& program = programs_[channel];
     if (program.kind() == ProgramConnection::Kind::Twoway) {
@@ -35,7 +36,7 @@ bool BroadcastPeer::send(int channel, U32 now) {
     return false;
 }
 
-// Sends the copy that is due. Programs may send again after the last copy.
+// Sends the next copy of a call if it is due. Programs may send again after the last copy.
 U32 BroadcastPeer::pollWay(U32 now) {
     placePrograms(now);
     openWanted(now);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// broadcast_peer: addresses all vehicles at once, with one-way calls and without a link.
+// broadcast_peer: sends one-way calls to all vehicles at once, without a link.
 
 #pragma once
 

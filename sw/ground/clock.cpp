@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// clock: the machine clock, and loading of another one.
+// clock: implements the machine clock, and loads another clock.
 
 #include "clock.h"
 
@@ -31,7 +31,7 @@ int SystemClock::wait(pollfd* fds, nfds_t count, uint32_t us) {
     return ppoll(fds, count, us == forever ? nullptr : &limit, nullptr);
 }
 
-// The library stays loaded: the clock's code is in it.
+// Loads the clock. The library is never unloaded, because it contains the code of the clock.
 std::unique_ptr<Clock> makeClock() {
     const char* variable = std::getenv("XBEEAT_CLOCK");
     const std::string wanted = variable ? variable : "";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// key_file: opens, checks and parses.
+// key_file: opens, checks and parses a key file.
 
 #include "key_file.h"
 
@@ -21,7 +21,7 @@ namespace {
 
 constexpr int anyVehicle = -1;
 constexpr size_t mostBytes = 65536;
-constexpr int pipeMs = 10000; // time-out for the first bytes of a pipe
+constexpr int pipeMs = 10000; // time-out for the first bytes from a pipe, ms
 const char* const hexadecimal = "0123456789abcdefABCDEF";
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why) {
@@ -52,7 +52,7 @@ LinkKey keyOf(const std::string& digits) {
     return key;
 }
 
-// Returns the address in a word; negative if it is not one.
+// Returns the address in a word; a negative number if the word is not an address.
 int addressOf(const std::string& word) {
     const bool isNumber = word.rfind("0x", 0) == 0 && word.size() > 2 && word.size() <= 6 &&
                           word.find_first_not_of(hexadecimal, 2) == std::string::npos;
@@ -62,7 +62,8 @@ int addressOf(const std::string& word) {
 } // namespace
 
 std::string readSecret(const std::string& path) {
-    const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC); // a pipe must not block
+    // opening a pipe without a writer must not block
+    const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (fd < 0)
         refuse(path, std::string(": ") + std::strerror(errno) +
                          "; (umask 077; openssl rand -hex 16 >FILE) makes one");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// program_connection: Ice messages between a socket and the link.
+// program_connection: transfers Ice messages between a socket and the link.
 
 #include "program_connection.h"
 #include "ice_header.h"
@@ -15,8 +15,10 @@ namespace {
 
 constexpr size_t bufferBytes = 4096;
 constexpr U32 noBeat = 0xFFFFFFFFu;
-constexpr U32 heartbeatUs = 5000000; // below any sensible Ice.ACM.Timeout
-constexpr U32 signUs = 10000000;     // Ice 3.8 closes a connection without traffic after 60 s
+// interval of heartbeats during a call, us; shorter than any sensible Ice.ACM.Timeout
+constexpr U32 heartbeatUs = 5000000;
+// interval of heartbeats without a call, us; Ice 3.8 closes a connection without traffic after 60 s
+constexpr U32 signUs = 10000000;
 constexpr U32 leavingUs = 10000000;
 
 bool isOver(ssize_t count) {
@@ -93,8 +95,8 @@ void ProgramConnection::read(U32 nowUs) {
     if (count > 0)
         out_.insert(out_.end(), bytes, bytes + count);
     ended_ = isOver(count);
-    if (out_.size() >= IceHeader::bytes && out_.size() >= messageSize()) { // a partial message is
-                                                                           // not activity
+    // a partial message does not count as activity
+    if (out_.size() >= IceHeader::bytes && out_.size() >= messageSize()) {
         if (!owesSign_)
             owesSince_ = nowUs;
         owesSign_ = true;
@@ -179,7 +181,7 @@ U32 ProgramConnection::beat(U32 nowUs) {
     if (since < limit)
         return limit - since;
     pollfd end{fd_, POLLRDHUP, 0};
-    if (in_.empty() && poll(&end, 1, 0) == 0) { // it can still write
+    if (in_.empty() && poll(&end, 1, 0) == 0) { // the program has not closed its end
         const U32 activeAt = activeAt_;
         (void)giveHead(IceHeader::Validate, nowUs);
         activeAt_ = activeAt;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// vehicle_peer: one vehicle, by a link with it.
+// vehicle_peer: the connection to one vehicle, over a link.
 
 #pragma once
 
@@ -54,8 +54,10 @@ private:
     static void onOutcome(void* context, int channel, U32 isCall, Link_Outcome outcome);
     static void onWritable(void* context);
 
-    unsigned lost_ = 0;                   // unconfirmed calls of disconnected programs
-    std::deque<U32> late_[LINK_CHANNELS]; // times at which the messages in the link will be late
+    // number of unconfirmed calls of programs that have disconnected
+    unsigned lost_ = 0;
+    // times at which the messages that are in the link will be late, by channel
+    std::deque<U32> late_[LINK_CHANNELS];
     Yielding yielding_;
     std::unique_ptr<Link> link_;
     std::unique_ptr<Link_Buffers> buffers_; // buffers of link_

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * hw_listener: has two places, so that neither task waits for the other.
+ * hw_listener: keeps two proxies, so that neither task must wait for the other.
  */
 #include "hw_listener.h"
 
@@ -14,8 +14,10 @@ void Hw_Listener_set(Hw_Listener* self, const Ice_ObjectPrx* proxy, const Ice_Cu
     U8 next = (U8)(self->count + 1U);
     Ice_ObjectPrx* stored = self->proxies + (next & 1U);
     int connection = 0;
-    U16 generation = 0;                                              /* not a fixed proxy */
-    if (!Ice_ObjectPrx_isNull(proxy) && proxy->endpointsSize == 2 && /* no endpoints, no adapter */
+    /* 0: the proxy is not fixed to a connection */
+    U16 generation = 0;
+    /* the proxy has neither endpoints nor an adapter */
+    if (!Ice_ObjectPrx_isNull(proxy) && proxy->endpointsSize == 2 &&
         Ice_Connection_createProxy(current->communicator, current->connection, "listener",
                                    stored) == ICE_OK) {
         connection = stored->connection;

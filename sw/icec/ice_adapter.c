@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_adapter: object adapters: find the servant of an identity.
+ * ice_adapter: object adapters, which find the servant of an identity.
  */
 #include "ice_private.h"
 
@@ -37,13 +37,13 @@ Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr
         ic->adapters = adapter;
     }
     for (t = 0; ICE_TRANSPORTS > 1 && t < ic->transportCount && status != ICE_OK; ++t)
-        if (adapter->transports >> t & 1) /* endpoints of this adapter end with it */
+        if (adapter->transports >> t & 1) /* the endpoints of a failed adapter stop listening */
             (void)ic->transports[t].endpoint->listen(ic->transports[t].context, 0);
     icec_unlock(ic, ICE_LOCK_STATE);
     return status;
 }
 
-/* Returns the index of the entry with exactly this identity and facet; -1 if none. */
+/* Returns the index of the entry with exactly this identity and facet, or -1. */
 static int indexOf(Ice_ObjectAdapterPtr adapter, const Ice_Identity* id, const Ice_String* facet) {
     int s;
     for (s = 0; s < ICE_SERVANTS; ++s)

@@ -4,7 +4,7 @@
  */
 #include "ice_message.h"
 
-#define MODE 1 /* nonmutating, as Ice's peers send them */
+#define MODE 1 /* nonmutating, the mode that Ice itself uses for these operations */
 
 Ice_Status Ice_ObjectPrx_ice_ping(Ice_ObjectPrxPtr self) {
     Ice_InputStreamPtr is;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_communicator: the communicator: its parts, its end.
+ * ice_communicator: initialises, shuts down and destroys the communicator.
  */
 #include "ice_private.h"
 
@@ -97,5 +97,5 @@ void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection) {
     (void)icec_sendHead(ic, connection, ICEC_CLOSE);
     icec_closeConnection(ic, connection);
     icec_loseConnection(ic, connection, ICE_CONNECTION_LOST);
-    icec_wake(ic); /* the receiver of the failed call may have to wake */
+    icec_wake(ic); /* the task that receives for the failed call may have to wake up */
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_escape: escape sequences of identities, facets and adapters' ids in proxy strings, as in Ice.
+ * ice_escape: reads escape sequences in the identities, facets and adapter ids of proxy strings, as
+ * Ice does.
  */
 #include "ice_private.h"
 
@@ -12,7 +13,7 @@ static Ice_Byte isControl(char c) {
     return (U8)c < 32 || c == 127;
 }
 
-/* Reads up to `most` digits of the base 8 or 16. Returns how many there were. */
+/* Reads up to `most` digits of base 8 or 16 as `value`. Returns the number of digits. */
 static int digits(Ice_String* text, int most, U32 base, U32* value) {
     int count = 0;
     for (*value = 0; count < most && text->size > 0; ++count, ++text->data, --text->size) {
@@ -36,7 +37,7 @@ static void writeUtf8(Ice_OutputStreamPtr os, U32 c) {
         Ice_OutputStream_writeByte(os, (Ice_Byte)(0x80U | (c >> 6 * i & 0x3FU)));
 }
 
-/* Resolves the escape after a backslash. Returns 0 if it is malformed. */
+/* Reads the escape sequence after a backslash. Returns 0 if it is malformed. */
 static int unescapeOne(Ice_String* text, char special, Ice_OutputStreamPtr os) {
     const char c = *text->data;
     const char* known = c ? strchr(letters, c) : 0;
@@ -63,7 +64,7 @@ static int unescapeOne(Ice_String* text, char special, Ice_OutputStreamPtr os) {
         return 1;
     }
     if (!strchr("\\'\"?", c) && c != special)
-        Ice_OutputStream_writeByte(os, '\\'); /* unknown ones are kept */
+        Ice_OutputStream_writeByte(os, '\\'); /* an unknown escape sequence is kept unchanged */
     Ice_OutputStream_writeByte(os, (Ice_Byte)c);
     return !isControl(c);
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_message: IceP's messages as bytes, and the function that reads an operation's parameters.
+ * ice_message: writes and reads the heads of IceP messages, and the parameters of an operation.
  */
 #include "ice_message.h"
 #include "ice_operation.h"
@@ -10,7 +10,8 @@
 #define TYPE_AT 8
 #define SIZE_AT 10
 
-/* "IceP", versions of protocol and encoding, type, compression, size. */
+/* Template of a message head: "IceP", versions of protocol and encoding, type, compression,
+ * size. */
 static const Ice_Byte head[ICEC_HEADER] = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 0, 0, ICEC_HEADER};
 
 void icec_beginMessage(Ice_OutputStreamPtr os, Ice_Byte type) {
@@ -28,7 +29,8 @@ Ice_Int icec_readHead(Ice_InputStreamPtr is) {
     const Ice_Byte* begin = Ice_InputStream_readBlob(is, TYPE_AT);
     if (!begin || memcmp(begin, head, TYPE_AT) != 0)
         return -1;
-    type = Ice_InputStream_readShort(is) & 0xFEFF; /* compression 0 and 1: not compressed */
+    /* compression 0 and 1 both mean that the message is not compressed */
+    type = Ice_InputStream_readShort(is) & 0xFEFF;
     return Ice_InputStream_readInt(is) == is->size ? type : -1;
 }
 
@@ -76,7 +78,7 @@ void icec_skipStrings(Ice_InputStreamPtr is, U32 count) {
 
 void icec_beginReply(Ice_OutputStreamPtr os, Ice_Int id) {
     Ice_OutputStream_writeInt(os, id);
-    os->size = ICEC_REPLY_BODY; /* the status is written last */
+    os->size = ICEC_REPLY_BODY; /* leaves room for the status, which is written last */
     (void)icec_beginEncapsulation(os);
 }
 

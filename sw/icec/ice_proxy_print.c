@@ -16,8 +16,7 @@ void icec_putNumber(Ice_OutputStreamPtr os, U32 value) {
     Ice_OutputStream_writeByte(os, (Ice_Byte)('0' + value % 10));
 }
 
-/* Escapes characters with a special meaning; UTF-8 stays. `special`: one more character, or 0.
- */
+/* Escapes special characters but not UTF-8. `special`: one more character to escape, or 0. */
 static void escape(Ice_OutputStreamPtr os, Ice_String text, char special) {
     static const char from[] = "\a\b\f\n\r\t\v\\'\"", to[] = "abfnrtv\\'\"";
     Ice_Int i;
@@ -39,7 +38,7 @@ static void escape(Ice_OutputStreamPtr os, Ice_String text, char special) {
     }
 }
 
-/* Quotes the text that begins at `begin`, if necessary. */
+/* Puts the text that begins at `begin` in quotes if necessary. */
 static void quote(Ice_OutputStreamPtr os, Ice_Int begin) {
     Ice_Int i;
     for (i = begin; i < os->size; ++i)

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_status: statuses as text, with the name of Ice's exception if there is one. */
+ * ice_status: converts statuses to text, with the name of Ice's exception if there is one.
+ */
 #include "ice_port.h"
 #include "ice_value.h"
 
@@ -27,7 +28,8 @@ const char* Ice_Status_text(Ice_Status status) {
     return (unsigned)status < sizeof texts / sizeof texts[0] ? texts[status] : "unknown status";
 }
 
-/* Name and value of a macro: the name is taken before the argument is expanded. */
+/* VALUE yields the value of a macro as text. The name must be passed separately, because it is lost
+ * when the macro is expanded. */
 #define VALUE(x) #x
 #define NAMED(exception, name, value) exception ": over " name " (" VALUE(value) ")"
 #define OVER(macro) NAMED("::Ice::MarshalException", #macro, macro)

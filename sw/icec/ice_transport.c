@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_transport: transports, locks, time, connections.
+ * ice_transport: manages transports, locks, time and connections.
  */
 #include "ice_private.h"
 
 #include <string.h>
 
-/* A connection's transport, and its number there. */
+/* OF returns the transport of a connection, OWN its number within that transport. */
 #define OF(ic, connection) ((ic)->transports + (ICE_TRANSPORTS == 1 ? 0 : NUMBER(connection, /)))
 #define OWN(connection) (ICE_TRANSPORTS == 1 ? (connection) : NUMBER(connection, %))
 #define NUMBER(connection, part) ((connection)part ICE_CONNECTIONS)
@@ -43,7 +43,7 @@ const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text, int* transp
     name.size = (Ice_Int)strcspn(text, ICEC_SPACES ":");
     for (t = 0; t < ICEC_TRANSPORTS(ic); ++t)
         if (Ice_String_is(&name, ic->transports[t].endpoint->name) ||
-            Ice_String_is(&name, "default")) { /* the first one */
+            Ice_String_is(&name, "default")) { /* "default" selects the first transport */
             *transport = t;
             return text + name.size;
         }

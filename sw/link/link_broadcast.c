@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_broadcast: encrypts and authenticates with Ascon-AEAD128; the nonce is the packet's head. */
+ * link_broadcast: encrypts and authenticates a packet with Ascon-AEAD128; the packet's head is the
+ * nonce.
+ */
 #include "link_broadcast.h"
 
 #include "ascon.h"
@@ -9,7 +11,8 @@
 
 static void crypt(U8* packet, U32 size, const U8* key, int isDecryption, U8* tag) {
     U8 nonce[ASCON_NONCE_BYTES];
-    memset(nonce, 0xFF, sizeof nonce); /* nonces of a link end differently */
+    /* pads the nonce with 0xFF, which the nonces of a link never end with */
+    memset(nonce, 0xFF, sizeof nonce);
     memcpy(nonce, packet, LINK_BROADCAST_HEAD);
     link_cipher(key, nonce, packet + LINK_BROADCAST_HEAD, size, isDecryption, tag);
 }

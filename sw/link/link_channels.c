@@ -16,8 +16,8 @@ int link_onPeersChannel(Link_Channels* channels, U32 channel, U32 isOpen) {
     U32 bit = 1U << channel;
     if (channels->closing & bit) {
         if (!isOpen)
-            channels->closing = (U8)(channels->closing & ~bit); /* reply to the closing by this
-                                                                 * side */
+            /* the peer confirms that this side has closed the channel */
+            channels->closing = (U8)(channels->closing & ~bit);
         return 0;
     }
     if (isOpen == LINK_IS_OPEN(channels, channel))

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_codec_clear: protects frames by a CRC.
+ * link_codec_clear: protects frames with a CRC.
  */
 #include "link_codec_clear.h"
 

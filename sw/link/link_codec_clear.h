@@ -6,5 +6,5 @@
 
 #include "link_codec.h"
 
-/* Ends each frame with a CRC that the session's value seeds. */
+/* Codec that ends each frame with a CRC; a value of the session is the CRC's seed. */
 extern const Link_Codec link_codecClear;

@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_env: the surroundings of a link, which all its parts read.
+ * link_env: values that all parts of a link read.
  */
 #pragma once
 
 #include "link_codec.h"
 #include "link_port.h"
 
-/* link.c alone writes these fields; each count of the statistics is written by one part. */
+/* Only link.c writes these fields. Each count in the statistics is written by exactly one part. */
 typedef struct Link_Env {
-    U32 now; /* time of the present call, us */
+    U32 now; /* time of the current call, us */
     const Link_Port* port;
     void* context;
     const Link_Codec* codec;

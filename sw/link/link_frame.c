@@ -4,8 +4,8 @@
  */
 #include "link_frame.h"
 
-/* Computes CRC-16/CCITT: polynomial 0x1021, MSB first. `x ^= x >> 4` replaces Sarwate's table by
- * shifts. */
+/* Computes CRC-16/CCITT: polynomial 0x1021, MSB first. `x ^= x >> 4` and three shifts replace the
+ * usual table of 256 values. */
 U32 link_crc(U32 key, const U8* bytes, U32 size) {
     U32 crc = key & 0xFFFFU;
     while (size--) {
@@ -28,8 +28,8 @@ U32 link_seal(U8* frame, U32 header, U32 key) {
     return size;
 }
 
-/* Computes Fletcher's sums modulo 256. Unlike a second CRC they are independent of the CRC of
- * fragments. */
+/* Computes Fletcher's sums modulo 256. A second CRC would depend on the CRC of the fragments; these
+ * sums do not. */
 U32 link_sum(U32 sums, const U8* bytes, U32 size) {
     U32 plain = sums & 0xFFU;
     U32 second = sums >> 8;
@@ -69,6 +69,6 @@ U32 link_epochBits(const U8* frame, U32 key) {
 
 int link_isOfEpoch(const U8* frame, U32 key) {
     U32 bits = link_epochBits(frame, key);
-    U32 whole = LINK_FIRST | LINK_LAST; /* also the bits of PIGGYBACK's kinds */
+    U32 whole = LINK_FIRST | LINK_LAST; /* kinds of PIGGYBACK also use these bits */
     return bits == 0 || (bits == LINK_READY && (frame[2] & whole) == whole);
 }

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_handshake_keyed: the handshake under a key.
+ * link_handshake_keyed: the handshake of links with a key.
  */
 #pragma once
 
 #include "link_handshake.h"
 
-/* Only a peer that has the key, and lives now, makes a session. */
+/* Rules of the handshake: only a peer that has the key, and answers now, can start a session. */
 extern const Link_HandshakeRules link_keyedHandshake;

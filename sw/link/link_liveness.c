@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_liveness: notes signs of life, and asks for them.
+ * link_liveness: records signs of life of the peer, and asks for them with PING.
  */
 #include "link_liveness.h"
 
@@ -20,7 +20,9 @@ void link_noteFrame(Link_Liveness* liveness) {
     if (!liveness->pacing->env.codec->isAuthenticated)
         liveness->heardAt = liveness->provenAt = now;
     if (!LINK_BEFORE(now, liveness->pingAt))
-        liveness->pingAt = now; /* an old value would in time read as a future time */
+        /* keeps the time recent; after half the range of the clock, an old time would look like a
+         * future time */
+        liveness->pingAt = now;
 }
 
 void link_onPing(Link_Liveness* liveness, const U8* frame) {
@@ -31,7 +33,8 @@ void link_onPing(Link_Liveness* liveness, const U8* frame) {
         if (LINK_BEFORE(liveness->pingsAnswered, number) &&
             !LINK_BEFORE(liveness->pingsSent, number)) {
             liveness->pingsAnswered = liveness->pingsSent;
-            liveness->provenAt = liveness->askedAt; /* the reply may have been delayed */
+            /* not the current time, because the reply may have been delayed */
+            liveness->provenAt = liveness->askedAt;
             LINK_NOTE_ALIVE(liveness);
         }
         return;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_core: scheduler, time and interrupts of the kernel. Preemptive, fixed priorities.
+ * os_core: scheduler, time and interrupts of the kernel, which is preemptive with fixed priorities.
  */
 #include "os_core.h"
 
@@ -24,7 +24,8 @@ int OS_PriorityTaken(U8 priority) {
 }
 
 U8 OS_Set_first(const OS_Set* set) {
-    /* A bit times a de Bruijn sequence: its five upper bits differ for each of the 32. */
+    /* Finds the lowest set bit with a de Bruijn sequence: the product's five upper bits differ for
+     * each of the 32 bits. */
     static const U8 place[32] = {0,  1,  28, 2,  29, 14, 24, 3, 30, 22, 20, 15, 25, 17, 4,  8,
                                  31, 27, 13, 23, 21, 19, 16, 7, 26, 12, 18, 6,  11, 5,  10, 9};
     U32 n = set->word[0] ? 0U : 32U, bits = set->word[n >> 5];
@@ -33,7 +34,7 @@ U8 OS_Set_first(const OS_Set* set) {
     return (U8)(n + place[((bits & (0U - bits)) * 0x077CB531U) >> 27]);
 }
 
-/* Switches to the highest ready task; interrupts are disabled. */
+/* Switches to the ready task with the highest priority; interrupts are disabled. */
 static void switchToFirst(void) {
     OS_Task* from = os_kernel.current;
     OS_Task* to = os_kernel.byPriority[OS_Set_first(&os_kernel.ready)];
@@ -100,7 +101,7 @@ INT32U OSTimeGet(void) {
     return ticks;
 }
 
-/* Makes a task ready when its delay or time-out has run out, whatever it waited for. */
+/* Makes a task ready whose delay or time-out has expired, and ends its wait for an event. */
 static void expire(OS_Task* task) {
     if (task->event) {
         OS_Set_remove(&task->event->waiting, task->priority);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_task: creation of tasks, and the use of their stacks.
+ * os_task: creates tasks, and measures the use of their stacks.
  */
 #include "os_core.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * boot: starts a program that is one main task and the radio task.
+ * boot: starts a program that consists of one main task and the radio task.
  */
 #include "paper.h"
 #include "uav.h"
@@ -15,7 +15,7 @@
 static OS_STK stack[STACK_WORDS], radioStack[STACK_WORDS];
 static U8 irqEnabled;
 
-/* The program's servant polls the core and needs no interrupt. */
+/* The servant of the program polls the core, so no interrupt is needed. */
 void UAV_coresInterrupt(const U32 lines[2]) {
     (void)lines;
 }

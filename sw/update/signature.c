@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * signature: calls libsodium; the host links Debian's library, the chip the same sources.
+ * signature: calls libsodium. The host links Debian's library; the firmware is built from the same
+ * sources.
  */
 #include "signature.h"
 

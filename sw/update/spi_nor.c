@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * spi_nor: each call is one transaction; the bus is free after it.
+ * spi_nor: each function call is one transaction; the bus is free afterwards.
  */
 #include "spi_nor.h"
 
@@ -11,9 +11,9 @@
 #define IDENTIFY 0x9FU
 #define BLOCK_ERASE 0xD8U
 #define BUSY 1U
-#define PAUSES 10000U /* far longer than an erase takes */
+#define PAUSES 10000U /* limit of pauses; takes far longer than an erase */
 
-/* Begins a transaction with an instruction and, if `hasOffset`, an address. */
+/* Starts a transaction: sends an instruction and, if `hasOffset`, an address. */
 static const SpiNor_Bus* begin(void* context, U32 instruction, U32 offset, int hasOffset) {
     const SpiNor_Bus* bus = (const SpiNor_Bus*)context;
     int shift;

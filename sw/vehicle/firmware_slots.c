@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * firmware_slots: the board's part in updates: slots of the processor's and of the FPGA's flash.
+ * firmware_slots: finds the slots in the flash of the processor and in the flash of the FPGA.
  */
 #include "firmware_slots.h"
 #include "boot.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_backup: words of the board's memory by their place in backup.h.
+ * uav_backup: reads and writes the words of the board's memory whose places backup.h defines.
  */
 #include "uav_backup.h"
 

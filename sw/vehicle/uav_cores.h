@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_cores: the servants of the FPGA's cores, and the task that answers calls which take time.
+ * uav_cores: the servants of the FPGA's cores, and the task that completes calls that take time.
  */
 #pragma once
 
@@ -10,8 +10,10 @@ void UAV_initCores(void);
 void UAV_startCores(Ice_ObjectAdapterPtr adapter);
 void UAV_coresTask(void* argument);
 
-/* Handles interrupts of the cores; `lines`: interrupt lines of slots 0..31 and 32..63. */
+/* Handles interrupts of the cores. `lines`: pending interrupts of slots 0..31 and of slots
+ * 32..63. */
 void UAV_coresInterrupt(const U32 lines[2]);
 
-/* Waits for a processed frame. Returns the number of frames, and the sum of their corners. */
+/* Waits until the vision core has processed a frame. Returns the number of frames so far; sets
+ * `corners` to the sum of their corners. */
 U32 UAV_waitFrame(U32* corners);

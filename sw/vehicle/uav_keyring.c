@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_keyring: the servant by which a ground changes its key over the air.
+ * uav_keyring: the servant with which a ground station changes its key over the air.
  */
 #include "uav_keyring.h"
 #include "Autopilot.h"

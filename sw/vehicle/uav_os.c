@@ -1,14 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_os: what IceC and its endpoint need from the operating system: locks, waits and signals.
+ * uav_os: implements locks, waits and signals for IceC and its endpoint with the operating system.
  */
 #include "uav_os.h"
 #include "uav_radio_state.h"
 #include "uav_tasks.h"
 
 static OS_EVENT* endpointEvent;
-static OS_EVENT* callDone[ICE_CALLS + 1]; /* the last one is for tasks that want to receive */
-static OS_EVENT* iceMutex[2];             /* index: ICE_LOCK_STATE and ICE_LOCK_SEND */
+/* one semaphore for each call; the last one is for tasks that wait to receive */
+static OS_EVENT* callDone[ICE_CALLS + 1];
+static OS_EVENT* iceMutex[2]; /* indexed by ICE_LOCK_STATE and ICE_LOCK_SEND */
 
 static void kick(void* context) {
     (void)context;

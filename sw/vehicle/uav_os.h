@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_os: locks, waits and signals of the operating system, for IceC and its endpoint.
+ * uav_os: locks, waits and signals for IceC and its endpoint, implemented with the operating
+ * system.
  */
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// files: whole files, and their hashes.
+// files: reads whole files, and computes hashes of their contents.
 
 #pragma once
 
@@ -19,7 +19,7 @@ inline std::string readFile(const std::filesystem::path& file) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// Returns 16 hexadecimal digits that differ when the contents differ (FNV-1a).
+// Returns a hash of 16 hexadecimal digits (FNV-1a).
 inline std::string hexHash(const std::string& content) {
     uint64_t hash = 14695981039346656037u;
     for (const char c : content)

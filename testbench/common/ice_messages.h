@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// ice_messages: IceP messages, byte by byte as the manual of ZeroC Ice 3.7 describes them.
+// ice_messages: builds IceP messages byte by byte, as the manual of ZeroC Ice 3.7 describes them.
 
 #pragma once
 
@@ -39,7 +39,7 @@ inline void putString(Bytes& m, const std::string& s) {
     m.insert(m.end(), s.begin(), s.end());
 }
 
-// Returns a request's body, starting with the identity.
+// Returns the body of a request, which starts with the identity.
 inline Bytes requestBody(const std::string& object, const std::string& operation, uint8_t minor = 1,
                          const Bytes& parameters = {}, const std::string& facet = "",
                          uint8_t mode = 0) {
@@ -63,7 +63,7 @@ inline Bytes request(uint32_t id, const Bytes& body) {
     return message(IceHeader::Request, m);
 }
 
-// Returns a request; id 0 means oneway.
+// Returns a request; id 0 means one-way.
 inline Bytes request(uint32_t id, const std::string& object, const std::string& operation,
                      const Bytes& parameters, const std::string& facet = "", uint8_t minor = 1) {
     return request(id, requestBody(object, operation, minor, parameters, facet));

@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# join_waves: puts the rows of wave.fst.program.vcd (program_trace.h) into wave.fst, above the
-# RTL's.
-# Usage: join_waves.sh wave.fst      Without one of the files they stay as they are.
+# join_waves: adds the rows of wave.fst.program.vcd (program_trace.h) to wave.fst, above the rows of
+# the RTL.
+# Usage: join_waves.sh wave.fst      If one of the files is missing, nothing is changed.
 set -eu
 wave=$1 program=$1.program.vcd
 [ -s "$wave" ] && [ -s "$program" ] || exit 0

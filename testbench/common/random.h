@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// random: a small generator with the same numbers on every machine (xorshift64*), and the seed of a
-// test.
+// random: a small generator (xorshift64*) that returns the same numbers on every machine, and the
+// seed of a test.
 
 #pragma once
 
@@ -21,9 +21,9 @@ public:
         state_ ^= state_ >> 27;
         return static_cast<uint32_t>((state_ * 0x2545F4914F6CDD1Dull) >> 32);
     }
-    // Returns a number in 0 .. bound-1.
+    // Returns a number from 0 to bound - 1.
     uint32_t below(uint32_t bound) { return static_cast<uint32_t>(uint64_t(next()) * bound >> 32); }
-    // Returns `count` random numbers; all their bits are random.
+    // Returns `count` random items; all bits of an item are random.
     template <class Item> std::vector<Item> items(size_t count) {
         std::vector<Item> list(count);
         for (Item& item : list)
@@ -36,7 +36,7 @@ private:
     uint64_t state_;
 };
 
-// SEED from the environment repeats a run; `fallback` otherwise.
+// Returns the environment variable SEED, which repeats a run, or `fallback` if it is not set.
 inline uint64_t testSeed(uint64_t fallback = 1) {
     const char* seed = std::getenv("SEED");
     return seed && *seed ? std::strtoull(seed, nullptr, 0) : fallback;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// wave_window: the waveform that the environment requests: WAVE=file, WAVE_FROM and WAVE_TO in
-// clocks.
+// wave_window: reads from the environment which waveform to record: WAVE is the file, WAVE_FROM and
+// WAVE_TO are clocks.
 
 #pragma once
 
@@ -9,14 +9,14 @@
 #include <cstdlib>
 #include <string>
 
-// Returns a number from the environment; `otherwise` if the variable is not set.
+// Returns a number from the environment, or `otherwise` if the variable is not set.
 inline uint64_t environmentNumber(const char* variable, uint64_t otherwise) {
     const char* text = std::getenv(variable);
     return text && *text ? std::strtoull(text, nullptr, 0) : otherwise;
 }
 
 struct WaveWindow {
-    std::string file; // empty: no waveform
+    std::string file; // file of the waveform; empty if none is recorded
     uint64_t from = environmentNumber("WAVE_FROM", 0), to = environmentNumber("WAVE_TO", ~0ull);
 
     WaveWindow() {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// bit_band: aliases of single bits of RAM and peripherals, one word per bit (B3.1, TRM 3.7).
+// bit_band: finds the bit that an alias stands for. Each bit of RAM and peripherals has an alias,
+// which is a word (B3.1, TRM 3.7).
 
 #pragma once
 
 #include <cstdint>
 
-// The bit that an alias stands for.
+// The word and bit that an alias accesses.
 struct BitBand {
     static bool isAlias(uint32_t address) {
         return address >> 25 == 0x22000000 >> 25 || address >> 25 == 0x42000000 >> 25;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// cpu_memory: allocation and reading of flash and RAM.
+// cpu_memory: allocates and reads flash and RAM.
 
 #include "cpu_memory.h"
 #include <cstdlib>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// cpu_memory: the bytes of flash and RAM. Flash is also seen at address 0.
+// cpu_memory: stores the bytes of flash and RAM. Flash can be read at two addresses: its own and 0.
 
 #pragma once
 
@@ -19,7 +19,7 @@ public:
     bool isFlash(uint32_t address) const {
         return address < flashRange_.bytes || address - flashRange_.base < flashRange_.bytes;
     }
-    // Returns the offset in flash of an address in either view of it.
+    // Returns the offset in flash for either of its two addresses.
     uint32_t flashOffset(uint32_t address) const {
         return address >= flashRange_.base ? address - flashRange_.base : address;
     }
@@ -35,5 +35,5 @@ private:
                uint64_t(address) + bytes <= uint64_t(range.base) + range.bytes;
     }
     const Range flashRange_, ramRange_;
-    std::unique_ptr<uint8_t[], void (*)(void*)> flash_, ram_; // aligned to pages
+    std::unique_ptr<uint8_t[], void (*)(void*)> flash_, ram_; // page-aligned, as unicorn requires
 };

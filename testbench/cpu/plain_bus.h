@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// plain_bus: surroundings for programs that need only the processor and its memory.
+// plain_bus: a minimal bus for programs that need only the processor and its memory.
 
 #pragma once
 
@@ -34,8 +34,8 @@ struct PlainCpu {
         cpu.readMemory(image.symbol(name), bytes.data(), image.size(name));
         return bytes.substr(0, std::strlen(bytes.c_str()));
     }
-    // Runs until a breakpoint is reached or these cycles have passed; returns the breakpoint's
-    // number, or -1.
+    // Runs until a breakpoint is reached or `cycleLimit` cycles have passed. Returns the number of
+    // the breakpoint, or -1.
     int run(uint64_t cycleLimit) {
         uint64_t end = cpu.cycles() + cycleLimit;
         bus.limit = [this, end] {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// unicorn_calls: libunicorn's C callbacks, and its register names.
+// unicorn_calls: the C callbacks of libunicorn, and its names of registers.
 
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// mcb_model: the user port's FIFOs, and the path of commands through them.
+// mcb_model: the FIFOs of the user port, and the execution of its commands.
 
 #include "mcb_model.h"
 #include <cstring>
@@ -50,7 +50,7 @@ void McbModel::takeCommand() {
     nextEvent_ = std::min(nextEvent_, now_ + timing_.commandWay);
 }
 
-// Does all work that is due: moves words, starts commands. Then computes the next due time.
+// Moves the words and starts the commands that are due, then computes when the next ones are due.
 void McbModel::work() {
     pins.calibDone = now_ >= timing_.calibration;
     while (!releases_.empty() && releases_.front().at <= now_) {
@@ -133,12 +133,13 @@ void McbModel::writeBurst(uint32_t address, unsigned words, uint64_t cas) {
     wordsWritten += words;
 }
 
-// Joins the lines of a short: the low level wins.
+// Returns `value` with the shorted `lines` at the same level; the low level wins.
 static uint32_t joined(uint32_t value, uint32_t lines) {
     return lines && (value & lines) != lines ? value & ~lines : value;
 }
 
-// The place that an address reaches. Bits 10..1 are the column, 13..11 the bank, 26..14 the row.
+// Returns the address that a faulty memory accesses instead. Bits 10..1 are the column, 13..11 the
+// bank, 26..14 the row.
 uint32_t McbModel::reached(uint32_t address) const {
     if (!isFaulty_)
         return address;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// memory_bench: a memory controller, PORTS requesters in front of it and the MCB model behind it.
+// memory_bench: a memory controller with one requester at each of its PORTS ports, and the MCB
+// model as its memory.
 
 #pragma once
 
@@ -30,7 +31,7 @@ public:
         for (uint64_t i = 0; i < cycles; ++i)
             bench.tick();
     }
-    // Waits until pending requests end; the memory must then equal the reference.
+    // Waits until all requests have ended, then checks that the memory equals the reference.
     void drain() {
         requesters.stop();
         bench.waitFor([this] { return requesters.idle(); }, "the requesters' end", 20000);

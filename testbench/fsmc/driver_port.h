@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// driver_port: the FSMC driver's loads and stores (sw/fsmc) on the model of the FSMC; context is
-// the FsmcMaster.
+// driver_port: connects the loads and stores of the FSMC driver (sw/fsmc) to the model of the FSMC.
+// The context is the FsmcMaster.
 
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// app_paper: the paper's Figure 5 as firmware.
+// app_paper: selects the paper's Figure 5 as the firmware.
 
 #include "uav_machine.h"
 #include <stdexcept>

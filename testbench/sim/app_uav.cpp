@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// app_uav: the UAV's application.
+// app_uav: selects the UAV's application as the firmware.
 
 #include "uav_machine.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// camera: a picture, cropped and reduced to the camera's size.
+// camera: crops and reduces a picture to the size of the camera's frame.
 
 #include "camera.h"
 #include "picture.h"
@@ -13,7 +13,7 @@
 #include <stb/stb_image_write.h>
 
 namespace {
-constexpr int leastSide = 8; // the vision core's
+constexpr int leastSide = 8; // smallest width and height that the vision core supports
 }
 
 Frame loadFrame(const std::string& path, int width, int height) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// never_quiet: a QuietSpan for a netlist of the chip, which lacks the names of quiet_span.cpp's
-// counters: each clock is evaluated.
+// never_quiet: a QuietSpan that never skips a clock. It is used for a netlist of the chip, in which
+// the counters that quiet_span.cpp reads do not have their names.
 
 #include "quiet_span.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// picture: reads a PNG, JPEG or PNM file as grey levels, upright and with its white at 255.
+// picture: reads a PNG, JPEG or PNM file as grey levels, 0 to 255, and turns the picture upright.
 
 #pragma once
 
@@ -10,10 +10,11 @@
 
 struct Picture {
     int width = 0, height = 0;
-    std::vector<uint8_t> grey; // row by row
+    std::vector<uint8_t> grey; // grey levels, row by row
 
     uint8_t at(int x, int y) const { return grey[static_cast<size_t>(y) * width + x]; }
 };
 
-// Throws std::runtime_error with the reason if the file cannot be read or is not a picture.
+// Reads a picture. Throws std::runtime_error with the reason if the file cannot be read or is not a
+// picture.
 Picture readPicture(const std::string& path);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// uav_machine: simulated time passes in bus accesses and idling only.
+// uav_machine: lets simulated time pass in bus accesses and while the firmware is idle, never
+// elsewhere.
 
 #include "uav_machine.h"
 
@@ -10,7 +11,7 @@ extern "C" {
 
 namespace {
 
-// The firmware's port is a table of C functions; the machine is their context.
+// The firmware calls its port as C functions, whose context is the machine.
 SocModel* socOf(void* context) {
     return static_cast<SocModel*>(context);
 }

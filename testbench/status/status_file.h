@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// status_file: a simulator's counters (SimStatus) in a file that other programs map.
+// status_file: keeps a simulator's counters (SimStatus) in a file that other programs map.
 
 #pragma once
 
@@ -15,10 +15,10 @@
 
 class StatusFile {
 public:
-    // Throws std::system_error, also if the disk is full: writing to a sparse file would raise
-    // SIGBUS.
+    // Creates a file at `path`. Throws std::system_error; this includes a full disk, where writing
+    // to a sparse file would raise SIGBUS later.
     explicit StatusFile(const std::string& path) {
-        unlink(path.c_str()); // never write through a link
+        unlink(path.c_str()); // never writes through a symbolic link
         const int fd = open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
         const int error = fd < 0 ? errno : map(fd);
         if (fd >= 0)
@@ -26,7 +26,7 @@ public:
         if (error)
             throw std::system_error(error, std::generic_category(), "cannot write '" + path + "'");
     }
-    // Creates an empty file, open for writing, which the caller owns.
+    // Uses an empty file that is open for writing; the caller closes it.
     explicit StatusFile(int fd) {
         if (const int error = map(fd))
             throw std::system_error(error, std::generic_category(), "no file for simulated time");
@@ -41,7 +41,7 @@ public:
     void set(uint64_t ns) { __atomic_store_n(&status_->ns, ns, __ATOMIC_RELEASE); }
 
 private:
-    // Returns the number of the error; 0 means success.
+    // Returns 0, or the number of the error.
     int map(int fd) {
         if (const int error = posix_fallocate(fd, 0, sizeof(SimStatus)))
             return error;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// stm32f2_map: addresses and bits of Stm32F2's registers (RM0033), for its own files.
+// stm32f2_map: addresses and bits of the registers in Stm32F2 (RM0033). Only its own files include
+// this header.
 
 #pragma once
 

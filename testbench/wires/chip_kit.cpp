@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// chip_kit: plants faults in the models around the chip.
+// chip_kit: applies faults to the models around the chip.
 
 #include "chip_kit.h"
 #include "pin_delays.h"
 
 namespace {
 
-// Typical delays: wires of 10 cm.
+// Typical delays for wires of 10 cm.
 const FsmcCorner kitDelays = {"kit", 2000, 3000, 1000, 500, 1500, 600, 2000, 2500, 5000, 1000, 500};
 
 } // namespace
@@ -37,7 +37,7 @@ ChipKit::ChipKit(const std::vector<WireFault>& faults, XBee::Options modem)
         soc_.memory().restart(~0u >> 1);
 }
 
-// NWAIT as a pin: PD6.
+// Returns the levels with NWAIT, which is pin PD6.
 uint16_t ChipKit::levels(unsigned port, uint16_t inside) {
     if (port != 3)
         return inside;
@@ -49,7 +49,7 @@ void ChipKit::plant(const WireFault& fault) {
         soc_.fsmc().makeLate(fault.wire, static_cast<int>(1000 * fault.value));
         return;
     }
-    // DDR_DQ3, DDR_A12, DDR_BA1, DDR_LDM, DDR_UDM, DDR_LDQS, DDR_UDQS, DDR_CK ...
+    // Names such as DDR_DQ3, DDR_A12, DDR_BA1, DDR_LDM, DDR_UDM, DDR_LDQS, DDR_UDQS or DDR_CK.
     if (fault.wire.compare(0, 4, "DDR_") != 0)
         throw std::runtime_error("wire " + fault.wire + ": not a wire that the chip's model has");
     hasMemoryFault_ = true;
@@ -79,7 +79,7 @@ void ChipKit::plant(const WireFault& fault) {
     } else if (startsWith("DDR_LDQS") || startsWith("DDR_UDQS")) {
         memory_.strobeOpen = startsWith("DDR_LDQS") ? 1 : 2;
     } else {
-        neverCalibrates_ = true; // clock, commands and supply
+        neverCalibrates_ = true; // a fault of clock, commands or supply
     }
 }
 

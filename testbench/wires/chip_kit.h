@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// chip_kit: a board whose FPGA is loaded with the chip: the microcontroller runs the self-test, and
-// reaches registers, DDR3 and modem through wires with delays.
+// chip_kit: simulates a board whose FPGA is loaded with the chip. The microcontroller runs the
+// self-test, and reaches registers, DDR3 and modem through wires with delays.
 
 #pragma once
 
@@ -16,8 +16,8 @@ class ChipKit : private PinWires {
 public:
     explicit ChipKit(const std::vector<WireFault>& faults, XBee::Options modem = {});
 
-    // Loads the self-test and runs it until it prints a line that begins with END, or until this
-    // time (ms). `change` is called when it begins. Returns what it has printed.
+    // Loads the self-test, calls `change`, and runs the self-test until it prints a line that
+    // begins with END or `limitMs` has passed. Returns what it has printed.
     std::string run(const std::string& elf, unsigned limitMs,
                     const std::function<void(Stm32F2&)>& change);
 

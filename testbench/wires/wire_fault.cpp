@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// wire_fault: reads a fault from text.
+// wire_fault: parses the text of a fault.
 
 #include "wire_fault.h"
 #include <cstdlib>

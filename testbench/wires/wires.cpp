@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// wires: levels of nets from their drivers and pulls.
+// wires: computes the levels of nets from their drivers and pulls.
 
 #include "wires.h"
 #include <algorithm>
@@ -91,14 +91,15 @@ void Wires::settle(uint64_t now) {
     };
     for (unsigned i = 0; i < ends_.size(); ++i) {
         const unsigned node = nodeOf_[i];
-        // An inverter lets signals pass to end 0 only.
+        // An inverted wire is not part of the node: the inverter passes its signal on to end 0
+        // only.
         const bool passes = !inverted_[i];
         if (passes)
             combine(node, ends_[i].driver);
         if (i % 2 == 0 && passes)
             combine(node, others_[i / 2]);
         if (ends_[i].pull != None && passes && (i % 2 == 1 || pull_[node] == None))
-            pull_[node] = ends_[i].pull; // the FPGA's pulls are stronger than the others
+            pull_[node] = ends_[i].pull; // the FPGA's pulls are stronger than other pulls
     }
     for (unsigned n = 0; n < nodes_.size(); ++n) {
         Node& node = nodes_[n];

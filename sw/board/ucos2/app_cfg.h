@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * app_cfg: configuration of uC/OS-II's ARMv7-M port. Interrupts of priority 0x40 and more may call
- * it.
+ * app_cfg: configures uC/OS-II's ARMv7-M port. Interrupts with a priority of 0x40 or more may call
+ * the kernel.
  */
 #pragma once
 
 #define CPU_CFG_KA_IPL_BOUNDARY 4u
 #define CPU_CFG_NVIC_PRIO_BITS 4u
 
-/* Our kernel's OSTaskPrio: a number that differs from task to task, whatever priority it
- * inherits. */
+/* Replaces OSTaskPrio of our kernel: returns a number that differs between tasks and does not
+ * change when a task inherits a priority. */
 #define OSTaskPrio() ((INT8U)(OSTCBCur - OSTCBTbl))

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_cfg: configuration of uC/OS-II 2.9x for the firmware: tasks, semaphores, mutexes, queues,
- * time. The names are documented in uC/OS-II's manual, chapter 17.
+ * os_cfg: configures uC/OS-II 2.9x for the firmware: tasks, semaphores, mutexes, queues, time.
+ * Chapter 17 of uC/OS-II's manual documents the names.
  */
 #pragma once
 
@@ -34,7 +34,7 @@
 #define OS_TASK_STAT_EN 0u
 #define OS_TASK_STAT_STK_CHK_EN 1u /* OSTaskStkChk */
 #define OS_TASK_SUSPEND_EN 0u
-#define OS_TASK_SW_HOOK_EN 1u /* the port calls it without asking */
+#define OS_TASK_SW_HOOK_EN 1u /* 1, because the port calls the hook in any case */
 
 #define OS_FLAG_EN 0u
 #define OS_FLAG_ACCEPT_EN 0u

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ucos2_hooks: the hooks that the real uC/OS-II needs of an application, and our vectors' name of
- * its PendSV handler.
+ * ucos2_hooks: the hooks that the original uC/OS-II requires from an application, and the name that
+ * our vector table uses for its PendSV handler.
  */
 #include "guard.h"
 

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ucos2_kernel: implements the board's functions for the real uC/OS-II.
+ * ucos2_kernel: implements the functions of the board that depend on the kernel, for the original
+ * uC/OS-II.
  */
 #include "board.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// passed_proxies: tries to read a proxy at each offset, and keeps the valid ones.
+// passed_proxies: tries to read a proxy at each offset, and keeps those that are valid.
 
 #include "passed_proxies.h"
 
@@ -8,10 +8,11 @@ namespace gateway {
 
 namespace {
 
-constexpr size_t head = 6;          // bytes of an encapsulation's header: size, encoding
-constexpr size_t longestName = 254; // a size of one byte
+// size of the header of an encapsulation (size and encoding), bytes
+constexpr size_t head = 6;
+constexpr size_t longestName = 254; // longest name; its size then takes one byte
 
-// Reads bytes from `at`; fails at the end, or if the bytes are not the expected ones.
+// Reads bytes from `at`. Fails at the end of the bytes, or if a byte is not in the expected range.
 struct Reader {
     const std::vector<Ice::Byte>& bytes;
     size_t at;
@@ -45,7 +46,8 @@ std::vector<Ice::Identity> passedProxies(const std::vector<Ice::Byte>& encapsula
         id.category = in.text(0);
         for (const char c : id.name + id.category)
             in.isRight = in.isRight && (c < 0 || c >= ' ');
-        in.isRight = in.isRight && (hasVersions || id.name.size() > 3); // else zeros look like one
+        // without versions, a row of zeros would look like a proxy
+        in.isRight = in.isRight && (hasVersions || id.name.size() > 3);
         if (in.byte(0, 1))
             in.text(0); // facet
         in.byte(0, 4);  // mode

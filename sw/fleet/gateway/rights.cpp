@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// rights: reads the file, matches patterns.
+// rights: reads the file of rules, and matches its patterns.
 
 #include "rights.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ping: a C++ ground station of a few lines: pings an object, prints its type and the duration.
-// Usage: ping "hwengine1:xbee-at -d /dev/ttyUSB0 -a 1" [count]
+// ping: a short ground station in C++. It pings an object, and prints the object's type and the
+// duration of each ping. Usage: ping "hwengine1:xbee-at -d /dev/ttyUSB0 -a 1" [count]
 
 #include <Ice/Ice.h>
 #include <chrono>
@@ -9,7 +9,7 @@
 #include <iostream>
 
 #ifndef PLUGIN
-#define PLUGIN "xbeeat" // an installed plugin is in the folder of the system's libraries
+#define PLUGIN "xbeeat" // an installed plugin is in the system's library folder
 #endif
 
 int main(int argc, char** argv) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * tcp_address: endpoints of the tcp transport as proxies carry them, as strings, and as sockets.
+ * tcp_address: converts endpoints of the tcp transport between their encoding in proxies, strings,
+ * and socket addresses.
  */
 #define _POSIX_C_SOURCE 200809L
 #include "ice_message.h"
@@ -44,7 +45,8 @@ void TcpEndpoint_encode(void* context, const char* options, Ice_OutputStreamPtr 
     if (!options)
         at.port = self->port;
     else if (Ice_String_is(&at.host, "*"))
-        os->failed = ICE_FAILED_MALFORMED; /* all addresses, of a server only */
+        /* "*" means all addresses, which only a server can use */
+        os->failed = ICE_FAILED_MALFORMED;
     Ice_OutputStream_writeShort(os, TCP_ENDPOINT_TYPE);
     begin = icec_beginEncapsulation(os);
     Ice_OutputStream_writeString(os, at.host);
@@ -59,7 +61,7 @@ int TcpEndpoint_decode(const Ice_Byte* encoded, Ice_Int size, TcpEndpoint_Addres
     Ice_InputStream_init(&is, encoded, size);
     if (Ice_InputStream_readShort(&is) != TCP_ENDPOINT_TYPE)
         return 0;
-    (void)Ice_InputStream_readBlob(&is, 6); /* size and encoding */
+    (void)Ice_InputStream_readBlob(&is, 6); /* skips size and encoding */
     address->host = Ice_InputStream_readString(&is);
     address->port = Ice_InputStream_readInt(&is);
     address->timeoutMs = Ice_InputStream_readInt(&is);

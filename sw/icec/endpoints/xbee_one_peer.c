@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * xbee_one_peer: replaces xbee_peers.c in a program that has one ground.
+ * xbee_one_peer: replaces xbee_peers.c in a program with only one ground station.
  */
 #include "xbee_peers.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * xbee_peers: several peers, and dialing of other vehicles.
+ * xbee_peers: manages several peers, and dials other vehicles.
  */
 #include "xbee_peers.h"
 

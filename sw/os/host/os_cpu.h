@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_cpu: the interface that the kernel needs from a processor, with uC/OS-II's names. Host: tasks
- * are coroutines of one thread, and interrupts arrive only when simulated time passes, so runs
- * repeat exactly.
+ * os_cpu: the interface between kernel and processor, with uC/OS-II's names, for a host. Tasks are
+ * coroutines of one thread. Interrupts arrive only when simulated time passes, so every run is
+ * exactly repeatable.
  */
 #pragma once
 
 typedef unsigned long OS_STK;
 typedef unsigned int OS_CPU_SR;
 
-/* Method 3: the interrupt-enable state is stored in a local variable. */
+/* Method 3 of uC/OS-II: a local variable stores whether interrupts were enabled. */
 #define OS_CRITICAL_METHOD 3U
 #define OS_ENTER_CRITICAL() (cpu_sr = OS_CPU_SR_Save())
 #define OS_EXIT_CRITICAL() (OS_CPU_SR_Restore(cpu_sr))

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_cpu: the interface that the kernel needs from a processor, with uC/OS-II's names: Cortex-M3.
- * Critical sections set PRIMASK; tasks are switched in PendSV, which has the lowest priority, so
+ * os_cpu: the interface between kernel and processor, with uC/OS-II's names, for the Cortex-M3.
+ * Critical sections set PRIMASK. Tasks are switched in PendSV, which has the lowest priority, so
  * that it runs after all interrupts.
  */
 #pragma once
@@ -9,7 +9,7 @@
 typedef unsigned int OS_STK;
 typedef unsigned int OS_CPU_SR;
 
-/* Method 3: the interrupt-enable state is stored in a local variable. */
+/* Method 3 of uC/OS-II: a local variable stores whether interrupts were enabled. */
 #define OS_CRITICAL_METHOD 3U
 #define OS_ENTER_CRITICAL() (cpu_sr = OS_CPU_SR_Save())
 #define OS_EXIT_CRITICAL() (OS_CPU_SR_Restore(cpu_sr))

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * loader: the boot loader in flash sectors 0 and 1, which starts the firmware of a slot, and what
- * it offers to that firmware (docs/firmware.md).
+ * loader: the boot loader in flash sectors 0 and 1, which starts the firmware in one of the slots,
+ * and the functions that it offers to this firmware (docs/firmware.md).
  */
 #pragma once
 
@@ -9,7 +9,8 @@
 
 #define LOADER_MAGIC 0x1CE50C06UL
 
-/* Stored after the loader's vectors, so that images need not contain libsodium. */
+/* Functions of libsodium in the loader, so that images need not contain them. The table follows the
+ * loader's vectors. */
 typedef struct Loader_Services {
     U32 magic;
     int (*isSigned)(const U8* signature, const U8* message, U32 bytes, const U8* key);
@@ -18,5 +19,6 @@ typedef struct Loader_Services {
 #define LOADER_KEYS ((const Slots_Keys*)(0x08000000UL + SLOTS_KEYS_AT))
 #define LOADER_SERVICES ((const Loader_Services*)0x08000040UL)
 
-/* The slots as the firmware sees them; 0: no loader has started it. `running` becomes its slot. */
+/* Returns the slots of the firmware, or 0 if it was started without a loader. Sets `running` to the
+ * slot of the firmware that runs. */
 const Slots_Port* Loader_slots(U32* running);

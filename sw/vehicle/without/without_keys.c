@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * without_keys: the vehicle without keys (ICESOC_KEYS=OFF): every peer talks in the clear. It only
- * starts if it was opened on purpose, so a vehicle that has a key does not fly unprotected.
+ * without_keys: a vehicle without keys (ICESOC_KEYS=OFF), whose links are not encrypted. It starts
+ * only if it was opened explicitly (provision.h), so that a vehicle with a key never flies
+ * unprotected.
  */
 #include "uav_keyring.h"
 #include "uav_keys.h"

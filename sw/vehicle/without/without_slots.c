@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * without_slots: the firmware without updates (ICESOC_UPDATE=OFF): the FPGA loads its bitstream by
+ * without_slots: firmware without updates (ICESOC_UPDATE=OFF). The FPGA loads its bitstream by
  * itself.
  */
 #include "firmware_slots.h"

@@ -71,7 +71,7 @@ module bus_crossing #(
     assign core_valid_o = busy && !core_rst_o;
     always @(posedge core_clk_i) begin
         busy     <= begins || (busy && !ends);
-        ended    <= ends;       // one clock after the access takes effect on the interrupt
+        ended    <= ends;       // one clock later, so that core_irq shows the access's effect
         core_irq <= core_irq_i; // a flip-flop, because a glitch of a LUT must not cross
         if (ends)
             answer <= {core_error_i || core_rst_o, core_rdata_i};

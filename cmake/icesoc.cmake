@@ -135,9 +135,9 @@ function(icesoc_sanitized)
   set_property(GLOBAL APPEND PROPERTY ICESOC_SANITIZED ${ARGN})
 endfunction()
 
-# icesoc_uncertain(PROGRAM seeds [gtest filter]): adds tests cdc.<program>.<seed>, which run the
-# cases of an icesoc_test again. Their synchronisers sample the old or the new value at random
-# (hdl/cdc/cdc_random.vh). The random numbers depend on the seed and on SEED.
+# icesoc_uncertain(PROGRAM seeds [gtest filter]): adds tests cdc.<program>.<seed>. Each runs the
+# cases of an icesoc_test again, with synchronisers that sample the old or the new value at random
+# (hdl/cdc/cdc_random.vh). The random numbers depend on <seed> and on the test run's SEED.
 function(icesoc_uncertain program seeds)
   set(filter ${ARGN})
   if(NOT filter)

@@ -25,7 +25,7 @@ module fir (
     reg  [8:0]  to_send, to_take;
     reg  [1:0]  place;             // index of the next sample in its word
     reg  [63:0] packed_results;
-    reg  [2:0]  filled;            // results in the current word, 0..4
+    reg  [2:0]  filled;            // number of results in the current word, 0..4
     reg  [31:0] saturations;
 
     wire        bad = count == 9'd0;

@@ -56,7 +56,8 @@ def demo_key(name):
     try:
         with open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
             file.write(secrets.token_hex(16) + "\n")
-        print(f"icesoc-fly: made a demo key, {path}; --key takes yours, --open flies without one")
+        print(f"icesoc-fly: made a demo key, {path}; --key FILE uses your key, "
+              "--open flies without a key")
     except FileExistsError:
         pass
     return str(path)

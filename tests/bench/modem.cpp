@@ -20,7 +20,7 @@ namespace {
 
 constexpr uint64_t clkNs = 500;
 
-// Returns the time of a set-up by the controller, ms; 0 if it failed.
+// Returns how long the controller takes to set up the modem, ms; 0 if the set-up failed.
 double setUpMs(uint32_t guardMs, uint32_t bd) {
     Bench<VModem> bench;
     BusMaster<VModem> bus(bench);

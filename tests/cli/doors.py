@@ -64,8 +64,9 @@ class Values(Work):
     def test_a_value_arrives_as_it_is(self):
         odd = "a'b \"c\" {device} `d` $(e) $$ # \\ f=g -- h"
         said = ask("make", "-s", "rm-ip", f"NAME={odd}")[1]
-        self.assertIn(f"'{odd}' is not a core", said)
-        self.assertIn(f"'{odd}' is not a core", ask("./icesoc", "core", "remove", odd)[1])
+        expected = f"NAME: expected the name of a core, got '{odd}'"
+        self.assertIn(expected, said)
+        self.assertIn(expected, ask("./icesoc", "core", "remove", odd)[1])
 
     def test_both_doors_give_the_same_values(self):
         samples = {"N": "3", "VALUE": "a", "FOLDER": str(TREE / "tools"), "WxH": "96x64",
@@ -104,13 +105,13 @@ class Values(Work):
                 ({"SIGNING": "1"}, 0, f"public {made} {made}.pub\n"),
                 (every, 0, f"keys 3 {by} {first} {made}\n"),
                 ({**every, "SECOND": second}, 0, f"keys 3 {by} {first} {second} {made}\n"),
-                ({**every, "BY": ""}, 2, "needs --list NUMBER, --by"),
-                ({**every, "LIST": ""}, 2, "needs --list NUMBER, --by"),
-                ({"SECOND": second}, 2, "needs --list NUMBER, --by"),
+                ({**every, "BY": ""}, 2, "expected --list NUMBER, --by"),
+                ({**every, "LIST": ""}, 2, "expected --list NUMBER, --by"),
+                ({"SECOND": second}, 2, "expected --list NUMBER, --by"),
                 ({**every, "FIRST": "/none"}, 2, "cannot read '/none': No such file"),
                 ({**every, "LIST": "0"}, 2, ": expected a whole number, at least 1, got '0'"),
-                ({**every, "SIGNING": "1"}, 2, "give one of --certificate"),
-                ({"CERTIFICATE": "1", "SIGNING": "1"}, 2, "give one of --certificate")):
+                ({**every, "SIGNING": "1"}, 2, "expected at most one of --certificate"),
+                ({"CERTIFICATE": "1", "SIGNING": "1"}, 2, "expected at most one of --certificate")):
             words = [word for name, value in given.items() if value for word in (
                 f"--{name.lower()}", value)[:1 if name in ("SIGNING", "CERTIFICATE") else 2]]
             doors = ["./icesoc", "key", made, *words, "--built"], [
@@ -150,7 +151,7 @@ MISTAKES = {
     "./icesoc run --jobs 0": "--jobs: expected a whole number, at least 1, got '0'",
     "./icesoc run fir": "run takes no 'fir'",
     "./icesoc run --seed": "expected one argument",
-    "./icesoc core test": "a core is needed",
+    "./icesoc core test": "expected the name of a core",
     "./icesoc replay nowhere": "contains no recorded flight",
     "./icesoc run --replay nowhere": "contains no recorded flight",
     "./icesoc core test --ip a-b": "IP: expected the name of a core, got 'a-b'",
@@ -164,7 +165,7 @@ MISTAKES = {
     "is not a flight: expected version 4",
     "./icesoc contract": "contract: expected a command: diff, from-rdl",
     "./icesoc contract dif": "contract has no command 'dif'; did you mean diff?",
-    "./icesoc bench --only airr": "no bench is named 'airr': simulator, air",
+    "./icesoc bench --only airr": "unknown bench 'airr': expected one of simulator, air",
     "./icesoc nightly --steps nothing --built": "unknown step 'nothing': expected one of kept, ran",
     "make -s rnu": "unknown target 'make rnu'; did you mean run?",
     "make -s run LOS=1": "make run has no variable LOS; did you mean LOSS?",
@@ -174,7 +175,7 @@ MISTAKES = {
     "make -s run THRESHOLD=300": "THRESHOLD: expected 0 to 255 grey levels, got '300'",
     "make -s run LOSS=7": "LOSS: expected 0 to 1, got '7'",
     "make -s run CPU=x": "CPU: expected host or m3, got 'x'",
-    "make -s run CORES=nobody": "core 'nobody' has no part in a mission",
+    "make -s run CORES=nobody": "core 'nobody' cannot be called in a mission",
     "make -s run CORES=fri": "; did you mean fir?",
     "./icesoc core test fri": "IP: expected the name of a core, got 'fri'; did you mean fir?",
     "./icesoc synth --design modme": "the name of a design, got 'modme'; did you mean modem?",

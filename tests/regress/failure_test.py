@@ -99,8 +99,8 @@ mission: the vision core's result differs from the C++ reference: 141 corners, n
 icesoc-sim: Cortex-M3: 748300 instructions; asleep 99.5 % of the time
 icesoc-sim: 2.0 s simulated, 37 packets on the air
 The mission failed (exit status 1).
-Its end as a waveform: make run REPLAY='fly' FROM=1.500 TO=2.000
-Its end, and backwards from there: make gdb REPLAY='fly'
+To write a waveform of its end: make run REPLAY='fly' FROM=1.500 TO=2.000
+To debug it backwards from its end: make gdb REPLAY='fly'
 """
 SIMULATOR = """#!/bin/sh
 echo "$@" >asked
@@ -197,7 +197,8 @@ class Cases(Project):
         write("docs/page.md", "0\n")  # no commit has the tree that was recorded
         commit("two")
         edit("tests/room/t.sh", *BREAK)
-        self.regress("--name b.Bad", 1)  # the test has never passed: files that are not committed
+        # The test has never passed, so the report lists the uncommitted files.
+        self.regress("--name b.Bad", 1)
         self.has("^        changed since the commit; it is not known to have passed: "
                  r"tests/room/t.sh:3 \(1 line\)$")
         write("hdl/fifo/fifo.v", "a\nB\nc\nD\nE\n")

@@ -75,8 +75,9 @@ class Cases(Script):
                          "typedef struct All All;\n")
 
     def test_broken_link(self):
-        """A site is read from files, without a server: its scripts run, and light and dark can be
-        chosen. A link to a page that does not exist fails the build and is named."""
+        """A browser can read the site from files, without a server: its scripts run, and the reader
+        can select light or dark. A link to a page that does not exist fails the build, and the
+        error names the link."""
         tree = fresh(WORK) / "tree"
         for part in ("docs/conf.py", "docs/_static/site.css", "sw/fsmc/fsmc.h",
                      "synth/baseline.json", "synth/ise/chip.ucf"):

@@ -233,7 +233,7 @@ def disk_full(start, name, moment, deaths):
 
 def no_descriptors(start, name, moment, deaths):
     return refused(start(prefix=["prlimit", f"--nofile={8 + int(25 * moment / LAST)}"]),
-                   "64 file descriptors, the limit is [0-9]+: ulimit -n 64")
+                   "expected at least 64, got [0-9]+; raise it by ulimit -n 64")
 
 
 def port_taken(start, name, moment, deaths):

@@ -412,12 +412,12 @@ class Cases(Script):
 
     def test_interrupted(self):
         with self.until("setting the ground", *self.words()) as run:
-            self.refused("another flight is under way")
+            self.refused("another flight is in progress")
             # Interrupts only the simulator; Ctrl-C would reach all processes.
             self.ask("pkill", "-INT", "-f", f"icesoc-sim.*{self.out}")
             self.assertEqual(run.wait(), 130, Path("log").read_text())
         # The command that the failed mission prints shows the end of the flight.
-        span = re.search(f"^Its end as a waveform: make run REPLAY='{self.out}' "
+        span = re.search(f"^To write a waveform of its end: make run REPLAY='{self.out}' "
                          r"FROM=([\d.]+) TO=([\d.]+)$", Path("log").read_text(), re.M)
         self.replay(self.out, "--from", span[1], "--to", span[2],
                     expected="the recording ends here|bit by bit")

@@ -51,7 +51,7 @@ printf '#include <b.ice>\n #  include "c/d.ice"\n' >"$work/a.ice"
 refused 'a.ice includes b.ice c/d.ice: expected a Slice file without' fir --lang verilog \
     --ice "$work/a.ice"
 echo 'module M { interface Fir { void f(); }; };' >"$work/a.ice"
-refused 'is not an interface in hardware' fir --lang verilog --ice "$work/a.ice"
+refused 'expected an interface in hardware' fir --lang verilog --ice "$work/a.ice"
 echo 'module M { [":hw"] interface Fir { void f(string s); }; };' >"$work/a.ice"
 refused "^$work/a.ice:1:" fir --lang verilog --ice "$work/a.ice"
 echo 'module M { [":hw"] interface Iir { void f(); }; };' >"$work/a.ice"
@@ -100,7 +100,7 @@ done
 (cd "$work" && git init -q . && new fir --lang verilog >"$work/log")
 grep -q 'make ip-test IP=fir' "$work/log" && [ -f "$work/ip/fir/fir.v" ] &&
     ! grep -rq '@[A-Z]*@' "$work/ip/fir" || { echo 'ip/fir is not what it should be' && exit 1; }
-! remove fir 2>"$work/log" && grep -q 'not committed' "$work/log" && [ -d "$work/ip/fir" ] ||
+! remove fir 2>"$work/log" && grep -q 'uncommitted' "$work/log" && [ -d "$work/ip/fir" ] ||
     { echo 'rm-ip loses work' && exit 1; }
 remove fir --force >/dev/null
 [ ! -e "$work/ip/fir" ] || { echo 'rm-ip FORCE=1 left it' && exit 1; }

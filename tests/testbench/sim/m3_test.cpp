@@ -76,9 +76,10 @@ size_t differingBytes(const Bytes& a, const Bytes& b) {
     return n;
 }
 
-// The clock cycles that the core measured itself depend on other users of the memory at that time:
-// four bytes of getResult's reply, the only ones that may differ between the builds; and with them
-// the checksums of the packet that contains them, and of the one that ends the message.
+// The reply of getResult contains the clock cycles that the core has counted. They depend on the
+// other accesses to the memory at that time. Only these four bytes may differ between the builds,
+// and with them two checksums: of the packet that contains them, and of the packet that ends the
+// message.
 constexpr size_t cyclesAt = 29, cyclesBytes = 4, checksumBytes = 2;
 constexpr int packetsThatMayDiffer = 2;
 

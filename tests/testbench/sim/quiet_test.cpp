@@ -246,7 +246,8 @@ struct Pair {
             EXPECT_EQ(FSMC_init(&driverPort, &soc->fsmc()), FSMC_OK);
         }
     }
-    // Writes a word to the memory; another one closes it.
+    // Writes a 64-bit word to the memory, and begins the next one, so that the bridge sends the
+    // first.
     static void write(SocModel& soc) {
         for (uint32_t word = 0; word < 2; ++word)
             soc.fsmc().write16(fsmc::windowsAt + 8 * word, 1);

@@ -28,13 +28,14 @@ FIELDS = [
     Option(
         "loss",
         matching(r"0?\.\d+|[01](\.0*)?", "0 to 1", float,
-                 SHARE.schema, "N"), "packet loss on the air in each direction", 0.0),
-    Option("interference", SHARE, "share of each 20 ms in which others use the channel", 0.0),
+                 SHARE.schema, "N"), "share of packets lost on the air, in each direction", 0.0),
+    Option("interference", SHARE, "share of each 20 ms in which other transmitters use the "
+                                  "channel", 0.0),
     Option("distance", number(0, 100000, "metres", float),
         "distance between the modems in metres, with fading; 0 disables path loss",
            0.0),
-    Option("trace", FILE, "CSV file of loss, RSSI and delay over time (docs/simulation.md); "
-                          "replaces --loss",
+    Option("trace", FILE, "CSV file with loss, RSSI and delay over time (docs/simulation.md), used "
+                          "instead of --loss",
            ""),
     SEED,
     Option("out", FOLDER, "output folder of the flight", "build/run"),
@@ -42,29 +43,31 @@ FIELDS = [
            "host: host build of the firmware; m3: its ARM binary on a Cortex-M3 model",
            "host"),
     Option("app", one_of("uav", "minimal"),
-           "uav: the mission; minimal: the small program of Table II (needs --cpu m3)", "uav"),
+           "uav: the mission; minimal: the small program of the paper's Table II (needs --cpu m3)",
+           "uav"),
     Option("port", number(0, 65535), "TCP port of the flight's page; 0 selects a free port", 0),
-    Option("live", SWITCH, "keep page and vehicle until Ctrl-C, for ./icesoc call"),
-    Option("cores", WORDS, "cores to call during the flight (ip/*/ground.py)",
+    Option("live", SWITCH, "keep the page and the vehicle running until Ctrl-C, for ./icesoc call"),
+    Option("cores", WORDS, "names of cores to call during the flight, such as fir; each has a "
+                           "program ip/NAME/ground.py",
            choices=choices.flown, is_checked=False),
     Option(
         "camera", SWITCH,
         "send the picture through the pins of the camera core instead of writing it to memory"
     ),
-    Option("wire", SWITCH, "connect by a serial cable instead of modems and air"),
+    Option("wire", SWITCH, "connect vehicle and ground station by a serial cable, without modems"),
     Option("modem", one_of("s1", "s2c", "xb3"),
            "modems of vehicle and ground station: XBee series 1, S2C or XBee 3", "s1"),
     Option("pins", FILE,
-           "script that drives the input pins of cores (docs/simulation.md); outputs are logged "
-           "in OUT/pins.log", ""),
+           "script that drives the input pins of cores (docs/simulation.md); OUT/pins.log records "
+           "the output pins", ""),
     Option("probe", TEXT,
            "trigger of a probe core (ip/probe/README.md), such as u_fir.sent=1", ""),
     Option("key", KEY_FILE, "file with the link key of vehicle and ground station; default: a "
                             "demo key",
            ""),
     Option("open", SWITCH, "fly without a key, unencrypted"),
-    Option("observer", KEY_FILE, "file with the keys of a second ground station, for several "
-                                 "vehicles; default: demo keys", ""),
+    Option("observer", KEY_FILE, "with --vehicles: file with the keys of a second ground station; "
+                                 "default: demo keys", ""),
     Option("vehicles", number(1, 32), "number of vehicles on one channel; all but the first run "
                                       "the ARM binary", 1),
     Option("update", FILE, "firmware (ELF) or bitstream (.bit, .bin) to send to the vehicle "
@@ -72,7 +75,7 @@ FIELDS = [
     Option("clk-hz", COUNT, "clock of the simulated chip in Hz", 100000000),
     Option("guard", number(2, 3300, "ms"), "guard time of both modems", 1000),
     Option("patience", number(1, unit="s"), "time-out for each answer of the vehicle", 300),
-    Option("firmware", FILE, "firmware (ELF) to fly instead of the one from the build", ""), ]
+    Option("firmware", FILE, "firmware (ELF) to fly instead of the firmware of the build", ""), ]
 # Options that only the simulator has, in flight.json or as words of a command line; ./icesoc has
 # separate options for their purposes.
 _TEXT: dict = {"type": "string"}
@@ -82,12 +85,13 @@ _SPEED = {**_TEXT, "pattern": "real|max|0?[.][0-9]+|[0-9]{1,2}([.][0-9]+)?"}
 INNER: dict[str, dict] = {name: {**kind, "description": text} for name, kind, text in [
     ("modem_key", {**_TEXT, "pattern": "[0-9a-fA-F]{32}"},
      "AES key of the vehicle's modem"),
-    ("flash", _TEXT, "file of the chip's flash, 1 MiB by pack_update; it is kept there"),
+    ("flash", _TEXT,
+     "file with the microcontroller's flash, 1 MiB, made by pack_update; the flight updates it"),
     ("fpga_flash", _TEXT,
-     "file with the FPGA's configuration flash, 2 MiB, made by pack_update; updated by the flight"),
-    ("replay", _TEXT, "folder of a recorded flight, which is flown again without its command"),
+     "file with the FPGA's configuration flash, 2 MiB, made by pack_update; the flight updates it"),
+    ("replay", _TEXT, "folder of a recorded flight to repeat without the ground program"),
     ("wave", _TEXT, "file for the waveform (FST) of a replay"),
-    ("from", _TIME, "begin of the waveform, s"),
+    ("from", _TIME, "start of the waveform, s"),
     ("to", _TIME, "end of the waveform, s"),
     ("trouble", {**_TEXT, "pattern": "(away|twin|babble):[0-9]+:[0-9.]+:[0-9.]+"},
      "faults injected into several vehicles: away:2:1.5:3 moves the modem with address 2 out of "
@@ -95,15 +99,15 @@ INNER: dict[str, dict] = {name: {**kind, "description": text} for name, kind, te
      "sends noise"),
     ("every_clock", _FLAG, "evaluate every clock, including quiet ones and clocks of idle "
      "cores (slow)"),
-    ("speed", _SPEED, "real: simulated time follows the clock; 0.25: at a quarter of its speed; "
-     "max: as fast as it goes"),
+    ("speed", _SPEED, "real: simulated time follows real time; 0.25: a quarter of this speed; "
+     "max: as fast as possible"),
     ("duration", _TIME, "end after this simulated time, s"),
     ("gdb", {"type": "integer", "minimum": 0, "maximum": 65535},
      "port of the loopback interface on which to wait for GDB; 0 selects a free port"),
     ("quiet", _FLAG, "print nothing"),
 ]}
-AGAIN = Option("again", PATH, "flight.json of an earlier flight: repeats it with its options, "
-                              "except those given here")
+AGAIN = Option("again", PATH, "flight.json of an earlier flight to repeat; options given on the "
+                              "command line replace its options")
 OPTIONS = [*FIELDS, UCOS2, AGAIN, CORE_FOLDERS]
 
 
@@ -169,17 +173,18 @@ def complete(values):
             if name not in given:
                 setattr(values, name, value)
     if values.open and values.key:
-        raise Stop(f"OPEN=1 flies in the clear, KEY='{values.key}' does not: give one of them", 2)
+        raise Stop(f"OPEN=1 flies without a key, KEY='{values.key}' flies with one: expected at "
+                   "most one of the two", 2)
     if values.app == "minimal" and values.cpu != "m3":
         raise Stop("the minimal program is an ARM binary: give --cpu m3 (CPU=m3)", 2)
     other = [name for name in ("loss", "interference", "distance", "trace", "update")
              if getattr(values, name)] + ["app"] * (values.app == "minimal")
     if values.wire and other:
-        raise Stop("WIRE=1 flies the mission without modems and air: leave out "
+        raise Stop("WIRE=1 flies the mission without modems and radio: leave out "
                    + ", ".join(f"--{name}" for name in other), 2)
     single = [name for name in ("wire", "update", "pins") if getattr(values, name)]
     if values.vehicles > 1 and (single or values.app == "minimal"):
-        raise Stop(f"VEHICLES={values.vehicles}: vehicles that share the air fly the mission; "
+        raise Stop(f"VEHICLES={values.vehicles}: several vehicles can only fly the mission; "
                    "leave out " + ", ".join(f"--{name}" for name in single or ["app"]), 2)
     if values.camera and values.pins:
         raise Stop("CAMERA=1 and PINS=file both drive the inputs of cores: give one of them", 2)
@@ -192,7 +197,7 @@ def complete(values):
     for at, core in enumerate(values.cores):
         folder = build.core(core)
         if not (folder / "ground.py").is_file():
-            raise Stop(f"core '{core}' has no part in a mission: {folder}/ground.py not found"
+            raise Stop(f"core '{core}' cannot be called in a mission: {folder}/ground.py not found"
                        + nearest(core, choices.flown()), 2)
         if folder.is_absolute():  # the core is outside ip/
             values.cores[at] = str(folder)
@@ -211,7 +216,7 @@ def check_chip(values, build):
     lines = re.findall(r"^\s*(\w+)", Path(listed).read_text(), re.M)
     for core in (Path(folder).name for folder in values.cores):
         if core not in lines:
-            raise Stop(f"the chip has no core '{core}': it needs a line '{core}' in {listed}", 2)
+            raise Stop(f"the chip has no core '{core}': add a line '{core}' to {listed}", 2)
 
 
 def take_key(values, build):
@@ -221,8 +226,8 @@ def take_key(values, build):
     keys.rescue(build.folder.parent)
     values.key = str(keys.folder() / "demo.key")
     if make_key(values.key):
-        say(f"made a demo key, {values.key}: ground and vehicle share it; KEY=file takes yours, "
-            "OPEN=1 none")
+        say(f"made a demo key, {values.key}, for ground and vehicle; KEY=file uses your key, "
+            "OPEN=1 flies without a key")
 
 
 def take_observers_key(values):

@@ -90,8 +90,9 @@ class Option:
     def explain(self):
         """Returns the help text: meaning, possible values, default."""
         shown = " ".join(self.default) if isinstance(self.default, list) else self.default
-        parts = [] if self.kind in (TEXT, WORDS, FILES, ARGUMENTS, SWITCH, FILE, KEY_FILE, FOLDER,
-                                    INPUT_FOLDER, PATH, FLIGHT) else [self.kind.expected]
+        is_plain = self.choices or self.kind in (TEXT, WORDS, FILES, ARGUMENTS, SWITCH, FILE,
+                                                 KEY_FILE, FOLDER, INPUT_FOLDER, PATH, FLIGHT)
+        parts = [] if is_plain else [self.kind.expected]
         parts += [f"default {shown}"] if shown is not None and shown != "" else []
         return (self.help + (f" ({'; '.join(parts)})" if parts else "")).replace("%", "%%")
 
@@ -194,9 +195,10 @@ MINUTES = number(0.001, unit="minutes", convert=float)
 PATHS = (FILE, KEY_FILE, FOLDER, INPUT_FOLDER, PATH, FLIGHT)
 
 BUILD = Option("build", FOLDER, "build folder", "build/main")
-JOBS = Option("jobs", COUNT, "parallel build processes", len(os.sched_getaffinity(0)))
+JOBS = Option("jobs", COUNT, "number of parallel build processes", len(os.sched_getaffinity(0)))
 TESTS = Option("tests", COUNT,
-               "parallel tests (default: CPUs + 2, since some tests wait for a clock)", None)
+               "number of tests run in parallel (default: CPUs + 2, since some tests spend time "
+               "waiting)", None)
 SEED = Option("seed", number(0), "seed of all random numbers", 1)
 FAMILY = Option("family", one_of("xc6s", "ecp5"), "FPGA family of netlists", "xc6s")
 NAME = Option("name", TEXT, "whole word in test names, or a regular expression")
@@ -208,12 +210,12 @@ LABEL = Option("label", TEXT,
 BLOCK = Option("block", TEXT, "block to test, such as bus or modem", choices=choices.blocks,
                is_checked=False)
 UCOS2 = Option("ucos2", INPUT_FOLDER,
-               "folder of uC/OS-II sources, to build the firmware with this kernel in addition "
+               "folder of uC/OS-II sources; the firmware is then also built with this kernel "
                "(docs/firmware.md)")
 FRESH = Option("fresh", SWITCH,
-               "recompute cached results of proofs, lints and synthesis")
+               "ignore cached results of proofs, lints and synthesis, and compute them again")
 CORE_FOLDERS = Option(
     "core-folders", TEXT,
-    "folders of cores, or of repositories with their cores.list, outside ip/, separated by ; and"
-    " remembered for later commands; none forgets them")
-BUILT = Option("built", SWITCH, "use the existing build: no set-up, no build", listed=False)
+    "folders of cores outside ip/, or folders with a cores.list; several are separated by ;. "
+    "Later commands also use them; the value none ends this")
+BUILT = Option("built", SWITCH, "use the existing build, without set-up and build", listed=False)

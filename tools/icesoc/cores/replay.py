@@ -121,7 +121,7 @@ def words():
 def block(args, widths):
     """Returns the connections of the block's clocks and resets, and (name, width) of its inputs and
     of its captured outputs."""
-    # read_module takes files and looks in their folders
+    # read_module takes names of files, and searches their folders for included files
     headers = [os.path.join(folder, "") for folder in args.I]
     ports, _ = foreign_ports.read_module(args.top, args.files, headers, is_whole=False)
     wiring, inputs, outputs = [], [], []

@@ -14,7 +14,8 @@ from icesoc.util.files import write
 # the same cause.
 RUNNERS = re.compile(
     r"^\[|^at clock cycle|tests? (ran|FAILED|PASSED)|^\s*\d+ FAILED|note:|trace: |Running main|"
-    r"^The mission failed|^Its end|^icesoc-sim: Cortex-M3: |^icesoc-sim: [0-9.]+ s simulated|"
+    r"^The mission failed|^To (write|debug) |^icesoc-sim: Cortex-M3: |"
+    r"^icesoc-sim: [0-9.]+ s simulated|"
     r"^-- \S+ \S+ XBeeAT: |^[\s{}()\[\];=-]*$|^(ERROR|FAIL): test_|^FAILED[ :]|^Ran \d+ test|"
     r"^g?make(\[\d+\])?: \*\*\*|^ninja: build stopped|^collect2: |^terminate called|as expected$|"
     r"^#\d|^Thread \d|^Stack of |^Google Test trace:|stands at clock", re.I)

@@ -39,8 +39,8 @@ def of_tests(data, name):
 
 
 def of_mutants(rows, drawn, source):
-    """Returns the status of mutants. Drawn mutants count by the score of their module, if the
-    sources are the same."""
+    """Returns the status of mutants. The result of drawn mutants is the score of each module, if
+    the sources have not changed since they were drawn."""
     tree = drawn.get("tree", "")
     if tree and tree_state(source, tree.split(":")[0]) == tree:
         if bad := [m for m, s in drawn["modules"].items() if s["score"] < drawn["gate"]]:

@@ -13,8 +13,8 @@ import threading
 import time
 
 HEAD = b"IceP\1\0\1\0"
-# Time-outs, s, for the next reply after a call on a second connection was answered. A loaded machine
-# may exceed the first, so reactions that differ are compared again with the second.
+# Time-outs, s, for the next reply after a call on a second connection was answered. A loaded
+# machine may exceed the first, so reactions that differ are compared again with the second.
 QUICK, PATIENT = 0.3, 10
 
 

@@ -10,7 +10,7 @@ from icesoc.regs.model import Wrong
 from icesoc.util.console import say
 from icesoc.util.errors import Stop
 
-GROUPS["board"] = "boards: wires as data, constraints, pins"
+GROUPS["board"] = "boards: wiring, constraints, pins, self-test"
 PAGES = TREE / "docs/boards"
 
 
@@ -38,8 +38,8 @@ def read(name):
 def board_list(_):
     """list the boards that are described in boards/
 
-    Prints name, number of wires, title and state of each board. A board with missing facts cannot
-    be built."""
+    Prints name, number of wires, title and state of each board. A board whose description lacks
+    facts cannot be built."""
     for name in model.names():
         board = read(name)
         state = ("facts are missing; cannot be built" if board.facts.get("unknown")
@@ -53,8 +53,8 @@ def board_list(_):
 def board_show(values):
     """print a board: chips, wiring table, parts to order, notes
 
-    NAME is a board of boards/, or a file board.toml. The text equals the board's page in the
-    documentation."""
+    NAME is the name of a board in boards/, or a file board.toml. The output is the same text as the
+    board's page in the documentation."""
     say(wiring.page(read(values.name)).rstrip())
 
 
@@ -64,12 +64,13 @@ def board_show(values):
 def board_check(values):
     """report the errors of a board description
 
-    NAME is a board of boards/, or a file board.toml. The command checks the functions of pins, pins
-    that are used twice or are taken on a module, voltages of banks and levels, clock inputs, inputs
-    without a driver, and missing facts. Exit status 1: an error was found."""
+    NAME is the name of a board in boards/, or a file board.toml. The command checks the functions
+    of pins, voltages of banks and signals, and clock inputs. It reports pins that are used twice or
+    that a module uses itself, inputs without a driver, and missing facts. Exit status 1: an error
+    was found."""
     board = read(values.name)
     if found := check.problems(board):
-        raise Stop("\n".join([f"board check: {len(found)} problems of {board.path}",
+        raise Stop("\n".join([f"board check: {len(found)} problems in {board.path}",
                               *(f"  {text}" for text in found)]))
     say(f"{board.name}: {len(board.nets)} nets, no problem found")
 
@@ -83,8 +84,8 @@ def board_check(values):
 def board_make(values):
     """generate the files of a board: constraints, pins, wiring, parts
 
-    Also writes the settings of OpenOCD and a page. A board with unknown facts or errors is
-    refused; board check lists them."""
+    Also writes the settings of OpenOCD and a page. Nothing is written for a board with errors or
+    missing facts; board check lists these."""
     board = read(values.name)
     if values.docs:
         made = make.write(documents(board), PAGES)

@@ -23,11 +23,12 @@ CONSOLE = "/dev/ttyUSB0"
 @command("board bringup", [
     NAME,
     Option("simulated", SWITCH, "run the self-test on a simulated board"),
-    Option("wire", WORDS, "faults of the simulated board, such as D3:open D1-D2:short "
-                          "NWE:late=12ns"),
+    Option("wire", WORDS, "with --simulated: faults of the board's wires, such as D3:open "
+                          "D1-D2:short NWE:late=12ns"),
     Option("device", TEXT, "serial port of the board's console", CONSOLE),
-    Option("listen", SWITCH, "only listen: the self-test was started by hand"),
-    Option("silence", SECONDS, "time without a line after which the report ends", SILENCE),
+    Option("listen", SWITCH, "only read the console; the self-test was started by hand"),
+    Option("silence", SECONDS, "end the report after this time without output from the board",
+           SILENCE),
     Option("out", FOLDER, "folder of the report (default: build/board/NAME)", ""),
     BUILD, JOBS],
          examples=["board bringup nucleo-qmtech --simulated",
@@ -38,9 +39,9 @@ def board_bringup(values):
     """test a new board: name each bad wire, and write a report
 
     Loads the self-test into the microcontroller's RAM by OpenOCD, listens to the console, and
-    writes OUT/bringup.html and OUT/bringup.json. Run it twice: with the bitstream of
-    synth/ise/lines.v, which tests the wires, and with the chip's bitstream. --simulated does
-    both on a model of the board."""
+    writes OUT/bringup.html and OUT/bringup.json. Run it twice: first with the bitstream of
+    synth/ise/lines.v in the FPGA, which tests the wires, then with the chip's bitstream.
+    --simulated runs both on a model of the board."""
     board = read(values.name)
     folder = Path(values.out or f"build/board/{board.name}")
     report = bringup.Report(board)
@@ -58,7 +59,8 @@ def board_bringup(values):
     result = report.data["result"]
     if result == "stopped":
         step = report.steps[-1]["name"] if report.steps else "the start"
-        raise Stop(f"board bringup: the self-test stopped in {step}; expected a line END")
+        raise Stop(f"board bringup: the self-test stopped in {step}: expected a line END, got no "
+                   "further line; reset the board and run the command again")
     if result == "failed":
         raise Stop(f"board bringup: {len(report.failures)} failures: "
                    + ", ".join(f"{f['wire']} {f['kind']}" for f in report.failures))
@@ -79,7 +81,7 @@ def simulated(values, build, report):
         for line in process.stdout:
             follow(report, line)
     if process.returncode not in (0, 1):
-        raise Stop("board bringup: the simulated board has ended with an error")
+        raise Stop("board bringup: the simulated board ended with the error above")
 
 
 def on_board(values, build, report, folder):
@@ -99,7 +101,8 @@ def on_board(values, build, report, folder):
         set_rate(port)
         say("$ " + " ".join(f"'{word}'" if " " in word else word for word in start))
         if not values.listen and subprocess.run(start, check=False).returncode:
-            raise Stop("board bringup: OpenOCD has failed; start it by hand and use --listen")
+            raise Stop("board bringup: OpenOCD failed (above); start the self-test by hand and use "
+                       "--listen")
         listen(port, values.silence, report)
     finally:
         os.close(port)

@@ -40,8 +40,8 @@ def build_all(values):
 def build_configure(values):
     """configure the build folder without building
 
-    Runs CMake. Afterwards `ninja -C build/main TARGET` builds single targets, and
-    compile_commands.json is current for editors.
+    Runs CMake. Afterwards, `ninja -C build/main TARGET` builds a single target, and editors find
+    the current compiler options in compile_commands.json.
     """
     BuildFolder(values.build, values).prepare()
 
@@ -69,7 +69,7 @@ def build_firmware(values):
 def build_size(values):
     """print the code size of each firmware layer next to the paper's
 
-    Compares two variants with the paper: all files of a layer, and the parts that the minimal
+    Compares two sizes of each layer with the paper: all its files, and the parts that the minimal
     program links. Writes build/size.json.
     """
     configured(values).ninja("size")
@@ -90,7 +90,8 @@ def small(path):
         picture.quantize(colours, dither=Image.Dither.NONE).save(path, optimize=True)
         if os.path.getsize(path) < 100000:
             return say(f"{path} {colours} colours")
-    raise Stop(f"{path} has 100 KB with eight colours: show less of it")
+    raise Stop(f"{path}: expected less than 100 KB, got more even with eight colours; show less of "
+               "the page")
 
 
 # Returns the text in the window, in the order of the page.
@@ -168,8 +169,8 @@ def shoot_live(path, profile, icesoc):
 
 @command("build pictures", [
     Option("pictures", WORDS,
-           "pictures to take: mission, live, utilisation, regression, or failure (needs a failed "
-           "test)",
+           "pictures to take: mission, live, utilisation, regression, or failure (needs a report "
+           "with a failed test)",
            ["mission", "live", "utilisation", "regression"], positional=True),
     Option("from", INPUT_FOLDER, "folder with the pages", "build"),
     Option("to", FOLDER, "output folder", "docs/pictures")], make="pictures",
@@ -181,7 +182,7 @@ def pictures(values):
     """retake the pictures of README.md and docs/
 
     Flies a mission, takes screenshots of the generated pages with Chromium, and reduces each
-    picture to 100 KB or less. The page of a picture must exist.
+    picture to 100 KB or less. The pages must have been generated before.
     """
     icesoc, to = ["./icesoc", "run", *(["--built"] if values.built else [])], Path(values.to)
     with tempfile.TemporaryDirectory() as profile:

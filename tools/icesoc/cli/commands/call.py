@@ -66,34 +66,39 @@ def values_of(catalogue, each, operation, parameter):
 
 
 WORD = Option("call", ARGUMENTS,
-              "[OBJECT.]OPERATION, then its arguments by position or as NAME=VALUE; JSON for "
-              "structures and sequences, @FILE for bytes and pictures, watch for a listener",
+              "[OBJECT.]OPERATION, then its arguments, by position or as NAME=VALUE; structures "
+              "and sequences are JSON, bytes and pictures can be @FILE, and a listener is the word "
+              "watch",
               positional=True, completer=completed)
 OPTIONS = [
     WORD,
-    Option("list", SWITCH, "list objects and operations, of one OBJECT if it is given"),
+    Option("list", SWITCH, "list all objects and their operations, or the operations of one "
+                           "OBJECT"),
     Option("json", SWITCH, "print results, events and errors as JSON, one line each"),
-    Option("check", SWITCH, "check the arguments, send nothing"),
+    Option("check", SWITCH, "only check the arguments; send nothing"),
     Option("oneway", SWITCH, "call without waiting for an answer"),
-    Option("watch", SWITCH, "print calls of the vehicle to listeners, until Ctrl-C"),
+    Option("watch", SWITCH, "print the calls that the vehicle makes to a listener, until Ctrl-C"),
     Option("events", COUNT, "with --watch: end after this number of events"),
     Option("page", SWITCH, "with --gateway: serve a page with forms for all operations"),
-    Option("repeat", COUNT, "number of calls; prints latency statistics", None),
-    Option("timeout", number(0.001, 3600, "s", float), "time-out of a call and of connecting",
+    Option("repeat", COUNT, "call this number of times, and print latency statistics", None),
+    Option("timeout", number(0.001, 3600, "s", float), "time-out for connecting and for each call",
            30.0),
     Option("facet", TEXT, "facet of the object", ""),
-    Option("context", TEXT, "NAME=VALUE pairs of the call's context, separated by spaces", ""),
+    Option("context", TEXT, "context of the call: NAME=VALUE pairs, separated by spaces", ""),
     Option("encoding", one_of("1.0", "1.1"), "Ice encoding", "1.1"),
     Option("flight", FOLDER, "folder of the flight in progress; default: found below build/", ""),
-    Option("vehicle", TEXT, "name of the vehicle: uav1, uav2, ... of a flight, or in IceGrid", ""),
-    Option("gateway", TEXT, "HOST:PORT of a gateway or another Ice server, or Ice's endpoints", ""),
-    Option("locator", TEXT, "proxy of IceGrid's locator; the vehicle is found by its name", ""),
-    Option("device", PATH, "serial port of the modem, or of the cable with --wire", ""),
+    Option("vehicle", TEXT, "name of the vehicle: uav1, uav2, ... in a flight, or its name in "
+                            "IceGrid", ""),
+    Option("gateway", TEXT, "HOST:PORT of a gateway or another Ice server, or endpoints in Ice's "
+                            "syntax", ""),
+    Option("locator", TEXT, "proxy of IceGrid's locator, which finds the vehicle given by "
+                            "--vehicle", ""),
+    Option("device", PATH, "serial port of the modem, or with --wire, of the cable", ""),
     Option("key", KEY_FILE, "with --device: file with the link key; default: unencrypted", ""),
     Option("address", matching("0[xX][0-9a-fA-F]{1,4}", "0x0000 to 0xFFFF"),
            "with --device: address of the vehicle", "0x0001"),
     Option("guard", number(2, 3300, "ms"), "with --device: guard time of the modem", 1000),
-    Option("wire", SWITCH, "with --device: a serial cable, without modems"),
+    Option("wire", SWITCH, "with --device: the port leads to a serial cable, without modems"),
     Option("plugin", FOLDER, "with --device: folder of the radio plugin (default: the build's "
                              "folder)", ""),
     Option("slice", TEXT, "Slice files of objects that the build does not list, separated by "
@@ -142,7 +147,7 @@ def checked(catalogue, each, operation, words, options):
             raise Stop(f"{name}: missing; expected {catalogue.slices.explained(p)}: "
                        f"{each.identity}.{catalogue.slices.signature(operation)}", 2)
         if texts[name] == "watch" and p["type"].endswith("*") and not options.watch:
-            raise Stop(f"{name}: a listener needs --watch", 2)
+            raise Stop(f"{name}: expected --watch with the listener 'watch'; add --watch", 2)
         values[name] = reader.argument(texts[name], p)
     check_register(each, operation["name"], values)
     return values
@@ -257,9 +262,10 @@ def perform(client, operation, values, options):
 def call(options):
     """call an operation of any object of a flight, a vehicle or a gateway
 
-    Arguments are checked against Slice before anything is sent. Exit status: 2 wrong arguments, 3
-    the operation threw an exception, 4 no answer, 5 no such object or operation, 6 refused without
-    a reason. docs/call.md explains arguments and targets."""
+    The arguments are checked against the Slice definition before anything is sent. Exit status: 2
+    wrong arguments, 3 the operation threw an exception, 4 no answer, 5 no such object or operation,
+    6 the operation refused the call without a reason. docs/call.md explains arguments and targets.
+    """
     words = options.call
     if options.page:
         return serve_page(options)
@@ -278,7 +284,7 @@ def call(options):
         raise Stop(f"--context: expected NAME=VALUE, got '{odd}'", 2)
     options.context = {name: value for name, _, value in pairs}
     if options.events and not options.watch:
-        raise Stop("--events needs --watch", 2)
+        raise Stop("--events: expected --watch as well; add --watch", 2)
     each, name = catalogue.find(words[0])
     known = bool(each.interface)
     if known:

@@ -52,7 +52,7 @@ def one_more(status, other):
 def proofs(values):
     """run the formal proofs again and print their total CPU time
 
-    Each proof is run even if its module has not changed since it last passed. A failed proof
+    A proof is run even if its module has not changed since the proof last passed. A failed proof
     leaves a waveform in build/main/tests/hdl/formal.
     """
     build = configured(values, "regmaps")
@@ -74,8 +74,8 @@ def proofs(values):
 def netlist(values):
     """prove each netlist equivalent to its RTL
 
-    Small designs are proven by Yosys and abc. For large designs, the tests of the block run on
-    the netlist. Exit status 1: a netlist differs.
+    Yosys and abc prove the netlists of small designs. For a large design, the tests of the block
+    run on its netlist. Exit status 1: a netlist differs.
     """
     simulated = json.loads(Path("synth/designs.json").read_text())["simulated"]
     build = netlists(values, "-DCLK_HZ=2000000", tests=True)
@@ -85,7 +85,7 @@ def netlist(values):
     names = output([*program, "--list"]).split()
     chosen = [name for name in names if re.search(values.name or "", name)]
     if not chosen:
-        raise Stop(f"no netlist matches '{values.name}': {', '.join(names)}", 2)
+        raise Stop(f"no netlist matches '{values.name}': expected one of {', '.join(names)}", 2)
     tests = [test for name in chosen for test in simulated.get(name, "").split()]
     words = ["--equivalent", *(f"--design={name}" for name in chosen)]
     if tests:
@@ -115,8 +115,8 @@ def netlist(values):
 def sanitizers(values):
     """run programs with AddressSanitizer and ThreadSanitizer
 
-    Builds IceC, engine, gateway and plugin with both sanitizers and runs their tests.
-    Afterwards it fuzzes the stub of the debugger.
+    Builds IceC, engine, gateway and plugin with both sanitizers and runs their tests. Afterwards
+    it fuzzes the simulator's GDB stub.
     """
     build, status = configured(values, tests=True), 0
     for name in values.kinds:  # build/sanitized is the folder of the tests, so another one is used
@@ -148,8 +148,9 @@ def sanitizers(values):
 def fuzz(values):
     """fuzz every parser
 
-    Starts with the inputs of tests/ and of earlier runs, which are stored in
-    ~/.cache/icesoc/fuzz. Prints the bytes of an input that fails, and the command that repeats it.
+    Starts with the inputs in tests/, and with inputs of earlier runs, which are stored in
+    ~/.cache/icesoc/fuzz. For an input that fails, prints its bytes and the command that repeats the
+    failure.
     """
     build = configured(values, "regress", tests=True)
     chosen = f"^fuzz[.].*({values.name or ''})"
@@ -164,7 +165,7 @@ def fuzz(values):
     dataclasses.replace(BLOCK, help="block with seeded bugs, or block/bug", choices=choices.seeded,
                         is_checked=True),
     Option("draw", COUNT,
-           "number of random mutants per proof, drawn by Yosys, instead of those in tests/mutants"),
+           "instead of the bugs in tests/mutants, plant this number of random mutants per proof"),
      SEED,
     FRESH, BUILD, JOBS], make="mutants", brief="check mutants --block bus/decoder_error_of_all",
          long=("check mutants", "check mutants --draw 8 --seed {day}"), examples=[
@@ -174,9 +175,9 @@ def fuzz(values):
 def mutants(values):
     """plant faults into the sources and expect the tests to fail
 
-    Plants each fault of tests/mutants in a copy, and runs the test that must detect it. With
-    --draw, Yosys draws random faults instead, which the proofs or tests of the module must detect.
-    Exit status 1: a fault was not detected.
+    Plants each fault of tests/mutants in a copy of the sources, and runs the test that must detect
+    it. With --draw, Yosys plants random faults instead, and the proofs or tests of the module must
+    detect each. Exit status 1: a fault was not detected.
     """
     build = configured(values, tests=True)
     build.ninja("regress", *(["regmaps"] if values.draw else []))
@@ -188,7 +189,7 @@ def mutants(values):
 
 
 @command("check faults", [
-    Option("moments", COUNT, "number of moments per fault and seed", 10), SEED,
+    Option("moments", COUNT, "number of times at which each fault is injected, per seed", 10), SEED,
     Option("seeds", COUNT, "number of seeds, starting with --seed", 1),
     Option("name", NAME.kind, "only faults with this text in their name, such as killed", ""),
      BUILD, JOBS],
@@ -200,7 +201,7 @@ def mutants(values):
 def faults(values):
     """inject faults into missions and check the consequences
 
-    Kills, stops or starves each process of a mission at random moments, and fills the disk.
+    Kills, stops or starves each process of a mission at random times, and fills the disk.
     docs/regression.md lists the expected consequences.
     """
     build = configured(values)
@@ -217,9 +218,9 @@ def faults(values):
 
 
 @command("check soak", [
-    Option("minutes", MINUTES, "CPU time", 4.0),
+    Option("minutes", MINUTES, "CPU time of the whole test", 4.0),
     Option("fuzzed", COUNT,
-           "bytes of noise sent to the modem controller; link and engine get ten times as many",
+           "bytes of noise sent to the modem controller; link and engine receive ten times as many",
            1000000), SEED, BUILD, JOBS], make="soak",
          brief="check soak --minutes 0.01 --fuzzed 1000",
          long="check soak --minutes 60 --seed {day}", examples=[
@@ -229,10 +230,10 @@ def faults(values):
 def soak(values):
     """test the radio for a long time: bad channel, restarts, noise
 
-    A quarter of the time runs the link alone, another quarter the link under attack, and half
-    of it stock Ice through the plugin to IceC on the chip's RTL. In addition, ten vehicles and
-    two ground stations fly for the same number of simulated minutes, which takes a twentieth of
-    that CPU time.
+    A quarter of the time tests the link alone, a quarter tests the link under attack, and half
+    tests stock Ice, which calls IceC on the chip's RTL through the plugin. In addition, ten
+    vehicles and two ground stations fly for --minutes of simulated time, which adds a twentieth to
+    the CPU time.
     """
     build = configured(values, "soak", "test_chip_soak", "test_ground_engine", "test_modem_soak",
                        "test_link")
@@ -268,7 +269,7 @@ def measure(benches, folder):
 
 
 @command("bench", [
-    Option("only", WORDS, "names of the benches to run, without writing the page"),
+    Option("only", WORDS, "names of the benches to run; the page is then not written"),
     Option("page", PATH, "output page", "docs/figures.md"), BUILD, JOBS], make="bench",
          brief="bench --only slice", long="bench --page build/bench/figures.md", examples=[
              "bench",
@@ -277,14 +278,14 @@ def measure(benches, folder):
 def bench(values):
     """measure the figures of docs/figures.md
 
-    The benches are in tests/bench. Each one writes build/bench/NAME.json. With --only the page
+    The benches are in tests/bench. Each bench writes build/bench/NAME.json. With --only, the page
     is not written.
     """
     build = configured(values)
     benches = json.loads((build / "benches.json").read_text())
     for name in values.only:
         if name not in benches:
-            raise Stop(f"no bench is named '{name}': {', '.join(benches)}", 2)
+            raise Stop(f"unknown bench '{name}': expected one of {', '.join(benches)}", 2)
     folder = Path("build/bench")
     if values.only:
         targets = [target for name in values.only for target in benches[name]["targets"]]

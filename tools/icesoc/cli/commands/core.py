@@ -24,12 +24,12 @@ from icesoc.util.reserved import REFUSAL, RESERVED
 
 TEMPLATE = TREE / "tools/icesoc/cores/template"
 
-GROUPS["core"] = "cores: begin, test, view, remove"
+GROUPS["core"] = "cores: create, test, view waveforms, remove"
 NAME = Option("name", TEXT, "name of the core, such as low_pass", "", positional=True)
 CORE = Option("ip", matching(r"\w+", "the name of a core"), "name of the core", "", positional=True,
               choices=choices.cores)
 CHIP = Option("chip", SWITCH,
-              "synthesise the current chip (takes minutes) instead of using the accepted figures")
+              "synthesise the current chip (takes minutes); default: use the accepted figures")
 
 
 def check_name(name, room="ip"):
@@ -49,11 +49,12 @@ def check_name(name, room="ip"):
     for room in ("bus", "hdl", "ip", "sw", "testbench", "synth"):
         for path in sorted(Path(room).rglob("*")):
             if room != "synth" and path.name in (f"{name}.regs.json", f"{name}_wrapper.v"):
-                raise Stop(f"{path} has the name '{name}'", 2)
+                raise Stop(f"the name '{name}' is taken by {path}; choose another name", 2)
             if room not in ("sw", "testbench") and path.suffix in (".v", ".vhd") and re.search(
                     rf"^ *(module|entity) +{name}(_wrapper)?\b", path.read_text(errors="replace"),
                     re.M | re.I):
-                raise Stop(f"there is a module '{name}' in {path}", 2)
+                raise Stop(f"the name '{name}' is taken by a module in {path}; choose another "
+                           "name", 2)
 
 
 def write_own(build, name, lang, ice, folder):
@@ -65,7 +66,7 @@ def write_own(build, name, lang, ice, folder):
     work = folder.parent
     if run([build / "slice/slice2c", f"-I{Path(ice).absolute().parent}", ice, "--output-dir",
             work / "c", "--hw-regs", work / "regs", f"--hw-new-{lang}", work / "new"], check=False):
-        raise Stop(f"{ice} is not an interface in hardware (above)")
+        raise Stop(f"{ice}: expected an interface in hardware, got the errors above")
     cores = sorted(path.name[:-len(".regs.json")] for path in (work / "regs").iterdir())
     if cores != [name]:
         raise Stop(f"{ice}: expected one interface with [\":hw\"], named {name}; got "
@@ -136,7 +137,7 @@ def new(values):
     """create a core: ip/NAME with interface, RTL and a test that passes
 
     The core is generated from a Slice interface: the example of docs/guides/core-new.md, or
-    your own with --ice. It is not in the chip until ip/cores.list names it.
+    your own interface with --ice. The core is in the chip only if ip/cores.list names it.
     """
     name, lang = values.name, values.lang
     if name and not lang:
@@ -185,7 +186,7 @@ def new(values):
 def known(values):
     """Returns the build folder that contains the core."""
     if not values.ip:
-        raise Stop("a core is needed: ./icesoc core test fir (make ip-test IP=fir)", 2)
+        raise Stop("expected the name of a core: ./icesoc core test fir (make ip-test IP=fir)", 2)
     build = BuildFolder(values.build, values).prepare()
     if not values.built:
         build.ninja("build.ninja")  # CMake may not have read folders that are newer than its last
@@ -204,13 +205,13 @@ def known(values):
 def test(values):
     """build and test one core: its block test, and its VHDL under GHDL
 
-    Builds only what the tests of this core need. The core need not be in the chip. Exit status
-    8: a test failed.
+    Builds only the targets that the tests of this core need. The core need not be in the chip.
+    Exit status 8: a test failed.
     """
     core, build = values.ip, known(values)
     programs = [name for name in build.targets() if name in (f"test_ip_{core}", f"{core}_vectors")]
     if not programs:
-        raise Stop(f"{core} has no test: {core}_test.cpp is not in its folder")
+        raise Stop(f"{core} has no test: {core}_test.cpp not found in the core's folder")
     build.ninja(*programs)
     return build.ctest("-R", rf"^(test_ip_{core}[.]|vhdl[.]{core}$)", tests=1,
                        junit=f"junit-{core}.xml", SEED=values.seed)
@@ -224,8 +225,8 @@ def test(values):
 def synth(values):
     """report the utilisation of one core, alone and in the chip
 
-    Prints LUTs, flip-flops, block RAM and DSP of the core and of its parts, and the share that
-    its slot and memory port add to the chip.
+    Prints LUTs, flip-flops, block RAM and DSP blocks of the core and of its parts, and the cost
+    that its slot and memory port add to the chip.
     """
     build = known(values)
     build.ninja("synth_inputs")
@@ -247,7 +248,8 @@ def one_test(program, text):
     found = [name for name in names if text in (name, name.partition(".")[2])] or [
         name for name in names if re.search(text, name)]
     if len(found) != 1:
-        raise Stop(f"TEST={text} matches {len(found)} tests, not one of:\n{listed}"
+        raise Stop(f"TEST={text}: expected an expression that matches one test, got {len(found)} "
+                   f"matches; the tests are:\n{listed}"
                    + nearest(text, names), 2)
     return found[0]
 
@@ -303,20 +305,20 @@ def traced(values):
 
 @command("core wave", [dataclasses.replace(
     CORE, kind=matching(r"(vhdl\.)?\w+", "a core, test_... or vhdl.CORE"), is_checked=False,
-    help="name of the core; or a test program, such as test_fsmc_bridge; or a test bench by GHDL, "
-         "such as vhdl.fir"), Option(
+    help="core, test program (such as test_fsmc_bridge), or VHDL test bench that runs in GHDL "
+         "(such as vhdl.fir)"), Option(
     "test", TEXT, "name of the test, or an expression that matches only this test", "",
     positional=True), CORE_FOLDERS, BUILD, JOBS], make="wave", brief="core wave fir Impulse",
          examples=["core wave fir Impulse", "core wave test_fsmc_bridge TooEarly",
                    "core wave vhdl.fir"])
 def wave(values):
-    """waveform of one test, for GTKWave: build/wave/NAME.fst and .gtkw
+    """write the waveform of one test for GTKWave, build/wave/NAME.fst
 
-    The save file lists the ports, then internal signals. For a core in VHDL, `vhdl.NAME` shows
-    GHDL's waveform, which has the names and types of the source."""
+    The save file NAME.gtkw lists the ports, then internal signals. For a core in VHDL, `vhdl.NAME`
+    writes GHDL's waveform, which has the names and types of the source."""
     what = values.ip
     if not what or not (values.test or what.startswith("vhdl.")):
-        raise Stop("wave needs the name of a core or test program, and of a test: ./icesoc core "
+        raise Stop("core wave: expected a core or test program, and a test: ./icesoc core "
                    "wave fir Impulse (make wave IP=fir TEST=Impulse); or only vhdl.CORE: ./icesoc "
                    "core wave vhdl.fir", 2)
     build, words = traced(values)
@@ -352,7 +354,7 @@ def users_of(name):
 
 
 @command("core remove", [dataclasses.replace(NAME, choices=choices.cores, is_checked=False),
-                         Option("force", SWITCH, "remove it even with uncommitted changes"),
+                         Option("force", SWITCH, "remove the core even with uncommitted changes"),
                          BUILD, JOBS], make="rm-ip", brief=("core new brief_gone --lang verilog",
                                                             "core remove brief_gone --force"),
          examples=[
@@ -362,22 +364,23 @@ def users_of(name):
 def remove(values):
     """remove a core: its folder and its line in ip/cores.list
 
-    A folder outside ip/ is kept. Without --force, a core with uncommitted changes is not
-    removed.
+    A core's folder outside ip/ is not deleted. Without --force, a core with uncommitted changes is
+    not removed.
     """
     build = BuildFolder(values.build, values)
     name, core = values.name, build.core(values.name or ".")
     if not re.fullmatch(r"[a-z0-9_]+", name) or name == "template":
         raise Stop(
-            f"'{name}' is not a core: ./icesoc core remove low_pass (make rm-ip NAME=low_pass)", 2)
+            f"NAME: expected the name of a core, got '{name}': ./icesoc core remove low_pass "
+            "(make rm-ip NAME=low_pass)", 2)
     if not core.is_dir():
         raise Stop(f"{core} not found{nearest(name, choices.cores(values))}", 2)
     others = build.other_cores()
     changed = core not in others and output(
         ["git", "status", "--porcelain", "--ignored", "--", core], check=False, stderr=-3)
     if changed and not values.force:
-        raise Stop(f"ip/{name} has changes that are not committed (FORCE=1, --force, removes "
-                   f"it anyway):\n{changed}")
+        raise Stop(f"ip/{name} has uncommitted changes; FORCE=1 (--force) removes it "
+                   f"anyway:\n{changed}")
     users = sorted(set(users_of(name)))
     if users:
         raise Stop(f"ip/cores.list connects inputs of {' '.join(users)} to outputs of '{name}'; "

@@ -18,7 +18,8 @@ LEFT_OUT = "NOT_BUILT|^fuzz|^e2e.cores"
 
 @command("check coverage", [
     Option("name", NAME.kind,
-           "only tests with a name that matches this expression; gates are not checked", ""), BUILD,
+           "only tests with a name that matches this expression; minimum figures are then not "
+           "checked", ""), BUILD,
     JOBS], make="coverage", brief=["check coverage --name ^test_fsmc_corners[.]",
                              "check coverage --name ^vhdl[.]fir"],
          long="check coverage",
@@ -31,7 +32,7 @@ def coverage(values):
 
     Builds models, C and C++ with counters (build/coverage), runs all tests except proofs, lints and
     tests of tools, and merges the counts of Verilator, GHDL and gcov. Writes html/index.html and
-    summary.json in build/coverage. Exit status 1: a figure is below its gate in
+    summary.json in build/coverage. Exit status 1: a figure is below its minimum in
     tests/regress/coverage_gates.json."""
     build = configured(values, tests=True)
     build.ninja("regress")

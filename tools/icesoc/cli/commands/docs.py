@@ -15,7 +15,7 @@ from icesoc.site import build, tutorial
 PROGRAMS = {"sphinx-build": "python3-sphinx", "doxygen": "doxygen"}
 
 
-@command("docs", [Option("out", FOLDER, "folder of the site; the pages are in its html/",
+@command("docs", [Option("out", FOLDER, "output folder; the site is in its folder html",
                          "build/docs")],
          brief="docs --out build/brief/docs", examples=[
              "docs",
@@ -60,7 +60,7 @@ def check_tutorial(values):
     """run the tutorial and compare its output with the page
 
     Runs every command of docs/tutorial.md, writes its files, and compares output and exit
-    status. Without --clone it runs in this tree and uses what is built. It adds the core
+    status. Without --clone, it runs in this tree and uses the existing build. It adds the core
     low_pass to the tree, and removes it at the end.
     """
     page, folder = Path(TUTORIAL).absolute(), Path.cwd()

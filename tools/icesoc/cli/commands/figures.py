@@ -62,10 +62,9 @@ def figures_of_synth(report):
 def build_figures(values):
     """make the figures and pictures of README.md and docs/ from one run
 
-    Runs `bench`, `synth` and a regression with a seeded fault, one after the other, takes the
-    pictures of their pages and of two flights, and writes the figures into the pages. `synth`
-    accepts its figures, since the pages show those. `make test NAME=tree.figures` compares the
-    pages and pictures with their sources.
+    Runs `bench`, `synth accept` and a regression with a seeded fault, takes pictures of their pages
+    and of two flights, and writes the figures into the documentation. `make test
+    NAME=tree.figures` compares pages and pictures with the measured figures.
     """
     for step in STEPS:
         if step not in values.steps:

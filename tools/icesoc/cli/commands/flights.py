@@ -29,7 +29,8 @@ NETLIST = Option("netlist", SWITCH, "fly the netlist synthesised by Yosys, at 2 
                                     "clock evaluated")
 NETLIST_HZ = 2000000
 SHOW = Option("show", one_of("auto", "yes", "no"),
-              "open the page in a browser; auto: if a terminal with a display runs the command",
+              "open the page in a browser; auto: only if the command runs in a terminal and there "
+              "is a display",
               "auto")
 DEBUGGED = [option for option in flight.FIELDS if option.name in ("image", "size", "seed")]
 
@@ -45,14 +46,14 @@ DEBUGGED = [option for option in flight.FIELDS if option.name in ("image", "size
 def fly_mission(values):
     """fly the mission: simulated UAV, radio, ZeroC Ice ground station
 
-    Opens a page that shows the flight, or prints its address. While a browser shows the page, the
-    vehicle stays after the mission, and the page calls it; LIVE=1 keeps it until Ctrl-C.
-    OUT/flight.json describes the flight; --again repeats it.
+    Opens a page that shows the flight, or prints the page's address. The vehicle keeps running
+    after the mission while a browser shows the page, or with --live until Ctrl-C; the page can call
+    it. OUT/flight.json describes the flight; --again repeats it.
     """
     descriptors = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
     if descriptors < DESCRIPTORS:
-        raise Stop(f"a flight needs {DESCRIPTORS} file descriptors, the limit is {descriptors}: "
-                   f"ulimit -n {DESCRIPTORS}")
+        raise Stop(f"limit of file descriptors: expected at least {DESCRIPTORS}, got "
+                   f"{descriptors}; raise it by ulimit -n {DESCRIPTORS}")
     flight.complete(values)
     flight.check_chip(values, BuildFolder(values.build, values))
     build = BuildFolder(values.build, values).prepare()
@@ -66,7 +67,7 @@ def fly_mission(values):
                 *(["gateway", "slice2c", "page_ice"] if values.live or opens(values) else []))
     flight.take_key(values, build)
     flight.take_observers_key(values)
-    busy = (f"another flight is under way in {values.out}; give this one a separate folder: "
+    busy = (f"another flight is in progress in {values.out}; give this flight a separate folder: "
             "OUT=build/other (--out)")
     with lock(Path(values.out) / "lock", refuse=busy) as held:  # the lock is held until the last
                                                                 # program has ended
@@ -194,11 +195,11 @@ def explain_failure(values, status, has_flown):
     text = f"The mission failed{what}\n"
     span = flight.last_span(out) if has_flown else None
     if has_flown and not span:
-        text += f"It cannot be flown again: {out}/flight.jsonl is cut, as by a full disk.\n"
+        text += f"It cannot be replayed: {out}/flight.jsonl is incomplete; is the disk full?\n"
     if span:
-        text += f"Its end as a waveform: make run REPLAY='{out}' {span}\n"
+        text += f"To write a waveform of its end: make run REPLAY='{out}' {span}\n"
         if values.cpu == "m3":
-            text += f"Its end, and backwards from there: make gdb REPLAY='{out}'\n"
+            text += f"To debug it backwards from its end: make gdb REPLAY='{out}'\n"
     sys.stderr.write(text)
 
 
@@ -212,9 +213,9 @@ def explain_failure(values, status, has_flown):
 def replay(values):
     """repeat a recorded flight bit by bit, or write a part as waveform
 
-    Without --from and --to it repeats the flight and compares every result. With them it writes
-    the waveform of that part to OUT/wave.fst, by a simulator that is built once. For a flight
-    with --cpu m3 the waveform also shows task, interrupt and function.
+    Without --from and --to, repeats the flight and compares every result. With them, writes the
+    waveform of that part to OUT/wave.fst; the first time, this builds a simulator with waveforms.
+    For a flight with --cpu m3, the waveform also shows task, interrupt and function.
     """
     span = values.given & {"from", "to"}
     if span and values.to is not None and values.to <= (getattr(values, "from") or 0):
@@ -247,7 +248,7 @@ def replay(values):
     Option("replay", FLIGHT, "folder of a recorded flight to debug forwards and backwards", ""),
     *DEBUGGED,
     Option("out", FOLDER,
-           "output folder; default build/run, for a replay build/replay"),
+           "output folder (default: build/run, or build/replay for a replay)"),
     BUILD, JOBS], make="gdb", brief="gdb --size 48x32 --out build/brief/gdb", examples=[
              "gdb",
              "gdb --replay build/run",
@@ -290,13 +291,13 @@ def gdb(values):
 
 @command("key", [
     Option("file", PATH, "output file", "", positional=True),
-    Option("certificate", SWITCH, "make a TLS certificate for the gateway; the file name is the "
-                                  "subject. Signed by authority.pem in the same folder, which is "
-                                  "created if missing"),
+    Option("certificate", SWITCH, "make a TLS certificate for the gateway; the file name becomes "
+                                  "its subject. The authority.pem in the same folder signs it; a "
+                                  "missing authority is created"),
     Option("signing", SWITCH, "make a private key for signing updates, and its public half "
                               "(spare.pub for spare.key); an existing key is kept"),
-    Option("list", COUNT, "make the next list of signing keys, with this number: the previous "
-                          "number plus 1"),
+    Option("list", COUNT, "make a list of signing keys; its number is the number of the previous "
+                          "list plus 1"),
     Option("by", FILE, "private key that signs the list; it must be in the previous list"),
     Option("first", FILE, "first public key of the list"),
     Option("second", FILE, "second public key of the list"), BUILD, JOBS], make="key",
@@ -310,15 +311,16 @@ def gdb(values):
 def key(values):
     """make a key for the radio link, or a certificate
 
-    It also makes keys that sign updates, and lists of such keys. docs/security.md explains keys of
-    the link and certificates, docs/firmware.md keys of updates."""
+    It also makes keys that sign updates, and lists of such keys. docs/security.md explains link
+    keys and certificates; docs/firmware.md explains signing keys."""
     if not values.file:
-        raise Stop("key needs the name of a file: ./icesoc key my.key", 2)
+        raise Stop("key: expected the name of a file: ./icesoc key my.key", 2)
     parts = values.list, values.by, values.first
     if any((*parts, values.second)) and not all(parts):
-        raise Stop("a list of keys needs --list NUMBER, --by PRIVATE_KEY and --first PUBLIC_KEY", 2)
+        raise Stop("key: expected --list NUMBER, --by PRIVATE_KEY and --first PUBLIC_KEY together, "
+                   "got only some of them", 2)
     if sum(map(bool, (values.certificate, values.signing, values.list))) > 1:
-        raise Stop("give one of --certificate, --signing and --list", 2)
+        raise Stop("key: expected at most one of --certificate, --signing and --list", 2)
     if values.signing or values.list:
         pack = configured(values, "pack_update") / "sw/update/pack_update"
         public = Path(values.file).with_suffix(".pub")
@@ -328,7 +330,7 @@ def key(values):
         else:
             run([pack, "keys", values.list, values.by, values.first,
                  *([values.second] if values.second else []), values.file])
-            say(f"made {values.file}: sw/ground/clients/update.py sends it")
+            say(f"made {values.file}; send it with sw/ground/clients/update.py")
         return
     make = keys.make_certificate if values.certificate else flight.make_key
     if not make(values.file):
@@ -349,7 +351,7 @@ def fly_for_long(values):
 
     Vehicle and ground station call each other while packets are lost, and vehicle, modems and
     ground station restart at random times. Prints the numbers of calls and restarts. Exit
-    status 1: a call was lost without a report, executed twice, or a link did not recover.
+    status 1: a call was lost without a report or executed twice, or a link did not recover.
     """
     build = configured(values, "test_chip_soak")
     run([build / "tests/sw/ground/chip/test_chip_soak", "--gtest_brief=1"], env={

@@ -29,9 +29,9 @@ def foreign_words(values):
     Option("top", TEXT, "top module or entity of the core", ""),
     Option("bus", TEXT, "bus of the core: wishbone, axil, apb, avalon, memory, own or axis", ""),
     Option("files", FILES, "Verilog or VHDL files of the core"),
-    Option("ports", WORDS, "meaning of ports, such as write=we ack=done"),
-    Option("params", WORDS, "parameters of the top module, such as depth=16"),
-    Option("defines", WORDS, "Verilog macros to define, such as wide"),
+    Option("ports", WORDS, "roles of the core's ports, as ROLE=PORT, such as write=we ack=done"),
+    Option("params", WORDS, "parameters of the top module, such as DEPTH=16"),
+    Option("defines", WORDS, "Verilog macros to define, such as WIDE"),
     Option("clock", COUNT, "frequency of a separate clock, Hz"),
     Option("library", WORDS, "VHDL library of the files; util=FILE for files in another library"),
     Option("address", one_of("words", "bytes"),
@@ -45,7 +45,7 @@ def foreign_words(values):
              "core foreign my_pwm --top apb_pwm --bus apb --files apb_pwm.v --params CHANNELS=2",
              "core foreign my_spi --top spi --bus axil --files spi.vhd --clock 50000000"])
 def foreign_core(values):
-    """put a third-party core into a slot: writes ip/NAME
+    """put a third-party core into a slot, as ip/NAME
 
     Reads the ports of the core's top module, connects them to a slot, and writes registers, a
     test and a manifest. docs/guides/foreign-core.md lists the buses. With --repository, source
@@ -105,7 +105,8 @@ def put_and_fly(values, listed, known):
 
 
 @command("core examples", [
-    Option("cores", WORDS, "only these cores of examples/foreign/cores.json, in one order"),
+    Option("cores", WORDS, "names of the cores to use, from examples/foreign/cores.json (default: "
+                           "all); their chip is then built in only one order"),
     Option("chip", SWITCH, "also print the cost of each core in the chip"), SEED,
     *(o for o in FIELDS if o.name == "image"), BUILD, JOBS], make="foreign",
          brief="core examples --cores foreign_i2c foreign_arbiter foreign_queue",
@@ -120,9 +121,9 @@ def examples(values):
     The cores have Wishbone, Avalon-MM, AXI4-Lite, AXI-Stream and plain buses, and are written
     in Verilog, SystemVerilog and VHDL. They are downloaded from Debian's mirror and GitHub; a core
     that cannot be downloaded is skipped. Together with two cores of this tree they form a chip,
-    built in three orders of the list. A core in SystemVerilog that Yosys cannot read flies in a
-    second chip, which is not synthesised. Exit status 77: no core, or not every core of --cores,
-    could be downloaded.
+    which is built with three orders of the cores. Cores in SystemVerilog that Yosys cannot read
+    fly in a second chip, which is not synthesised. Exit status 77: no core, or not every core of
+    --cores, could be downloaded.
     """
     listed = json.loads(Path("examples/foreign/cores.json").read_text())
     known = {name for source in listed.values() for name in source["cores"]}
@@ -131,5 +132,6 @@ def examples(values):
                    f"{' '.join(sorted(known))}", 2)
     if not values.built:
         run(["cmake/setup.sh", "--tests"])
-    with lock("build/foreign.lock", refuse="another one puts cores into slots in this folder"):
+    with lock("build/foreign.lock", refuse="core examples: another one runs in this folder; wait "
+                                           "until it ends"):
         return put_and_fly(values, listed, known)

@@ -34,13 +34,14 @@ mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd $3 && $2"
 
 @command("check fresh", [
     Option("release", one_of(*RELEASES), "Debian release, bookworm or trixie; default: both", ""),
-    Option("again", SWITCH, "reuse the existing systems, with the current HEAD"),
-    Option("steps", TEXT, "commands to run instead of the README's, separated by ;",
+    Option("again", SWITCH, "reuse the existing systems, and update their clones to HEAD"),
+    Option("steps", TEXT, "commands to run, separated by ;",
            "; ".join([*README, PACKAGES])),
     Option("packages", INPUT_FOLDER, "only test the Debian packages in this folder, in a new "
                                      "system of that --release"),
-    Option("folder", FOLDER, "folder for the systems and logs, 8 GB each", "/var/tmp/icesoc-fresh"),
-    Option("list", SWITCH, "only print earlier results, with status and minutes")],
+    Option("folder", FOLDER, "folder for the systems and their logs; each system takes 8 GB",
+           "/var/tmp/icesoc-fresh"),
+    Option("list", SWITCH, "only print earlier results, each with its status and duration")],
          brief="check fresh --list", long="check fresh", examples=[
              "check fresh --release trixie", "check fresh --again --steps 'make test'",
              "check fresh --release bookworm --packages build/packages"])
@@ -54,9 +55,9 @@ def fresh(values):
     results = top / "results.json"
     rows = json.loads(results.read_text()) if results.exists() else []
     if values.list:
-        return say("\n".join(map(summary, rows)) or f"no machine was made in {top}")
+        return say("\n".join(map(summary, rows)) or f"{top} contains no results")
     if os.geteuid():
-        raise Stop("check fresh needs root, because it uses mount and chroot", 2)
+        raise Stop("check fresh: expected root, because it uses mount and chroot; use sudo", 2)
     for release in [values.release] if values.release else RELEASES:
         root = top / release
         steps = [PACKAGES] if values.packages else [

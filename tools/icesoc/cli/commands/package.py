@@ -16,8 +16,9 @@ ROOMS = "bus;slice;ip;sw;hdl;testbench"
 
 
 @command("package", [
-    Option("build", FOLDER, "build folder; the default one has programs for any CPU of this "
-                            "architecture", BUILD),
+    Option("build", FOLDER, "build folder; programs in the default folder run on any CPU of this "
+                            "architecture, programs in build/main only on CPUs like this one",
+           BUILD),
     Option("output", FOLDER, "folder for the packages", "build/packages"),
     Option("check", SWITCH, "check the packages with lintian"), JOBS], make="package",
          brief="package --build build/main --output build/brief/packages", examples=[
@@ -25,7 +26,7 @@ ROOMS = "bus;slice;ip;sw;hdl;testbench"
 def package(values):
     """build the Debian packages for this release of Debian
 
-    The packages hold programs, hardware sources and libraries for use without this tree.
+    The packages contain programs, libraries and hardware sources that work without this tree.
     docs/install.md describes them.
     """
     own = ["-DPORTABLE=ON", f"-DROOMS={ROOMS}"] if values.build == BUILD else []

@@ -21,7 +21,7 @@ from icesoc.util.process import output, run
 from icesoc.util.table import Table
 from icesoc.util.tree import commit
 
-WAVES = Option("waves", number(0), "number of failures to record waveforms of", 3)
+WAVES = Option("waves", number(0), "number of failures for which waveforms are recorded", 3)
 
 
 def at_once(values):
@@ -37,17 +37,18 @@ def selection(values, *more):
 @command("test", [
     Option("folder", TEXT, "folder of the tests, such as hdl/fsmc or ip/fir (default: all)", "",
            positional=True), LABEL, TEST_NAME,
-    Option("all", SWITCH, "run all tests, also those that have passed with their present inputs"),
+    Option("all", SWITCH, "run all tests, including those that passed and whose inputs have not "
+                          "changed since"),
     SEED, FRESH, TESTS, UCOS2, BUILD, JOBS], make="test",
          brief="test tree", examples=[
              "test hdl/fsmc", "test --label rtl", "test --name Burst --seed 7", "test --all"])
 def test(values):
     """run all tests, the tests of a folder, or tests selected by options
 
-    Without options it runs the tests of the build folder, then the tests of firmware, models and
-    IceC again with sanitizers. It leaves out tests that have passed with their present inputs:
-    program, files, packages and seed. With a folder, a name or a label it builds only the programs
-    of the selected tests, and runs all of these."""
+    Without options, runs the tests of the build folder, then the tests of firmware, models and
+    IceC again with sanitizers. Tests that passed and whose inputs (program, files, packages and
+    seed) have not changed since are left out. With a folder, a name or a label, builds only the
+    programs of the selected tests, and runs all selected tests."""
     build = BuildFolder(values.build, values).prepare(tests=True)
     some, tests, seed = values.folder or values.name or values.label, at_once(values), {
         "SEED": values.seed, "FRESH": "1" if values.fresh else ""}
@@ -100,9 +101,10 @@ def changed_tests(build, values, tests, seed, label=""):
 
 @command("regress", [
     TEST_NAME, LABEL, BLOCK,
-    Option("changed", SWITCH, "only tests that depend on files changed since they passed"),
+    Option("changed", SWITCH, "only tests that depend on files that changed since they passed"),
     Option("failed", SWITCH, "only tests that failed last time"),
-    Option("kept", SWITCH, "only known failing tests, with their recorded seeds"),
+    Option("kept", SWITCH, "only tests that are known to fail, with the seeds with which they "
+                           "failed"),
     Option("seed", matching(r"\d{1,18}|random", "a whole number, or random", metavar="N|random"),
            "first seed", "1"),
     Option("repeat", COUNT, "number of seeds to run", 1), WAVES, FRESH, TESTS, CORE_FOLDERS,
@@ -136,13 +138,15 @@ def last_good(test):
     good = [each["commit"] for each in runs if "dirty" not in each["commit"]
             and {end[1] for end in each.get("ends", []) if end[0] == test} == {"p"}]
     if not good:
-        raise Stop(f"no recorded run passed {test} at a commit: name a commit by GOOD= (--good)", 2)
+        raise Stop(f"{test} passed in no recorded run of a commit; give a commit at which it "
+                   "passes by GOOD= (--good)", 2)
     return good[-1]
 
 
 @command("bisect", [
     Option("test", TEXT, "CTest name of the test", "", positional=True),
-    Option("good", TEXT, "commit at which the test passes; default: the last recorded one", ""),
+    Option("good", TEXT, "commit at which the test passes; default: the last commit at which it "
+                         "passed here", ""),
     Option("bad", TEXT, "commit at which the test fails", "HEAD"),
     Option("list", SWITCH, "only list the commits to search"), SEED, BUILD, JOBS],
          make="bisect", brief="bisect test_fifo.Fifo.Wraps --good HEAD~3 --list", examples=[
@@ -150,23 +154,25 @@ def last_good(test):
              "bisect test_fifo.Fifo.Wraps --good main~30 --bad main",
              "bisect test_fifo.Fifo.Wraps --good HEAD~20 --seed 7"])
 def bisect(values):
-    """find the commit since which a test fails, in a separate checkout
+    """find the commit that broke a test, in a separate checkout
 
-    Skips commits that do not build or lack the test. Exit status: 0 found, printed in the last
-    line; 1 not found; 2 could not start.
+    Skips commits that do not build or do not have the test. The last line of output is the commit.
+    Exit status: 0 found, 1 not found, 2 the search could not start.
     """
     test = values.test
     if not test:
-        raise Stop("TEST= names the test, as CTest does: ./icesoc bisect test_fifo.Fifo.Wraps", 2)
+        raise Stop("TEST: expected the CTest name of a test: ./icesoc bisect test_fifo.Fifo.Wraps",
+                   2)
     bad = commit(values.bad, "BAD")
     good = commit(values.good or last_good(test), "GOOD")
     if run(["git", "merge-base", "--is-ancestor", good, bad], check=False):
-        raise Stop(f"{values.good or good} does not lead to {values.bad}", 2)
+        raise Stop(f"GOOD: expected an ancestor of {values.bad}, got {values.good or good}", 2)
     if values.list:
         return run(["git", "log", "--oneline", f"{good}..{bad}"])
     program = (configured(values, "regress", tests=True) / "tests/regress/regress").absolute()
     tree = Path("build/bisect/tree").absolute()
-    with lock("build/bisect/lock", refuse="another one runs in this folder"):
+    with lock("build/bisect/lock", refuse="bisect: another one runs in this folder; wait until it "
+                                          "ends"):
         run(["git", "worktree", "remove", "--force", tree], check=False, stderr=-3)
         run(["git", "worktree", "prune"])
         run(["git", "worktree", "add", "-q", "--detach", tree, bad])
@@ -198,7 +204,7 @@ def search(program, values, good, bad, tree):
         run(["git", "bisect", *words], check=False, cwd=tree, stdout=-3)
 
     if run(step, check=False, cwd=tree) == 0:
-        raise Stop(f"the test passes at {bad}", 2)
+        raise Stop(f"BAD: expected a commit at which the test fails, but it passes at {bad}", 2)
     git("start", bad, good)
     git("run", *step)
     log = output(["git", "bisect", "log"], cwd=tree)
@@ -213,7 +219,8 @@ def search(program, values, good, bad, tree):
 
 @command("nightly", [
     Option("nightly", COUNT, "number of new random seeds", 3),
-    Option("steps", WORDS, "names of the steps to run, as in the table", []), TEST_NAME, LABEL,
+    Option("steps", WORDS, "names of the steps to run, as listed in build/nightly.md (default: "
+                           "all)", []), TEST_NAME, LABEL,
     WAVES, TESTS, BUILD, JOBS], make="nightly",
          brief="nightly --steps kept random --nightly 1 --name ^tree[.]pages", examples=[
              "nightly",
@@ -222,8 +229,9 @@ def search(program, values, good, bad, tree):
 def nightly(values):
     """run the nightly suite: failing seeds, new seeds, slow commands
 
-    Then runs ZeroC's test suites, the longest missions, and the slow variant of each command that
-    has one. Writes a table of the steps, build/nightly.md."""
+    Runs the tests with seeds that failed before and with new seeds. Then runs ZeroC's test suites,
+    the longest missions, and the slow variant of each command that has one. Writes a table of the
+    steps, build/nightly.md."""
     build, tests = BuildFolder(values.build, values), at_once(values)
     # COMPARE_MS: simulated time that test_sim_quiet compares, ms. HOSTILE: number of packets in
     # test_link.

@@ -11,8 +11,8 @@ from icesoc.util.errors import Stop
 
 @command("release", [
     Option("only", WORDS, "parts to make: " + ", ".join(build.PARTS) + " (default: all)"),
-    Option("key", TEXT, "key that signs SHA256SUMS: a key file of minisign (NAME.sec), or a gpg "
-                        "key by its name", ""),
+    Option("key", TEXT, "key that signs SHA256SUMS: a key file of minisign (NAME.sec), or the name "
+                        "of a gpg key", ""),
     Option("out", FOLDER, "folder for the files, which is emptied first", "build/release")],
          brief="release --only source icec changes sbom --out build/brief/release/files", examples=[
              "release",
@@ -21,13 +21,13 @@ from icesoc.util.errors import Stop
 def release(values):
     """make the files of a release: sources, packages, checksums
 
-    Also makes IceC as single files and as packs, the documentation and a list of all
-    components. Everything is made from the last commit. The same commit gives the same bytes,
-    except for a signature by gpg, which contains the time.
+    Also makes IceC as single files and as packs, the documentation, and a list of all
+    components. Everything is made from the last commit. The same commit always gives the same
+    bytes, except for a signature by gpg, which contains the time.
     """
     for part in values.only:
         if part not in build.PARTS:
-            raise Stop(f"only: expected parts out of {', '.join(build.PARTS)}, got '{part}'", 2)
+            raise Stop(f"--only: expected parts from {', '.join(build.PARTS)}, got '{part}'", 2)
     parts = values.only or list(build.PARTS)
     out = Path(values.out).absolute()
     number, made = build.build(Path.cwd(), out, parts, values.key)

@@ -20,8 +20,8 @@ DEFAULTS["synth"] = "synth report"
 GROUPS["contract"] = "registers: changes, import of SystemRDL"
 SHOWN = 10  # number of tests listed in one line of a pull request
 DESIGN = Option("design", WORDS,
-                "designs to measure, such as modem, table1 or soc; others are shown as last "
-                "measured", choices=choices.designs)
+                "designs to measure, such as modem, table1 or soc; the report shows the last "
+                "figures of the others", choices=choices.designs)
 DIFF = tool("chip.contract_diff")
 GIT = ["git", "-c", "advice.detachedHead=false"]
 
@@ -38,8 +38,9 @@ def utilisation(build, values, *words):
 @command("synth report", [
     DESIGN,
     Option("family", WORDS, "additional FPGA families, such as xc7 or ecp5"),
-    Option("base", TEXT, "commit to compare with, as Markdown; COMMIT..COMMIT or COMMIT.. prints "
-                         "only the differences between two commits, or up to the last report", ""),
+    Option("base", TEXT, "commit to compare with; prints Markdown. COMMIT1..COMMIT2 prints only "
+                         "the differences between two commits, COMMIT.. the differences from "
+                         "COMMIT to the last report", ""),
     CORE_FOLDERS, BUILD, JOBS], make="synth", brief="synth report --design npi_arbiter",
          long="synth report", examples=[
              "synth report --design modem", "synth report --family xc7 ecp5",
@@ -47,9 +48,8 @@ def utilisation(build, values, *words):
 def synth(values):
     """report LUTs, flip-flops, slices and clock of the chip and each part
 
-    Synthesises every design that has changed, by Yosys, and compares the figures with the
-    baseline, with the limits in synth/designs.json and with the paper. Writes
-    build/synth/report.html.
+    Synthesises every design that has changed with Yosys. Compares the figures with the baseline,
+    with the limits in synth/designs.json and with the paper. Writes build/synth/report.html.
     """
     first, between, last = values.base.partition("..")
     commits = [commit(name) for name in (first, last) if name]
@@ -87,8 +87,8 @@ def accept(values):
 def edif(values):
     """write the chip as EDIF for Xilinx ISE (build/synth/ise)
 
-    The folder also gets the Verilog of the netlist. docs/utilisation.md describes the way from
-    there to a bitstream.
+    Also writes the netlist as Verilog into this folder. docs/utilisation.md describes how to make
+    a bitstream from these files.
     """
     build = configured(values, "synth_inputs")
     return run([build / "synth/utilisation", "--generated", build / "gen", "--edif", values.design],
@@ -189,8 +189,8 @@ def compare(build, jobs, base, head=None):
 def contract_diff(values):
     """list changes of the cores' registers since a commit
 
-    Compares the registers of all cores in the chip with those of another commit. Exit status 1:
-    software for that commit would break.
+    Compares the registers of all cores in the chip with the registers at another commit. Exit
+    status 1: software for that commit would not work with these registers.
     """
     if values.base:
         commit(values.base)
@@ -209,6 +209,6 @@ def from_rdl(values):
     """convert SystemRDL into register descriptions (*.regs.json)
 
     Reads a flat subset of SystemRDL 2.0: addrmap, reg, field and their properties, without
-    parameters and expressions. Errors name file and line.
+    parameters and expressions. Error messages contain file and line.
     """
     return run([*tool("regs.rdl"), values.rdl, values.out], check=False)

@@ -33,7 +33,7 @@ def setup(values):
     """install missing Debian packages
 
     cmake/setup.sh lists the packages. Installing needs root or sudo, and a network. With
-    --check nothing is installed; exit status 1: packages are missing.
+    --check, nothing is installed; exit status 1 means that packages are missing.
     """
     if values.developer:
         run(["git", "config", "core.hooksPath", ".ci/hooks"])
@@ -55,8 +55,8 @@ doors.ALIASES["setup-tests"] = ("setup", "WITH_TESTS")
 def clean(values):
     """remove all build output; keys are kept
 
-    Removes the folder build/. Keys that earlier versions stored there are moved to the folder of
-    the keys first.
+    Removes the folder build/. Keys that earlier versions stored there are first moved to
+    ~/.config/icesoc.
     """
     if not values.list:
         keys.rescue("build")
@@ -68,7 +68,7 @@ def clean(values):
 
 @command("commands", [
     Option("brief", SWITCH,
-           "run the brief form of every command and write build/commands.md"),
+           "run a short form of every command, and write the results to build/commands.md"),
     Option("only", TEXT, "only commands with this text in their name", ""),
     Option("man", PATH, "write the manual page to this file, such as icesoc.1", ""),
     Option("completion", SWITCH, "print code for bash, and zsh with bashcompinit, that completes "
@@ -79,10 +79,10 @@ def clean(values):
              "commands", "commands --brief --only core", "commands --completion",
              "commands --man icesoc.1 && man ./icesoc.1"])
 def commands(values):
-    """list all commands with their brief forms, or run these
+    """list all commands, each with a short form; or run the short forms
 
-    A brief form is a command line that runs all steps of a command in seconds or a few minutes.
-    CI runs all of them.
+    A short form is a command line that runs all steps of a command in seconds or a few minutes.
+    CI runs all short forms.
     """
     if values.completion:
         return say(doors.completion_code())

@@ -8,7 +8,7 @@ icesoc_needs(binutils-arm-none-eabi ARM_SIZE program arm-none-eabi-size)
 icesoc_needs(binutils-arm-none-eabi ARM_OBJCOPY program arm-none-eabi-objcopy)
 
 set(ARM_FLAGS -mcpu=cortex-m3 -mthumb -Os -g -ffunction-sections -fdata-sections -fno-common
-    -fstack-usage -fcallgraph-info=su)
+    -fstack-usage -fcallgraph-info=su ${SAME_BYTES})
 
 # icesoc_arm_objects(OUT name SOURCES file... [INCLUDES dir...] [DEFINES NAME=value...]
 #                    [OPTIONS ...] [DEPENDS target...] [FOREIGN])

@@ -45,8 +45,10 @@ set(FETCH_FILES ${TOOLS}/__init__.py ${TOOLS}/util/fetch.py)
 
 # Compiles for any CPU of this architecture (packages), or for the CPU of this machine.
 set(TUNE -march=native)
+set(SAME_BYTES)
 if(PORTABLE)
   set(TUNE)
+  include(same_bytes)
 endif()
 set(GEN_DIR ${CMAKE_BINARY_DIR}/gen)
 file(MAKE_DIRECTORY ${GEN_DIR})

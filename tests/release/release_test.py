@@ -8,6 +8,7 @@ import hashlib
 import json
 import os
 import re
+import runpy
 import select
 import shutil
 import subprocess
@@ -16,10 +17,11 @@ import tarfile
 import xml.etree.ElementTree as ET
 import zipfile
 from pathlib import Path
+from types import SimpleNamespace
 
 from icesoc.chip import contract_diff
 from icesoc.regs.model import Block
-from icesoc.release import components, packs, single_file, version
+from icesoc.release import components, packs, sbom, single_file, version
 from script import TREE, Script, commit, fresh, git, main, repository, write
 
 WORK, BUILD = map(Path, sys.argv[2:4])
@@ -246,6 +248,69 @@ add_subdirectory(library/zephyr)
             write("a.pdsc", packs.pdsc(number, "2026-11-28", "- a <b> & c"))
             self.ask("xmllint", "--noout", "--schema", schema / "PACK.xsd", "a.pdsc")
 
+    def test_platformio(self):
+        """PlatformIO's parser and schema accept library.json and know each of its fields."""
+        fresh(WORK)
+        folder = self.fetched("platformio")
+        sys.path.insert(0, str((folder / "python").absolute()))
+
+        class Refused(Exception):
+            """What PlatformIO raises."""
+
+        # the other modules of PlatformIO that these two import
+        for name, its in {
+                "requests": {"exceptions": SimpleNamespace(RequestException=OSError)},
+                "platformio": {"util": None}, "platformio.util": {
+                    "memoized": lambda expire: lambda function: function},
+                "platformio.compat": {"get_object_members": vars, "string_types": str},
+                "platformio.http": {"fetch_remote_content":
+                                    lambda url: '{"licenses": [{"licenseId": "MIT"}]}'},
+                "platformio.package.exception": dict.fromkeys(
+                    ["ManifestParserError", "ManifestValidationError", "UnknownManifestError"],
+                    Refused),
+                "platformio.project.helpers": {"is_platformio_project": bool}}.items():
+            sys.modules[name] = SimpleNamespace(**its)
+        parser = runpy.run_path(str(folder / "parser.py"))["LibraryJsonManifestParser"]
+        schema = runpy.run_path(str(folder / "schema.py"))["ManifestSchema"]()
+        for number in "1.2.3", "1.2.3+git.0123456789ab":
+            text = packs.library(number)["library.json"]
+            accepted = schema.load_manifest(parser(text).as_dict())
+            # `build` is an instruction to the builder, which the schema does not describe.
+            self.assertEqual({*accepted, "build"}, {*json.loads(text)})
+        for wrong in {"version": "one"}, {"license": "Sauce"}, {"keywords": ["a,b!"]}:
+            with self.assertRaises(Refused, msg=wrong):
+                schema.load_manifest(parser(json.dumps(json.loads(text) | wrong)).as_dict())
+
+    def test_zephyr(self):
+        """Zephyr's schema accepts zephyr/module.yml; the files that it names exist."""
+        fresh(WORK)
+        folder = self.fetched("zephyr")
+        sys.path.insert(0, str((folder / "python").absolute()))
+        import pykwalify.core
+        import yaml
+        schema = yaml.safe_load((folder / "module-schema.yml").read_text())
+        files = packs.library("1.2.3")
+        module = yaml.safe_load(files["zephyr/module.yml"])
+        pykwalify.core.Core(source_data=module, schema_data=schema).validate()
+        self.assertIn(f"{module['build']['cmake']}/CMakeLists.txt", files)
+        self.assertIn(module["build"]["kconfig"], files)
+        with self.assertRaises(pykwalify.errors.SchemaError):
+            wrong = {"build": {"cmake": "zephyr", "sauce": "x"}}
+            pykwalify.core.Core(source_data=wrong, schema_data=schema).validate()
+
+    def test_sbom_schema(self):
+        """The schema of SPDX 2.3 accepts the bill of materials."""
+        fresh(WORK)
+        import jsonschema
+        schema = json.loads((self.fetched("spdx") / "spdx-schema.json").read_text())
+        sources = {name: (TREE / name).read_bytes()
+                   for name in ("LICENSE", "README.md", "cmake/setup.sh", "sw/ground/engine.h")}
+        bill = json.loads(sbom.document("1.2.3+git.0123456789ab", "0" * 40, 1764000000, sources,
+                                        {"a.deb": "1" * 64}))
+        jsonschema.Draft7Validator(schema).validate(bill)
+        with self.assertRaises(jsonschema.ValidationError):
+            jsonschema.Draft7Validator(schema).validate(bill | {"files": [{"fileName": "./a"}]})
+
     def test_contracts(self):
         """The registers of a block keep the contract of each recorded version with the same major
         number. With RECORD in the environment, missing versions are recorded."""
@@ -271,6 +336,36 @@ add_subdirectory(library/zephyr)
     def release(self, out, *words, tree=TREE, **environment):
         self.ask(TREE / "icesoc", "release", "--out", out, *words,
                  env={**os.environ, "ICESOC_TREE": str(tree), **environment})
+
+    def test_same_objects(self):
+        """Objects of a package have the same bytes in every folder, with and without ccache, also
+        with debug information."""
+        fresh(WORK)
+        made = []
+        for folder in "a", "b/deeper":
+            write(Path(folder, "CMakeLists.txt"), f"""cmake_minimum_required(VERSION 3.20)
+project(same LANGUAGES C)
+include({TREE}/cmake/same_bytes.cmake)
+file(WRITE ${{CMAKE_BINARY_DIR}}/gen/made.h "static const char *made(void) {{ return __FILE__; }}")
+add_library(same STATIC ${{CMAKE_SOURCE_DIR}}/some/file.c)
+target_include_directories(same PRIVATE ${{CMAKE_BINARY_DIR}}/gen ${{CMAKE_SOURCE_DIR}}/some)
+""")
+            write(Path(folder, "some/file.h"),
+                  "static const char *header(void) { return __FILE__; }")
+            write(Path(folder, "some/file.c"), "#include \"file.h\"\n#include \"made.h\"\n"
+                  "const char *name(int n) { return n ? header() : n > 1 ? made() : __FILE__; }\n")
+            for launcher in "", "ccache" if shutil.which("ccache") else "":
+                build = Path(folder, "build/same")
+                shutil.rmtree(build, ignore_errors=True)
+                self.ask("cmake", "-G", "Ninja", "-S", folder, "-B", build, "-DCMAKE_C_FLAGS=-g",
+                         f"-DCMAKE_C_COMPILER_LAUNCHER={launcher}")
+                self.ask("ninja", "-C", build, env={
+                    **os.environ, "CCACHE_BASEDIR": str(Path(folder).absolute()),
+                    "CCACHE_NOHASHDIR": "1", "CCACHE_DIR": str(WORK / "ccache")})
+                made.append(next(build.rglob("*.o")).read_bytes())
+        for path in b"../../some/file.c\0", b"../../some/file.h\0", b"gen/made.h\0":
+            self.assertTrue(path in made[0], path)
+        self.assertTrue(made[1:] == made[:1] * 3, "the objects differ")
 
     def test_same_bytes(self):
         """Two runs in different environments give the same bytes. The archive contains all files of
@@ -338,7 +433,37 @@ add_subdirectory(library/zephyr)
                  env={**os.environ, "ICESOC_TREE": "."})
         self.has("version 1.2.3 is already released as commit .*; give CHANGELOG.md a new version")
         self.ask(TREE / "icesoc", "release", "--only", "sauce", status=2)
-        self.has("only: expected parts out of source, .*, got 'sauce'")
+        self.has("--only: expected parts from source, .*, got 'sauce'")
+
+    def package(self, path, seconds):
+        """Writes a Debian package without files, with this time."""
+        write(path.with_suffix("") / "DEBIAN/control", "Package: a\nVersion: 1\nDescription: a\n"
+              "Architecture: all\nMaintainer: a <a@b>\n")
+        self.ask("dpkg-deb", "--root-owner-group", "-b", path.with_suffix(""), path,
+                 env={**os.environ, "SOURCE_DATE_EPOCH": str(seconds)})
+
+    def test_two_debians(self):
+        """A release takes the packages of each release of Debian from a folder. Packages of another
+        commit, and two packages of one name, are refused."""
+        self.small("")
+        seconds = int(git("show -s --format=%ct"))
+        for number in 12, 13:
+            self.package(Path(f"{number}/a_1~deb{number}_all.deb"), seconds)
+        release = ["--only", "changes", "packages", "--packages"]
+        self.release("out", *release, "12", "13", tree=".")
+        self.has("a_1~deb12_all.deb$", "a_1~deb13_all.deb$")
+        self.ask("sha256sum", "--check", "SHA256SUMS", cwd="out")
+        self.has("a_1~deb12_all.deb: OK", "a_1~deb13_all.deb: OK")
+        refused = [TREE / "icesoc", "release", *release]
+        how = {"status": 1, "env": {**os.environ, "ICESOC_TREE": "."}}
+        self.ask(*refused, "12", "12", **how)
+        self.has("packages: 12/a_1~deb12_all.deb: another folder also has this package")
+        self.package(Path("old/a_1~deb12_all.deb"), seconds - 60)
+        self.ask(*refused, "old", "13", **how)
+        self.has("old/a_1~deb12_all.deb: expected files of .*, the time of commit .*, got ")
+        os.mkdir("empty")
+        self.ask(*refused, "empty", **how)
+        self.has("packages: expected Debian packages in empty, got none")
 
     def test_signature(self):
         """The signature of SHA256SUMS is valid; a missing key is an error."""

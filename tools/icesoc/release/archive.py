@@ -45,6 +45,15 @@ def zip_(path, files, seconds):
             made.writestr(entry, files[name], compresslevel=9)
 
 
+def time_of_package(path):
+    """Returns the time of the files in a Debian package, which is an archive of ar."""
+    with open(path, "rb") as file:
+        head = file.read(36)
+    if not head.startswith(b"!<arch>\ndebian-binary"):
+        raise Stop(f"{path}: expected a Debian package, got another kind of file")
+    return int(head[24:36])
+
+
 def sums(folder):
     """Writes SHA256SUMS for all files of a folder, as sha256sum does. Returns its path."""
     lines = [f"{hashlib.sha256(file.read_bytes()).hexdigest()}  {file.name}\n"

@@ -19,7 +19,7 @@ PARTS = {  # parts of a release, in the order in which they are made
     "icec": "icec-VERSION.tar.gz (single files, PlatformIO, Zephyr) and the CMSIS-Pack",
     "changes": "CHANGES-VERSION.md: the section of the changelog",
     "site": "icesoc-VERSION-site.tar.gz: the documentation",
-    "packages": "Debian packages for the release of this machine",
+    "packages": "Debian packages for the release of this machine, or those of given folders",
     "sbom": "icesoc-VERSION.spdx.json: bill of materials (SPDX 2.3)"}
 
 
@@ -34,6 +34,7 @@ class Release:
     tree: Path  # folder with the same files, unpacked
     origin: Path  # folder of the working tree
     out: Path
+    folders: list  # folders with Debian packages; empty: packages are built
 
     def path(self, name):
         return self.out / name.replace("VERSION", self.version)
@@ -104,16 +105,42 @@ def site(release):
 
 
 def packages(release):
-    """Copies the Debian packages that `./icesoc package` builds from the working tree, which must
-    equal the commit."""
+    """Copies the Debian packages of the given folders, which `./icesoc package` has built from the
+    same commit on each release of Debian. Without folders they are built, from the working tree,
+    which must equal the commit."""
+    for folder in release.folders:
+        copy_packages(release, Path(folder))
+    if release.folders:
+        return
     if output(["git", "-C", str(release.origin), "status", "--porcelain"]):
         raise Stop("release: Debian packages are made of the working tree, which has changes; "
                    "commit them, or choose other parts with --only")
     with tempfile.TemporaryDirectory() as work:
         run([release.origin / "icesoc", "package", "--output", work],
             env={"SOURCE_DATE_EPOCH": release.seconds})
-        for file in Path(work).glob("*.deb"):
-            shutil.copyfile(file, release.out / file.name)
+        copy_packages(release, Path(work))
+
+
+def copy_packages(release, folder):
+    """Copies the Debian packages of a folder. Their files have the time of their commit."""
+    found = sorted(folder.glob("*.deb"))
+    if not found:
+        raise Stop(f"packages: expected Debian packages in {folder}, got none; "
+                   "./icesoc package builds them")
+    for file in found:
+        seconds = archive.time_of_package(file)
+        if seconds != release.seconds:
+            raise Stop(f"packages: {file}: expected files of {date(release.seconds)}, the time of "
+                       f"commit {release.commit[:12]}, got {date(seconds)}; build the package "
+                       "from that commit")
+        if (release.out / file.name).exists():
+            raise Stop(f"packages: {file}: another folder also has this package; give one folder "
+                       "for each release of Debian")
+        shutil.copyfile(file, release.out / file.name)
+
+
+def date(seconds):
+    return time.strftime("%Y-%m-%d %H:%M:%S UTC", time.gmtime(seconds))
 
 
 def bill(release):
@@ -126,9 +153,10 @@ def bill(release):
 MAKERS = dict(zip(PARTS, (source, icec, changes, site, packages, bill), strict=True))
 
 
-def build(tree, out, parts, key):
+def build(tree, out, parts, key, folders=()):
     """Makes these parts in an empty folder, with SHA256SUMS and, if there is a key, a signature.
-    Returns the version and the files, the signature last."""
+    `folders` have the Debian packages, if these are built already. Returns the version and the
+    files, the signature last."""
     commit, seconds, files, programs = read_commit(tree)
     with tempfile.TemporaryDirectory() as work:
         for name, data in files.items():
@@ -137,7 +165,7 @@ def build(tree, out, parts, key):
             file.write_bytes(data)
             file.chmod(0o755 if name in programs else 0o644)
         release = Release(number(tree, commit, files), commit, seconds, files, programs,
-                          Path(work), Path(tree), Path(out))
+                          Path(work), Path(tree), Path(out), list(folders))
         shutil.rmtree(out, ignore_errors=True)
         release.out.mkdir(parents=True)
         for part, make in MAKERS.items():

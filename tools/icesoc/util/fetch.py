@@ -45,6 +45,15 @@ SCHEMA = ("ARM-software/CMSIS_5/51f8f89612c8330c0116479cfe3a2cb04c390e2b"
           "eee4bfe949f80708b00cccb4833e71da3766b0489a4cdfa2dae225d541688d89")
 PACK = ("Open-CMSIS-Pack/Open-CMSIS-Pack-Spec/f34f91d07e4299e8aab0e4ee7fb8ff4834001c3e"
         "/schema/PACK.xsd", "76fd2cd95a2e3de3da20922723d624c7c356639cd79a2d5abd81efcec7c9e31b")
+PLATFORMIO = ("platformio/platformio-core/145142ea6c1d97c92a62999d424c0dd712fbb9f5"
+              "/platformio/package/manifest", {
+                  "schema.py": "e91f2d348a72d5000fe5c4b882a93bc59188b1e7d07327b1fa697f66940acc33",
+                  "parser.py": "6c294a1693ae6983714ecae4607b1db6251d7feb130516e34f4af148abbadbd8"})
+ZEPHYR = ("zephyrproject-rtos/zephyr/e46ee99c65eba835ec62be60d7a24e3a9d3cb14b"
+          "/scripts/zephyr_module.py",
+          "91b284669a093d2648fbff54e24c20533256a160918f8e996c8bc59d14f69116")
+SPDX = ("spdx/spdx-spec/aadf3b0b8dbbabdb4d880b0fc714255fea436ff7/schemas/spdx-schema.json",
+        "239208b7ac287b3cf5d9a9af23f9d69863971102a5e1587a27a398b43490b89b")
 PAGE = [("tabulator-tables", "6.5.3",
          "a3aeb833e5cf924c8a686fa6748c1070c5fde8e605e0b1734000c35b78571a9b",
          ["js/tabulator.min.js", "css/tabulator_simple.min.css"]),
@@ -79,9 +88,9 @@ def mirror():
     return debian[0] if debian else "http://deb.debian.org/debian"
 
 
-def kept(url, checksum):
+def kept(url, checksum, part=None):
     """Returns the file with this address and checksum in the cache, after downloading it if
-    necessary."""
+    necessary. `part` is a regular expression: only the text of its group is checked and kept."""
     file = CACHE / "foreign" / checksum
     if not file.exists():
         print(f"Fetching {url.rsplit('/', 1)[1]} ...", flush=True)
@@ -90,6 +99,9 @@ def kept(url, checksum):
                 data = answer.read()
         except OSError as error:
             raise Unreachable(f"{url}: {error}")
+        if part:
+            found = re.search(part.encode(), data, re.S)
+            data = found[1] if found else b""
         if hashlib.sha256(data).hexdigest() != checksum:
             raise Unreachable(f"{url} is not the file that was tested (sha256)")
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -248,6 +260,37 @@ def pack(target):
     shutil.copyfile(kept(f"{GITHUB}/{PACK[0]}", PACK[1]), target / "PACK.xsd")
 
 
+def modules(target, *wanted):
+    """Copies the Python modules of these Debian packages into a folder."""
+    release = platform.freedesktop_os_release()["VERSION_CODENAME"]
+    root = packages(f"{wanted[0]}-{release}", wanted, release)
+    shutil.copytree(root / "usr/lib/python3/dist-packages", target, dirs_exist_ok=True)
+
+
+def platformio(target):
+    """PlatformIO's parser and schema of library.json, with the modules they need in python/"""
+    target.mkdir(parents=True, exist_ok=True)
+    for file, checksum in PLATFORMIO[1].items():
+        shutil.copyfile(kept(f"{GITHUB}/{PLATFORMIO[0]}/{file}", checksum), target / file)
+    modules(target / "python", "python3-marshmallow", "python3-semantic-version",
+            "python3-packaging")
+
+
+def zephyr(target):
+    """Zephyr's schema of module.yml, with the modules that check it in python/"""
+    target.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(kept(f"{GITHUB}/{ZEPHYR[0]}", ZEPHYR[1], "METADATA_SCHEMA = '''(.*?)'''"),
+                    target / "module-schema.yml")
+    modules(target / "python", "python3-pykwalify", "python3-yaml", "python3-docopt",
+            "python3-dateutil", "python3-six", "python3-ruamel.yaml", "python3-ruamel.yaml.clib")
+
+
+def spdx(target):
+    """the JSON schema of SPDX 2.3"""
+    target.mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(kept(f"{GITHUB}/{SPDX[0]}", SPDX[1]), target / "spdx-schema.json")
+
+
 def freertos(target):
     """the kernel FreeRTOS 11.1.0 for the Cortex-M3, for the porting example"""
     its = json.loads(KERNEL.read_text())
@@ -300,14 +343,17 @@ def icejs(target):
 OPTIONAL = {zeroc: "Only these suites need it", svd: "Only the check of icesoc.svd needs it",
             foreign: "Only the examples of foreign cores need it",
             pack: "Only the check of the CMSIS-Pack needs it",
+            platformio: "Only the check of PlatformIO's manifest needs it",
+            zephyr: "Only the check of Zephyr's module needs it",
+            spdx: "Only the check of the bill of materials needs it",
             freertos: "Only the porting example for this kernel needs it"}
 THINGS = {thing.__name__: thing
           for thing in (ice, ghdl, icegrid, icejs, lz4, sodium, page, foreign, svd, zeroc, pack,
-                        freertos)}
+                        platformio, zephyr, spdx, freertos)}
 
 
 def main():
-    things = "\n".join(f"  {name:9} {thing.__doc__}" for name, thing in THINGS.items())
+    things = "\n".join(f"  {name:10} {thing.__doc__}" for name, thing in THINGS.items())
     parser = argparse.ArgumentParser(description=__doc__, epilog=things,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("thing", choices=THINGS, metavar="THING")

@@ -11,13 +11,17 @@ from icesoc.util.errors import Stop
 
 @command("release", [
     Option("only", WORDS, "parts to make: " + ", ".join(build.PARTS) + " (default: all)"),
+    Option("packages", WORDS, "folders with the Debian packages, built from this commit by "
+                              "./icesoc package on each release of Debian (default: build the "
+                              "packages for this machine's release)"),
     Option("key", TEXT, "key that signs SHA256SUMS: a key file of minisign (NAME.sec), or the name "
                         "of a gpg key", ""),
     Option("out", FOLDER, "folder for the files, which is emptied first", "build/release")],
          brief="release --only source icec changes sbom --out build/brief/release/files", examples=[
              "release",
              "release --only source icec",
-             "release --key ~/.minisign/icesoc.sec"])
+             "release --key ~/.minisign/icesoc.sec",
+             "release --packages 'debian12 debian13'"])
 def release(values):
     """make the files of a release: sources, packages, checksums
 
@@ -30,7 +34,7 @@ def release(values):
             raise Stop(f"--only: expected parts from {', '.join(build.PARTS)}, got '{part}'", 2)
     parts = values.only or list(build.PARTS)
     out = Path(values.out).absolute()
-    number, made = build.build(Path.cwd(), out, parts, values.key)
+    number, made = build.build(Path.cwd(), out, parts, values.key, values.packages)
     for name in made:
         say(f"{(out / name).stat().st_size:>9} bytes  {out / name}")
     say(f"IceSoC {number}, "

@@ -63,8 +63,8 @@ struct Slot {
     std::string pointer; // its address
     bool isOptional = false;
     int tag = 0;
-    std::string has; // C expression that is true if the value is present: tested when writing,
-                     // assigned when reading
+    // C expression that is true if the value is present: tested when writing, assigned when reading
+    std::string has;
 };
 
 // Generate the code that writes or reads slots in the order of the wire.

@@ -68,10 +68,11 @@ struct Type {
         Float,
         Double,
         String,
-        Named,      // type defined by `declaration`: enum, struct, sequence, dictionary or class
-        Proxy,      // proxy to the interface `declaration`; 0 means Object*
-        Value,      // class instance: Object or Value (any class); with `declaration`, an interface
-                    // passed by value
+        Named, // type defined by `declaration`: enum, struct, sequence, dictionary or class
+        Proxy, // proxy to the interface `declaration`; 0 means Object*
+        // instance of a class: Object, Value (any class), or, with `declaration`, an interface
+        // passed by value
+        Value,
         LocalObject // local object; allowed in local definitions only
     };
     Kind kind = Kind::Void;
@@ -83,9 +84,9 @@ struct Literal {
     enum class Kind { None, Bool, Integer, Floating, String, Enumerator };
     Kind kind = Kind::None;
     int64_t integer = 0; // value of a Bool, an Integer or an Enumerator
-    double floating = 0; // text of a Floating as written; a String in UTF-8; the name of an
-                         // Enumerator
-    std::string text;    // Floating as written; String in UTF-8; name of an Enumerator
+    // text of a Floating as written; text of a String in UTF-8; name of an Enumerator
+    double floating = 0;
+    std::string text; // Floating as written; String in UTF-8; name of an Enumerator
     const Declaration* owner = nullptr; // enum of an Enumerator
 };
 
@@ -105,8 +106,8 @@ struct Operation {
     Type result; // Void if the operation returns nothing
     bool isResultOptional = false;
     int resultTag = 0;
-    std::vector<Field> parameters; // parameters in source order, in parameters before out
-                                   // parameters
+    // parameters in the order of the source, in parameters before out parameters
+    std::vector<Field> parameters;
     std::vector<const Declaration*> throws;
     bool idempotent = false;
     Location at;
@@ -130,21 +131,21 @@ struct Declaration {
     bool isForward = false; // an interface or class that is declared but not defined here
     std::vector<std::string> metadata;
 
-    std::vector<Enumerator> enumerators;   // Enum
-    bool hasValues = false;                // Enum: true if an enumerator has an explicit value
-    std::vector<Field> fields;             // Struct, Class, Exception: members without inherited
-                                           // ones
-    Type key, element;                     // Dictionary: types of key and element; Sequence: type
-                                           // of the element; Constant: its type
-    Literal value;                         // Constant
-    std::vector<const Declaration*> bases; // bases of an Interface: any number; of a Class or
-                                           // Exception: at most one
+    std::vector<Enumerator> enumerators; // Enum
+    bool hasValues = false;              // Enum: true if an enumerator has an explicit value
+    // Struct, Class, Exception: members, without inherited ones
+    std::vector<Field> fields;
+    // Dictionary: types of key and element; Sequence: type of the elements; Constant: its type
+    Type key, element;
+    Literal value; // Constant
+    // bases; an Interface has any number, a Class or Exception at most one
+    std::vector<const Declaration*> bases;
     std::vector<const Declaration*> implemented; // Class: interfaces that it implements
-    std::vector<Operation> operations;           // Interface, Class: operations without inherited
-                                                 // ones
-    const Declaration* ofClass = nullptr;        // Interface: class for whose operations this
-                                                 // interface was generated
-    int compactId = -1;                          // Class: compact id; -1 if none
+    // Interface, Class: operations without inherited ones
+    std::vector<Operation> operations;
+    // Interface: class for whose operations this interface was generated
+    const Declaration* ofClass = nullptr;
+    int compactId = -1; // Class: compact id; -1 if none
 
     // Facts about the type's values; set when its definition is complete.
     struct Facts {
@@ -153,8 +154,8 @@ struct Declaration {
         bool hasClass = false;  // true if a class is contained, at any depth
         bool isKey = false;     // true if the type can be the key of a dictionary
         bool hasSequence = false;
-        bool isNumeric = true; // true if the type contains only numbers, enums, structs and
-                               // sequences
+        // true if the type contains only numbers, enums, structs and sequences
+        bool isNumeric = true;
     } facts;
     void complete();
 

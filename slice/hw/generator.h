@@ -14,15 +14,15 @@ namespace hw {
 
 // ---- map: the register in a core's slot for each value of a [":hw"] interface ----
 
-constexpr unsigned firstWord = 3, slotWords = 16; // number of the first word for values, after ID,
-                                                  // EVENT and MASK; words of a slot
+// number of the first word for values, which follows ID, EVENT and MASK; number of words in a slot
+constexpr unsigned firstWord = 3, slotWords = 16;
 constexpr unsigned control = 3, status = 4, page = 5, pageLsb = 5;
 // PAGE selects which words appear at 8..15 of a slot: word n is at n % slotWords on page n /
 // slotWords, at least 8 on pages above 0.
 constexpr unsigned pageWords = 8, mostPageBits = 5;
-constexpr unsigned bufferAlignment = 128; // alignment of a buffer in bytes, so that bursts begin at
-                                          // its start
-constexpr unsigned mostPins = 32;         // largest number of pins of a core in one direction
+// alignment of a buffer in bytes, so that bursts begin at its start
+constexpr unsigned bufferAlignment = 128;
+constexpr unsigned mostPins = 32; // largest number of pins of a core in one direction
 constexpr unsigned mostOperations = 16, refusedLsb = 16, resetBit = 31;
 
 // A field of a word, which is also a range of bits of a port. It holds a scalar, or half of a
@@ -33,9 +33,9 @@ struct Piece {
     std::string c;    // C name in the servant's function: a->x
     unsigned lsb = 0, width = 0;
     unsigned portLsb = 0, portWidth = 0;
-    unsigned exception = 0; // 0 for a value of the call or its results; n for a member of the n-th
-                            // exception
-    bool isCode = false;    // true for the code of an exception: 0, or the exception's number
+    // 0 for a parameter or result of the call; n for a member of the n-th exception
+    unsigned exception = 0;
+    bool isCode = false; // true for the code of an exception: 0, or the exception's number
     // The number of elements of a sequence, which is in DDR3, `offset` bytes after the start of the
     // slot's buffers.
     bool isCount = false;
@@ -56,15 +56,15 @@ struct Word {
 struct Call {
     const Operation* operation = nullptr;
     bool isEvent = false;
-    bool isAmd = false;                     // true for ["amd"]: the core takes long, and the
-                                            // processor continues meanwhile
-    const Declaration* owner = nullptr;     // interface that declares the operation
-    std::vector<const Declaration*> thrown; // exceptions that the operation throws; their codes are
-                                            // 1, 2, ...
-    std::vector<std::string> labels;        // C constants of these codes
-    std::string name;                       // snake_case
-    unsigned bit = 0;                       // bit number of the call in CONTROL, STATUS, EVENT and
-                                            // MASK
+    // true for ["amd"]: the core takes long, and the processor does other work meanwhile
+    bool isAmd = false;
+    const Declaration* owner = nullptr; // interface that declares the operation
+    // exceptions that the operation throws; their codes are 1, 2, ...
+    std::vector<const Declaration*> thrown;
+    std::vector<std::string> labels; // C constants of these codes
+    std::string name;                // snake_case
+    // bit number of the call in CONTROL, STATUS, EVENT and MASK
+    unsigned bit = 0;
     bool isLong = false;
     unsigned timeout = 0; // time-out, ms
     std::vector<Word> words;
@@ -94,10 +94,11 @@ struct Block {
     std::vector<Call> calls;
     std::vector<Listener> listeners;
     std::vector<Pin> pins;
-    bool hasOwnClock = false; // true if the core has a clock that may stop: accesses are then not
-                              // answered
-    unsigned pageBits = 0;    // 0 if the slot has no pages. Otherwise word 5 is PAGE, and there are
-                              // 2^pageBits pages
+    // true if the core's clock may stop; accesses are not answered while it is stopped
+    bool hasOwnClock = false;
+    // 2^pageBits is the number of pages; 0 means that the slot has no pages and no word PAGE (word
+    // 5)
+    unsigned pageBits = 0;
     unsigned memoryWord = 0;  // number of the word MEMORY; 0 without sequences
     unsigned memoryBytes = 0; // size of all buffers in bytes, a power of two
 
@@ -115,9 +116,9 @@ struct Port {
     std::string name; // name of the port, with _i or _o
     bool isOut = false;
     unsigned width = 1;
-    std::string group;          // heading of the port's group, at its first port; otherwise empty
-    const Call* call = nullptr; // call to which the port belongs; 0 for a port that each wrapper
-                                // has
+    std::string group; // heading of the port's group, at its first port; otherwise empty
+    // call to which the port belongs; 0 for a port that each wrapper has
+    const Call* call = nullptr;
 };
 
 std::vector<Port> wrapperPorts(const Block& b);

@@ -22,8 +22,9 @@ typedef struct Backup_Slot {
 
 typedef struct Backup_Keys {
     Backup_Slot slots[BACKUP_SLOTS];
-    U32 state; /* which key is the next one; first ground: also whether the vehicle is open;
-                * group: number of the newest call to all vehicles */
+    /* number of the slot with the next key; first ground station: also whether the vehicle accepts
+     * links without a key; group: instead the number of the newest call to all vehicles */
+    U32 state;
 } Backup_Keys;
 
 /* Keys of the first ground station, and the vehicle's state. */

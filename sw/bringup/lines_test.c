@@ -21,8 +21,8 @@
 typedef enum Fate { GOOD, STUCK, DRIVEN_LOW, DRIVEN_HIGH, SHORTED, OPEN, MOVED, INVERTED } Fate;
 
 static U8 fate[LINES];
-static U8 arrives[LINES]; /* for each line, the line with the number that arrived at the FPGA's
-                           * pin */
+/* arrives[i]: the line whose number has arrived at the FPGA's pin of line i */
+static U8 arrives[LINES];
 
 /* Returns whether only the FPGA drives this line in operation. Such a line may contain a buffer. */
 static int isOutput(U32 line) {

@@ -47,10 +47,10 @@
     low = y0;
 
 static void permute(U32* half, U32 constant) {
-    U32 a = half[0], b = half[2], c = half[4], d = half[6], e = half[8]; /* low halves of the
-                                                                          * words */
-    U32 A = half[1], B = half[3], C = half[5], D = half[7], E = half[9]; /* high halves of the
-                                                                          * words */
+    /* low halves of the words */
+    U32 a = half[0], b = half[2], c = half[4], d = half[6], e = half[8];
+    /* high halves of the words */
+    U32 A = half[1], B = half[3], C = half[5], D = half[7], E = half[9];
     U32 y0, y1, y2;
     for (; constant != ROUNDS_END; constant -= ROUND_STEP) {
         c ^= constant;

@@ -186,8 +186,9 @@ void X25519(U8* result, const U8* number, const U8* point) {
     for (i = 254; i >= 0; --i) {
         U32 bit = (U32)number[i >> 3] >> (i & 7) & 1U;
         if (i == 254)
-            bit = 1; /* this bit of the scalar is always set, and the three lowest bits are
-                      * always clear */
+            /* the highest bit of the scalar is always set, and the three lowest bits are always
+             * clear */
+            bit = 1;
         if (i < 3)
             bit = 0;
         exchange(l.x2, l.x3, swapped ^ bit);

@@ -149,8 +149,8 @@ FSMC_Status FSMC_checkError(U32* where) {
 #define REGION 4096U
 #define BLOCK 64U
 
-static U8 writeAddset = 15, readDatast = 17; /* values until FSMC_setHclk is called: slow but
-                                              * safe */
+/* values until FSMC_setHclk is called: slow but safe */
+static U8 writeAddset = 15, readDatast = 17;
 
 /* Returns the HCLK cycles of an access, at least 4. */
 static U32 cyclesFor(U32 hclkHz, U32 accessHz) {
@@ -197,8 +197,9 @@ U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords) {
     while (halfwords) {
         U32 i, part = upTo(address, 8U * REGION, 2U * halfwords) / 2U;
         U32 at = windowAddress(address);
-        (void)FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID); /* this read waits for posted register writes:
-                                                      * NWAIT is now off for the window */
+        /* this read waits until the posted register writes are done, so NWAIT is off for the memory
+         * window afterwards */
+        (void)FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID);
         setBank(1);
         for (i = 0; i < part; ++i)
             fsmcPort->write16(fsmcContext, at + 2U * i, data[i]);

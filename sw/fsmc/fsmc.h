@@ -92,14 +92,14 @@ typedef struct FSMC_Timing {
 
 typedef struct FSMC_Bank {
     FSMC_Mode mode;
-    FSMC_Mode writeMode;     /* mode of writes, for modes A to D */
-    U8 psram;                /* MTYP for modes 1 and A: 1 PSRAM, 0 SRAM */
-    U8 muxed;                /* MUXEN: address bits 15..0 on the data pins (the bridge's MUXED) */
-    U8 wait;                 /* ASYNCWAIT: asynchronous accesses wait for NWAIT */
-    U8 waitHigh;             /* WAITPOL: NWAIT is active high (WAIT_HIGH) */
-    U8 busturn;              /* BUSTURN, HCLK cycles, 1..15 */
-    FSMC_Timing read, write; /* timing of reads and writes; modes 1 and 2 use only `read`, for
-                              * both */
+    FSMC_Mode writeMode; /* mode of writes, for modes A to D */
+    U8 psram;            /* MTYP for modes 1 and A: 1 PSRAM, 0 SRAM */
+    U8 muxed;            /* MUXEN: address bits 15..0 on the data pins (the bridge's MUXED) */
+    U8 wait;             /* ASYNCWAIT: asynchronous accesses wait for NWAIT */
+    U8 waitHigh;         /* WAITPOL: NWAIT is active high (WAIT_HIGH) */
+    U8 busturn;          /* BUSTURN, HCLK cycles, 1..15 */
+    /* timings of reads and of writes; with mode 1 or 2, `read` is used for both */
+    FSMC_Timing read, write;
 } FSMC_Bank;
 
 /* Initialises the FSMC as FSMC_init does, but with the given settings of NE1 and NE2. If a setting

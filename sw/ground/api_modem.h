@@ -106,8 +106,8 @@ public:
 
 private:
     static constexpr uint8_t delimiter = 0x7E, escape = 0x7D, escapeXor = 0x20;
-    static constexpr size_t longest = 120; // longest contents: those of a packet from a 64-bit
-                                           // address, with a margin
+    // largest size of a frame's contents, bytes: a packet from a 64-bit address, with a margin
+    static constexpr size_t longest = 120;
 
     // Returns the offset of the data in a packet; 0 for other frames.
     static size_t headOf(uint8_t type) { return type == Packet ? 5 : type == Wide ? 11 : 0; }
@@ -124,8 +124,9 @@ private:
     // Reads the contents received so far of the frame that has its delimiter at `at`. Returns the
     // number of bytes used, or 0 if the frame is incomplete.
     size_t read(size_t at) {
-        Bytes& plain = contents_; // these include the length, and the checksum once the frame is
-                                  // complete
+        // contents of the current frame, with the length first and, when complete, the checksum
+        // last
+        Bytes& plain = contents_;
         isWhole_ = false;
         plain.clear();
         size_t length = 0, used = 0, i = at + 1;
@@ -163,8 +164,8 @@ private:
     Bytes in_;             // bytes received, starting at the delimiter of the current frame
     Bytes contents_;       // contents of the last frame read
     bool isWhole_ = false; // true if the frame is complete and has a correct checksum
-    size_t given_ = 0;     // number of bytes of the current frame's contents that were already
-                           // passed on
+    // number of bytes of the current frame's contents that were already passed on
+    size_t given_ = 0;
 };
 
 // A modem in API mode; times in microseconds, 32 bits that wrap.
@@ -180,8 +181,8 @@ public:
         if (rn != rn_)
             bytes = frames_.command(0, "RN", {static_cast<uint8_t>(rn)});
         rn_ = rn;
-        const bool isAnswered = target != everybody; // otherwise ID is 0, and the modem sends no
-                                                     // result
+        // for a broadcast, the frame id is 0 and the modem reports no result
+        const bool isAnswered = target != everybody;
         if (isAnswered) {
             id_ = id_ == 0xFF ? 1 : id_ + 1;
             waiting_.push_back({id_, now});
@@ -201,8 +202,8 @@ public:
                              [&](const Packet& p) { return p.id == frame[1]; }))
                 return;
             for (bool isLast = false; !isLast;) {
-                isLast = waiting_.front().id == frame[1]; // the line lost the results of the
-                                                          // packets before this one
+                // if the results of earlier packets were lost on the line, drops these packets
+                isLast = waiting_.front().id == frame[1];
                 waiting_.pop_front();
                 answer(isLast && frame[2] == 0);
             }

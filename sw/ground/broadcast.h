@@ -26,10 +26,8 @@ public:
     // The modem is ready, and a packet has `bytes` at most.
     void limitPacket(U32 bytes) { most_ = bytes - LINK_BROADCAST_OVERHEAD; }
     void stop() { most_ = copies_ = 0; } // sends no more copies
-    U32 most() const {
-        return most_;
-    } // returns the largest message in bytes; 0 if the modem is
-      // not ready
+    // Returns the size of the largest message, bytes; 0 if the modem is not ready.
+    U32 most() const { return most_; }
     bool isBusy() const { return copies_ != 0; }
     // Accepts a message unless another one is being sent. Returns false if the clock of this
     // machine is before 2026.

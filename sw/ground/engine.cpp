@@ -20,8 +20,8 @@ namespace XBeeAT {
 
 namespace {
 
-constexpr std::chrono::seconds retryEvery{5}; // interval of tries while a program listens and no
-                                              // program connects
+// interval between attempts while a program listens and no program connects
+constexpr std::chrono::seconds retryEvery{5};
 
 std::mutex registryMutex;
 std::map<std::string, std::weak_ptr<Engine>>& registry() {

@@ -57,11 +57,12 @@ private:
     int wakePipe_[2] = {-1, -1};
     // failed_: the port is lost, or no modem answered; complained_: that was logged as an error.
     bool stop_ = false, failed_ = false, complained_ = false;
-    U32 longest_ = 0;                            // size of the largest frame, bytes; 0 if the modem
-                                                 // is not ready
+    // size of the largest frame, bytes; 0 until the modem is ready
+    U32 longest_ = 0;
     std::map<int, std::unique_ptr<Peer>> peers_; // peers by address; a peer is never removed
-    U32 upAt_ = 0, downLimitUs_ = 0;  // time at which a link was last up; longest time for which
-                                      // all links may be down
+    // time at which a link was last up; longest time without a link before the modem is configured
+    // again
+    U32 upAt_ = 0, downLimitUs_ = 0;
     std::condition_variable changed_; // signals changes of stop_ and of requests
     std::thread thread_;
 };

@@ -16,8 +16,8 @@ namespace {
 
 const int rates[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
 constexpr int factoryRate = 9600, fastestRate = 250000, replyMs = 500, tries = 3;
-constexpr int apiReplyMs = 100; // time-out for a reply in API mode, in addition to the time on the
-                                // line, ms
+// time-out for a reply in API mode, ms; the time on the line is added
+constexpr int apiReplyMs = 100;
 constexpr int mostGuard = 3300; // ms, of ATGT
 
 // Returns the value of the parameter BD for a rate: a code, or the rate itself.

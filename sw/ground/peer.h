@@ -21,8 +21,8 @@ extern "C" {
 
 namespace XBeeAT {
 
-constexpr int ownChannels = 3; // number of channels that the ground opens: 0..2; the UAV opens
-                               // channel 3
+// number of channels that the ground station opens, 0 to 2; the UAV opens channel 3
+constexpr int ownChannels = 3;
 
 // Functions for programs take the lock. All other functions are called by the engine, which holds
 // the lock.
@@ -98,10 +98,8 @@ protected:
     Peer(Host& host, int address, const LinkKeys& keys);
 
     // ---- functions of the derived classes ----
-    virtual bool isYielded() const {
-        return false;
-    } // true if another ground station is connected
-      // to the vehicle
+    // Returns true if another ground station is connected to the vehicle.
+    virtual bool isYielded() const { return false; }
     virtual bool isReady() const = 0;          // true if channels can be opened
     virtual bool openChannel(int channel) = 0; // opens a channel for a program
     virtual void opened(ProgramConnection& program, U32 now) = 0;

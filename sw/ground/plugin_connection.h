@@ -25,8 +25,8 @@
 
 namespace XBeeAT {
 
-constexpr Ice::Short endpointType = 0x4158, wireType = 0x4159; // types of endpoints; the second one
-                                                               // is never sent
+// numbers of the endpoint types; the second one is never sent
+constexpr Ice::Short endpointType = 0x4158, wireType = 0x4159;
 inline const std::string protocolName = "xbee-at", wireName = "serial";
 constexpr Ice::Int defaultTimeoutMs = 30000; // setting a modem up takes seconds
 
@@ -114,8 +114,8 @@ private:
     KeyFile keys_;
     int trace_ = 0;
     bool statistics_ = false;
-    std::set<std::shared_ptr<Peer>> peers_; // kept while the communicator lives, because set-up
-                                            // takes time
+    // peers stay until the communicator is destroyed, because setting up a modem takes time
+    std::set<std::shared_ptr<Peer>> peers_;
 };
 typedef IceUtil::Handle<Instance> InstancePtr;
 

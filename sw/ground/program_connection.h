@@ -61,13 +61,11 @@ public:
     enum class Kind { Twoway, Oneway, Goodbye, Other }; // Oneway: a call that has no reply
     Kind kind() const;
     const U8* data() const { return out_.data(); }
-    U32 size() const {
-        return messageSize();
-    } // size of the next message; also valid for a
-      // malformed message
+    // Returns the size of the next message, also of a malformed one.
+    U32 size() const { return messageSize(); }
     U32 lateAt() const { return since_ + lateUs_; } // time at which the next message will be late
-    void taken(U32 nowUs);                          // records that the link has accepted the
-                                                    // message
+    // records that the link has accepted the message
+    void taken(U32 nowUs);
 
     // Passes a message to the program. Returns false if the program has not read 64 KiB of earlier
     // messages.
@@ -107,10 +105,11 @@ private:
     U32 owesSince_ = 0; // since then
     unsigned pending_ = 0; // two-way requests of the program without a reply so far
     U32 heardAt_ = 0;      // time of the last message to the program
-    U32 lateUs_ = never, readAt_ = 0, since_ = 0; // time-out of a message; time of the last read;
-                                                  // time since which the next message waits
-    U32 activeAt_ = 0, leftAt_ = 0; // time of the last byte sent or received; time at which the
-                                    // closing began
+    // time at which the current message is late; time of the last read; time since which the next
+    // message waits
+    U32 lateUs_ = never, readAt_ = 0, since_ = 0;
+    // time of the last byte sent or received; time at which closing began
+    U32 activeAt_ = 0, leftAt_ = 0;
 };
 
 } // namespace XBeeAT

@@ -15,22 +15,22 @@ namespace XBeeAT {
 
 struct Settings {
     std::string device;
-    int baud = 115200;    // baud rate of the modem after set-up; 115200 stands for BD 7, which
-                          // really is 111,111
+    // baud rate of the modem after set-up; 115200 stands for BD 7, which really is 111,111
+    int baud = 115200;
     int source = 0x0000;  // MY
     int target = 0x0001;  // DL
     int rfChannel = 0x0C; // CH
     int pan = 0x3332;     // ID
     LinkKeys keys;        // keys of the link's sessions
-    std::string modemKey; // AES key, up to 32 hexadecimal digits; an empty key leaves the modem's
-                          // setting unchanged
-    int guardMs = 1000;   // guard time that the modem has now, ms
-    bool setUp = true;    // true: set the modem up by AT commands
-    bool isApi = true;    // true: use API mode, if the modem is set up and supports it
-    bool isWire = false;  // true: there are no modems, and the port is wired to the vehicle's board
-    int downMs = 15000;   // time without a link after which the modem is set up again, ms
-    int idleMs = 60000;   // silence after which a program loses its channel to a waiting program,
-                          // ms; 0 disables this
+    // AES key, up to 32 hexadecimal digits; an empty key leaves the modem's setting unchanged
+    std::string modemKey;
+    int guardMs = 1000;  // guard time that the modem has now, ms
+    bool setUp = true;   // true: set the modem up by AT commands
+    bool isApi = true;   // true: use API mode, if the modem is set up and supports it
+    bool isWire = false; // true: there are no modems, and the port is wired to the vehicle's board
+    int downMs = 15000;  // time without a link after which the modem is set up again, ms
+    // silence after which a program loses its channel to a waiting program, ms; 0 disables this
+    int idleMs = 60000;
 
     // Returns a random number for sessions; tests may replace it.
     std::function<unsigned()> random = [] { return std::random_device()(); };

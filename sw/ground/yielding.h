@@ -65,8 +65,8 @@ public:
     void resume() { isYielded_ = hearsOther_ = false; }
 
 private:
-    static constexpr U32 quietUs = LINK_AGE_LAST; // silence after which the other ground station
-                                                  // has lost the vehicle
+    // silence after which this station assumes that the other one has lost the vehicle
+    static constexpr U32 quietUs = LINK_AGE_LAST;
     static constexpr U32 longestUs = 60'000'000;
     // A vehicle with a session sends at least this often, because it is pinged when silent. Earlier
     // bytes belong to a frame that a reset has cut.

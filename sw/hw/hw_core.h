@@ -26,12 +26,13 @@ typedef enum Hw_Status {
  * The servant of a camera core writes base, stride, width and height; the application sets the
  * other fields. */
 typedef struct Hw_Frames {
-    U32 base, stride;  /* byte address of the first of three buffers; distance of the buffers,
-                        * bytes */
-    U32 width, height; /* size of a frame, pixels; width 0: no camera is running, and the picture
-                        * below is the frame */
-    U32 picture, pictureSize; /* byte addresses of a picture, and of its width and height: two
-                                 values of 32 bits */
+    /* byte address of the first of three buffers, and the distance between buffers, bytes */
+    U32 base, stride;
+    /* size of a frame, pixels; width 0 means that no camera is running, and `picture` is the
+     * frame */
+    U32 width, height;
+    /* byte addresses of a picture, and of its width and height, which are two values of 32 bits */
+    U32 picture, pictureSize;
     void (*processed)(U32 findings); /* called for each frame that was processed */
 } Hw_Frames;
 

@@ -121,8 +121,8 @@ static Ice_Status readRequest(Ice_InputStreamPtr is, Ice_Current* current, Icec_
     target->size = is->position - begin;
     current->mode = Ice_InputStream_readByte(is);
     current->context = *is;
-    icec_skipStrings(is, 2U * (U32)Ice_InputStream_readSize(is)); /* a facet with more than one
-                                                                   * string is malformed */
+    /* a facet with more than one string is malformed */
+    icec_skipStrings(is, 2U * (U32)Ice_InputStream_readSize(is));
     return icec_enterEncapsulation(is);
 }
 

@@ -66,8 +66,8 @@ static Ice_Status connect(Ice_ObjectPrxPtr self) {
 }
 
 Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int* connection) {
-    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "", 0); /* takes a slot in which the task
-                                                                * can wait */
+    /* takes a slot in which the task can wait */
+    Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "", 0);
     if (!os)
         return (Ice_Status)self->status;
     icec_unlock(self->communicator, ICE_LOCK_SEND);
@@ -93,8 +93,8 @@ static void beginRequest(Ice_ObjectPrxPtr self, const char* operation, Ice_Byte 
     Ice_OutputStream_init(os, ic->requestData, ICE_REQUEST_MAX);
     if (!self->batch) {
         if (self->mode == ICE_TWOWAY) {
-            ic->lastId = (ic->lastId & 0x3FFFFFFF) + 1; /* an id is never 0, which marks a
-                                                         * one-way request */
+            /* an id is never 0, because 0 marks a one-way request */
+            ic->lastId = (ic->lastId & 0x3FFFFFFF) + 1;
             self->id = ic->lastId;
         }
         icec_beginMessage(os, ICEC_REQUEST);
@@ -143,8 +143,8 @@ static void registerCall(Ice_ObjectPrxPtr self, Ice_Callback callback, void* coo
     call->replySize = self->reply ? self->replySize : (Ice_Int)sizeof call->replyData;
     if (self->mode == ICE_TWOWAY)
         call->state = ICE_CALL_WAITING;
-    self->status = ICE_LATER; /* the status of an asynchronous call is in the slot; the proxy may
-                               * not exist any more */
+    /* the slot has the status of an asynchronous call, because its proxy may not exist any more */
+    self->status = ICE_LATER;
     icec_unlock(ic, ICE_LOCK_STATE);
 }
 

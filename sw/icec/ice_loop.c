@@ -48,8 +48,8 @@ static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte* in, const Ic
     Ice_Status end = ICE_CONNECTION_LOST;
     if (event->kind == ICE_EVENT_NONE)
         return ICE_TIMEOUT;
-    if (event->kind == ICE_EVENT_OPENED) { /* the side that accepts a connection sends the first
-                                            * message */
+    /* the side that accepts a connection sends the first message */
+    if (event->kind == ICE_EVENT_OPENED) {
         int isRefused;
         icec_lock(ic, ICE_LOCK_STATE);
         isRefused = ic->stopping;
@@ -213,8 +213,8 @@ static Role takeRole(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
         else
             ic->receiver = task;
         if (ic->stopping && ic->servers)
-            ic->os->wake(ic->osContext, ICEC_SERVER_SLOT); /* wakes the next server that has to
-                                                            * leave */
+            /* wakes the next server that has to leave */
+            ic->os->wake(ic->osContext, ICEC_SERVER_SLOT);
     }
     icec_unlock(ic, ICE_LOCK_STATE);
     return role;

@@ -7,15 +7,8 @@
 
 #include "icec.h"
 
-enum {
-    ICEC_REQUEST,
-    ICEC_BATCH,
-    ICEC_REPLY,
-    ICEC_VALIDATE,
-    ICEC_CLOSE
-}; /* types of messages,
-    * with their numbers
-    * in the protocol */
+/* Types of messages, with their numbers in the protocol. */
+enum { ICEC_REQUEST, ICEC_BATCH, ICEC_REPLY, ICEC_VALIDATE, ICEC_CLOSE };
 #define ICEC_HEADER 14
 #define ICEC_REPLY_BODY 19 /* offset of a reply's encapsulation, after header, id and status */
 #define ICEC_REPLY_HEAD 25 /* offset of a reply's results */

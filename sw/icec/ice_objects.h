@@ -8,8 +8,8 @@
 
 typedef struct Ice_Servant {
     Ice_ObjectPtr servant; /* 0: free */
-    Ice_Identity identity; /* identity of the servant; with an empty name, a default servant of
-                            * the category */
+    /* identity of the servant; with an empty name, a default servant of the category */
+    Ice_Identity identity;
     Ice_String facet;
 } Ice_Servant;
 
@@ -57,8 +57,8 @@ typedef struct Ice_Connection {
     Ice_Byte pending; /* number of operations in progress, or to be answered later */
     Ice_Byte closing; /* the peer has been asked to close */
     U16 generation;   /* counts the connections that had this number; never 0 */
-    U32 signMs;       /* time of the last heartbeat to the callers, or of the start of the wait,
-                       * ms */
+    /* time of the last heartbeat to the callers, or of the start of the wait, ms */
+    U32 signMs;
 } Ice_Connection;
 
 typedef struct Ice_Transport {

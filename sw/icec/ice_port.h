@@ -15,25 +15,25 @@ typedef enum Ice_Status {
     ICE_FACET_NOT_EXIST,
     ICE_OPERATION_NOT_EXIST,
     ICE_UNKNOWN_LOCAL_EXCEPTION, /* the peer's run time reported a failure */
-    ICE_UNKNOWN_USER_EXCEPTION,  /* the servant threw an exception that the operation does not
-                                  * declare */
-    ICE_UNKNOWN_EXCEPTION,       /* the peer reported another failure */
+    /* the servant threw an exception that the operation does not declare */
+    ICE_UNKNOWN_USER_EXCEPTION,
+    ICE_UNKNOWN_EXCEPTION, /* the peer reported another failure */
     /* A servant's ICE_MARSHAL and ICE_PROTOCOL reach the caller as local exceptions, all later
      * statuses as unknown exceptions. */
-    ICE_MARSHAL,  /* the message is malformed or too large */
-    ICE_PROTOCOL, /* the message is not IceP 1.0, is compressed, or has an encoding other than
-                   * 1.0 and 1.1 */
+    ICE_MARSHAL, /* the message is malformed or too large */
+    /* the message is not IceP 1.0, is compressed, or has an encoding other than 1.0 and 1.1 */
+    ICE_PROTOCOL,
     ICE_TIMEOUT,
-    ICE_CONNECTION_LOST,   /* the connection was lost; a call in progress may or may not have
-                            * been executed */
-    ICE_NO_ENDPOINT,       /* the transport is unknown, or the proxy has no endpoints */
-    ICE_LIMIT,             /* a limit of ice_config.h was reached */
-    ICE_CONNECTION_CLOSED, /* the peer closed the connection gracefully: the call was not
-                            * executed */
-    ICE_PARSE,             /* the text of a proxy, identity or endpoint is malformed */
-    ICE_TWOWAY_ONLY,       /* the operation has results, which a oneway or batch proxy cannot
-                            * receive */
-    ICE_LATER              /* returned by a servant: the reply is sent later (Ice_Reply) */
+    /* the connection was lost; a call in progress may or may not have been executed */
+    ICE_CONNECTION_LOST,
+    ICE_NO_ENDPOINT, /* the transport is unknown, or the proxy has no endpoints */
+    ICE_LIMIT,       /* a limit of ice_config.h was reached */
+    /* the peer closed the connection gracefully: the call was not executed */
+    ICE_CONNECTION_CLOSED,
+    ICE_PARSE, /* the text of a proxy, identity or endpoint is malformed */
+    /* the operation has results, which a oneway or batch proxy cannot receive */
+    ICE_TWOWAY_ONLY,
+    ICE_LATER /* returned by a servant: the reply is sent later (Ice_Reply) */
 } Ice_Status;
 
 const char* Ice_Status_text(Ice_Status status);

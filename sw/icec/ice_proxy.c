@@ -66,8 +66,9 @@ static void adoptEncoding(Ice_CommunicatorPtr ic, Ice_Byte* endpoints, Ice_Byte 
     Ice_Byte* at = endpoints + 1;
     int n;
     for (n = endpoints[0]; n > 0; --n) {
-        Ice_Int size = 2 + at[2]; /* size of an endpoint: its type and its encapsulation, at most
-                                   * ICE_ENDPOINT_MAX */
+        /* size of an endpoint, which consists of its type and its encapsulation; at most
+         * ICE_ENDPOINT_MAX */
+        Ice_Int size = 2 + at[2];
         Ice_OutputStream nothing;
         Ice_OutputStream_init(&nothing, 0, 0);
         if (at[7] != minor && icec_printEndpoint(ic, at, size, &nothing))
@@ -82,8 +83,8 @@ void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx)
         return;
     }
     if (ICEC_FULL && prx->generation)
-        os->failed = ICE_FAILED_MALFORMED; /* the connection of a fixed proxy exists in this
-                                            * process only */
+        /* a fixed proxy cannot be sent, because its connection exists only in this process */
+        os->failed = ICE_FAILED_MALFORMED;
     Ice_OutputStream_writeBlob(os, prx->identity, prx->identitySize);
     Ice_OutputStream_writeShort(os, (Ice_Short)(prx->mode | prx->secure << 8));
     if (ICEC_FULL && os->minor != 0)
@@ -119,14 +120,14 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
         is->failed = ICE_FAILED_IDENTITY;
     prx->mode = Ice_InputStream_readByte(is);
     prx->secure = Ice_InputStream_readBool(is);
-    prx->minor = is->minor; /* encoding 1.0 sends no version with a proxy; the version of the
-                             * stream is used */
+    /* encoding 1.0 sends no version with a proxy; the version of the stream is used */
+    prx->minor = is->minor;
     if (ICEC_FULL)
         prx->versions[3] = is->minor;
     if (is->minor != 0) {
         const Ice_Byte* versions = Ice_InputStream_readBlob(is, 4);
-        prx->minor = versions && versions[3] != 0; /* a peer with a later version also supports
-                                                    * 1.1 */
+        /* a peer with a later version of the encoding also supports 1.1 */
+        prx->minor = versions && versions[3] != 0;
         if (ICEC_FULL && versions)
             memcpy(prx->versions, versions, 4);
     }

@@ -238,9 +238,8 @@ static Ice_Status parse(const char* text, Ice_ObjectPrxPtr prx) {
     text = word(text, ICEC_SPACES ":@", &identity);
     if (!text)
         return ICE_PARSE;
-    if (identity.size == 0 || (identity.size == 1 && *identity.data == '/')) /* an empty text and
-                                                                              * "/" are the null
-                                                                              * proxy */
+    /* an empty text and "/" are the null proxy */
+    if (identity.size == 0 || (identity.size == 1 && *identity.data == '/'))
         return text != begin && text[strspn(text, ICEC_SPACES)] == 0 ? ICE_OK : ICE_PARSE;
     for (;;) {
         text += strspn(text, ICEC_SPACES);

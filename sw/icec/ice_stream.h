@@ -63,8 +63,8 @@ struct Ice_InputValues;
 /* Reasons of a stream's failure: malformed bytes, or a limit. The first reason is kept. */
 typedef enum Ice_Failed {
     ICE_FAILED_MALFORMED = 1,
-    ICE_FAILED_RESULT, /* the output buffer is full; its limit is ICE_RESULT_MAX unless stated
-                        * otherwise */
+    /* the output buffer is full; its size is ICE_RESULT_MAX unless stated otherwise */
+    ICE_FAILED_RESULT,
     ICE_FAILED_REQUEST,
     ICE_FAILED_REPLY,
     ICE_FAILED_ARENA,
@@ -87,8 +87,9 @@ typedef struct Ice_OutputStream {
     Ice_Int size, capacity;
     Ice_Byte minor;  /* minor version of the encoding: 1.minor */
     Ice_Byte failed; /* reason of the failure (Ice_Failed); 0 without a failure */
-    Ice_Byte sliced; /* 1: user exceptions are in the sliced format, so that a peer can skip slices
-                      * it does not know */
+    /* 1 if user exceptions are in the sliced format, with which a peer can skip slices it does not
+     * know */
+    Ice_Byte sliced;
     Ice_Byte sliceFlags;             /* flags of the current slice */
     const char* bound;               /* text of the reason ICE_FAILED_BOUND */
     struct Ice_OutputValues* values; /* table of class instances; 0 before the first one */
@@ -99,15 +100,15 @@ typedef struct Ice_InputStream {
     Ice_Int position, size;
     Ice_Byte minor;
     Ice_Byte failed;
-    Ice_Byte sliceFlags;                   /* flags of the current slice; 0 outside a slice */
-    const char* bound;                     /* text of the reason ICE_FAILED_BOUND */
-    Ice_Int sliceEnd;                      /* end of the current slice; 0 if it is not known */
-    U32* arena;                            /* memory for decoded sequences */
-    Ice_Int arenaUsed, arenaSize;          /* used part and size of the arena, in words of 4
-                                            * bytes */
-    struct Ice_Communicator* communicator; /* communicator of proxies that are read from the
-                                            * stream */
-    struct Ice_InputValues* values;        /* table of class instances; 0 before the first one */
+    Ice_Byte sliceFlags; /* flags of the current slice; 0 outside a slice */
+    const char* bound;   /* text of the reason ICE_FAILED_BOUND */
+    Ice_Int sliceEnd;    /* end of the current slice; 0 if it is not known */
+    U32* arena;          /* memory for decoded sequences */
+    /* used part of the arena, and its size, in words of 4 bytes */
+    Ice_Int arenaUsed, arenaSize;
+    /* communicator to which proxies belong that are read from the stream */
+    struct Ice_Communicator* communicator;
+    struct Ice_InputValues* values; /* table of class instances; 0 before the first one */
 } Ice_InputStream, *Ice_InputStreamPtr;
 
 /* ---- writing ---- */
@@ -140,8 +141,8 @@ void icec_patchInt(Ice_OutputStreamPtr os, Ice_Int at, Ice_Int value);
 /* ---- reading ---- */
 
 void Ice_InputStream_init(Ice_InputStreamPtr is, const Ice_Byte* data, Ice_Int size);
-const Ice_Byte* Ice_InputStream_readBlob(Ice_InputStreamPtr is, Ice_Int size); /* Returns 0 on
-                                                                                * failure. */
+/* Returns 0 on failure. */
+const Ice_Byte* Ice_InputStream_readBlob(Ice_InputStreamPtr is, Ice_Int size);
 Ice_Byte Ice_InputStream_readByte(Ice_InputStreamPtr is);
 Ice_Bool Ice_InputStream_readBool(Ice_InputStreamPtr is);
 Ice_Short Ice_InputStream_readShort(Ice_InputStreamPtr is);

@@ -20,8 +20,8 @@ struct Ice_Value;
 
 /* A preserved slice of an unknown type. */
 typedef struct Ice_UnknownSlice {
-    struct Ice_UnknownSlice* next;     /* next slice of the same instance, towards the base; 0
-                                        * after the last */
+    /* next slice of the same instance, towards its base; 0 after the last one */
+    struct Ice_UnknownSlice* next;
     struct Ice_UnknownSlice* nextRead; /* next slice in the message; used by the run time */
     Ice_String typeId;
     Ice_Int compactId;    /* compact id, which replaces typeId; -1 if not used */
@@ -71,8 +71,8 @@ typedef struct Ice_OutputValues {
     /* Encoding 1.0: 1 if instances follow the parameters; 0 if only optional parameters, which 1.0
      * omits, have classes. */
     Ice_Bool pending;
-    Ice_Bool (*writeTable)(Ice_OutputStreamPtr os); /* writes the indirection table of an
-                                                     * exception's slice */
+    /* writes the indirection table of an exception's slice */
+    Ice_Bool (*writeTable)(Ice_OutputStreamPtr os);
 } Ice_OutputValues;
 
 void Ice_OutputStream_beginValues(Ice_OutputStreamPtr os, Ice_OutputValues* values);
@@ -83,8 +83,8 @@ void Ice_OutputStream_endValues(Ice_OutputStreamPtr os);
 
 typedef struct Ice_InputValues {
     const Ice_ValueType* const* types; /* classes that the program knows; 0 marks the end */
-    Ice_Value* known[ICE_VALUES_MAX];  /* instances by their numbers; 0 for an instance of an
-                                        * unknown type */
+    /* instances by number; 0 for an instance of an unknown type */
+    Ice_Value* known[ICE_VALUES_MAX];
     Ice_Int count;
     Ice_String typeIds[ICE_VALUE_TYPES_MAX];
     Ice_Int typeCount;
@@ -94,15 +94,15 @@ typedef struct Ice_InputValues {
         Ice_Int number;
     } patches[ICE_VALUES_MAX]; /* pointers to instances that have not arrived yet */
     Ice_Int patchBegin, patchEnd;
-    struct Ice_LatePatch* late;               /* pointers to instances with a type that is not
-                                               * known yet */
-    Ice_UnknownSlice* unknown;                /* unknown slices of the message, the last one
-                                               * first */
-    Ice_Bool pending;                         /* as in Ice_OutputValues */
-    void (*readTable)(Ice_InputStreamPtr is); /* reads the indirection table of an exception's
-                                               * slice */
-    void (*skip)(Ice_InputStreamPtr is);      /* skips an optional value that the reader does not
-                                               * know */
+    /* pointers to instances with a type that is not known yet */
+    struct Ice_LatePatch* late;
+    /* unknown slices of the message, the last one first */
+    Ice_UnknownSlice* unknown;
+    Ice_Bool pending; /* as in Ice_OutputValues */
+    /* reads the indirection table of an exception's slice */
+    void (*readTable)(Ice_InputStreamPtr is);
+    /* skips an optional value that the reader does not know */
+    void (*skip)(Ice_InputStreamPtr is);
 } Ice_InputValues;
 
 void Ice_InputStream_beginValues(Ice_InputStreamPtr is, Ice_InputValues* values,

@@ -61,9 +61,9 @@ typedef Ice_Status (*Ice_Dispatch)(Ice_ObjectPtr self, const Ice_Current* curren
 
 struct Ice_Object {
     Ice_Dispatch dispatch;
-    const char* const* ids; /* type ids in alphabetical order, including "::Ice::Object"; 0 marks
-                             * the end */
-    const char* id;         /* most derived type id of the servant */
+    /* type ids in alphabetical order, including "::Ice::Object"; 0 marks the end */
+    const char* const* ids;
+    const char* id; /* most derived type id of the servant */
 };
 
 /* Runs an operation of a servant as a request does: ice_ping, ice_isA, ice_id and ice_ids are
@@ -160,8 +160,8 @@ enum { ICE_TWOWAY, ICE_ONEWAY, ICE_BATCH_ONEWAY, ICE_DATAGRAM, ICE_BATCH_DATAGRA
 typedef struct Ice_Batch {
     Ice_OutputStream os;
     Ice_Int count;
-    Ice_Status (*keep)(Ice_ObjectPrxPtr prx); /* function of the run time that keeps a call in
-                                               * the batch */
+    /* function of the run time that keeps a call in the batch */
+    Ice_Status (*keep)(Ice_ObjectPrxPtr prx);
 } Ice_Batch;
 
 /* A proxy. Frequently used members come first, because their offsets are short. */
@@ -177,19 +177,19 @@ struct Ice_ObjectPrx {
     U16 generation; /* generation of a fixed proxy's connection; 0 if the proxy is not fixed */
     const Ice_ContextEntry* context;
     Ice_Batch* batch;
-    U32* reply; /* reply buffer of this proxy; 0 selects the ICE_REPLY_MAX bytes of the
-                 * communicator */
+    /* reply buffer of this proxy; 0 selects the communicator's buffer of ICE_REPLY_MAX bytes */
+    U32* reply;
     Ice_Int replySize;
-    Ice_Byte identity[ICE_IDENTITY_MAX];  /* identity in wire format: name, category, facet */
-    Ice_Byte endpoints[ICE_ENDPOINT_MAX]; /* endpoints in wire format: count and endpoints; or 0
-                                           * and an adapter id */
-    Ice_Int id;                           /* request id of the last call; 0 if the call had no
-                                           * reply */
-    const char* operation;                /* operation of the last call */
-    const char* reason;                   /* reason of the last call's failure if this side
-                                           * detected it; 0 for another failure */
-    Ice_Byte versions[4]; /* protocol and encoding versions that are sent with the proxy; full
-                           * run time */
+    Ice_Byte identity[ICE_IDENTITY_MAX]; /* identity in wire format: name, category, facet */
+    /* endpoints in wire format: their number and the endpoints, or 0 and the id of an adapter */
+    Ice_Byte endpoints[ICE_ENDPOINT_MAX];
+    /* request id of the last call; 0 if the call had no reply */
+    Ice_Int id;
+    const char* operation; /* operation of the last call */
+    /* reason of the last call's failure if this side detected the failure; otherwise 0 */
+    const char* reason;
+    /* versions of protocol and encoding that are sent with the proxy; full run time only */
+    Ice_Byte versions[4];
 };
 
 /* Reason of a failed call. identity, facet and operation are those of the call, for

@@ -41,20 +41,22 @@ typedef struct Link Link; /* an opaque type: its fields are private */
 /* Configuration of a link. It is copied; `port` and the buffers must stay valid. */
 typedef struct Link_Config {
     const Link_Port* port;
-    void* context;    /* passed to the port unchanged */
-    U32 byteTimeUs16; /* time of one byte on the slowest part of the path, 1/16 us (111,111 baud:
-                       * 1440), for pacing and timers */
+    void* context; /* passed to the port unchanged */
+    /* time of one byte on the slowest part of the path, 1/16 us, for pacing and timers (1440 at
+     * 111,111 baud) */
+    U32 byteTimeUs16;
 #ifndef LINK_MINIMAL
-    U8* send;       /* ring for the queue of outgoing messages */
-    U32 sendBytes;  /* size of `send` in bytes: a power of two, 1024 to 32,768. The largest
-                     * message that can be sent has sendBytes - LINK_RESERVE - LINK_CHECK bytes */
-    U8* message;    /* buffer for the incoming message: LINK_ROOM(maxMessage) bytes */
-    U32 maxMessage; /* size of the largest message that can arrive, bytes; at most
-                     * LINK_MAX_MESSAGE */
+    U8* send; /* ring for the queue of outgoing messages */
+    /* size of `send`, bytes: a power of two, 1024 to 32,768. The largest message that can be sent
+     * has sendBytes - LINK_RESERVE - LINK_CHECK bytes */
+    U32 sendBytes;
+    U8* message; /* buffer for the incoming message: LINK_ROOM(maxMessage) bytes */
+    /* size of the largest message that can arrive, bytes; at most LINK_MAX_MESSAGE */
+    U32 maxMessage;
     Link_Fragment* fragments; /* array for the fragments in flight */
     Link_ReorderSlot* slots;  /* array for fragments that arrived out of order */
-    U32 window;               /* number of elements of both arrays: a power of two, 4 to
-                               * LINK_WINDOW */
+    /* number of elements of both arrays: a power of two, 4 to LINK_WINDOW */
+    U32 window;
 #endif
 } Link_Config;
 

@@ -11,23 +11,23 @@
 
 /* Keys of a session, which are wiped when the session ends. */
 typedef struct Link_SessionSecrets {
-    Link_Keys keys;                  /* keys for the session's frames */
-    Link_Keys handshake;             /* keys for the handshake's frames */
-    U8 publicKey[LINK_PUBLIC_BYTES]; /* public key of this side, as sent in frames of the
-                                      * handshake */
+    Link_Keys keys;      /* keys for the session's frames */
+    Link_Keys handshake; /* keys for the handshake's frames */
+    /* public key of this side, as it is sent in frames of the handshake */
+    U8 publicKey[LINK_PUBLIC_BYTES];
 } Link_SessionSecrets;
 
 /* Identity of a session: both nonces, and values that are derived from them. */
 typedef struct Link_Identity {
-    U32 key;                        /* epoch in bits 31..29, seed of the CRCs in bits 15..0 */
-    U8 features;                    /* features that both sides support */
-    U8 slot;                        /* slot of the key that made the session; 0 without a key */
-    U8 isGround;                    /* 1: this side is the ground; 0 without a key */
-    U8 nonce[LINK_NONCE_BYTES];     /* nonce of this side; without a key, only its first 4 bytes
-                                     * are used */
-    U8 peerNonce[LINK_NONCE_BYTES]; /* nonce of the peer; without a key, only its first 4 bytes
-                                     * are used */
-    Link_SessionSecrets secrets;    /* secrets of the session; unused without a key */
+    U32 key;     /* epoch in bits 31..29, seed of the CRCs in bits 15..0 */
+    U8 features; /* features that both sides support */
+    U8 slot;     /* slot of the key that made the session; 0 without a key */
+    U8 isGround; /* 1: this side is the ground; 0 without a key */
+    /* nonce of this side; without a key, only the first 4 bytes are used */
+    U8 nonce[LINK_NONCE_BYTES];
+    /* nonce of the peer; without a key, only the first 4 bytes are used */
+    U8 peerNonce[LINK_NONCE_BYTES];
+    Link_SessionSecrets secrets; /* secrets of the session; unused without a key */
 } Link_Identity;
 
 /* Return the key for frames that this side sends, and for frames that the peer sends. */
@@ -45,12 +45,13 @@ typedef struct Link_Seal {
 } Link_Seal;
 
 typedef struct Link_Codec {
-    U8 overhead;        /* bytes of a frame without its payload */
-    U8 nonceBytes;      /* size of each side's nonce in the handshake, bytes */
-    U8 check;           /* size of the check after a message of more than LINK_UNCHECKED bytes */
-    U8 isAuthenticated; /* 1: frames have a tag, so that a wrong frame is practically never
-                         * accepted; PINGs are numbered */
-    U8 sizes[6];        /* payload of control frames up to PING in bytes, by Link_Kind */
+    U8 overhead;   /* bytes of a frame without its payload */
+    U8 nonceBytes; /* size of each side's nonce in the handshake, bytes */
+    U8 check;      /* size of the check after a message of more than LINK_UNCHECKED bytes */
+    /* 1 if frames have a tag, so that a wrong frame is practically never accepted; PINGs are then
+     * numbered */
+    U8 isAuthenticated;
+    U8 sizes[6]; /* payload of control frames up to PING in bytes, by Link_Kind */
     /* Adds the session's epoch to `header`, writes the header before the payload, which `frame`
      * already contains, and completes the frame. Returns the frame's size in bytes. */
     U32 (*seal)(U8* frame, U32 header, const Link_Seal* seal);

@@ -25,8 +25,9 @@ typedef struct Link_Contention {
     U32 answeredAt;      /* time of the last result of the radio, us */
     U32 rest;            /* longest pause after the next loss, us */
     U32 usualUs;         /* mean time of a packet that is delivered, us */
-    U32 quick;           /* share of the last packets, in 1/65,536, that were lost within that
-                          * time */
+    /* share of recent packets that were lost quickly, without retries by the modem; 65,536 means
+     * all */
+    U32 quick;
 } Link_Contention;
 
 /* Returns whether the peer calls while this side sends a stream, and sends no stream itself. */

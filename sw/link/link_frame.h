@@ -65,10 +65,10 @@ typedef enum Link_Kind {
     LINK_KIND_RST,
     LINK_KIND_BYE,
     LINK_KIND_PING,
-    LINK_KIND_PIGGYBACK,     /* complete message of one fragment, with an acknowledgement */
-    LINK_KIND_PIGGYBACK_ASK, /* PIGGYBACK, and the receiver must acknowledge at once
-                              * (LINK_ACK_NOW) */
-    LINK_KIND_DATA           /* value for frames that are not control frames */
+    LINK_KIND_PIGGYBACK, /* complete message of one fragment, with an acknowledgement */
+    /* PIGGYBACK, and the receiver must acknowledge at once (LINK_ACK_NOW) */
+    LINK_KIND_PIGGYBACK_ASK,
+    LINK_KIND_DATA /* value for frames that are not control frames */
 } Link_Kind;
 
 #define LINK_KIND_OF(frame) \

@@ -40,20 +40,20 @@ typedef struct Link_HandshakeRules {
 typedef struct Link_Handshake {
     Link_Pacing* pacing;
     const Link_HandshakeRules* rules;
-    U8 state;                   /* Link_State */
-    U8 hasCandidate;            /* 1, without a key: a HELLO was answered with the candidate's
-                                 * nonce */
-    U8 keys;                    /* set of slots with a key */
-    U8 slot;                    /* slot of the key used in the newest HELLO */
-    U8 isGround;                /* 1, with a key: this side is the ground */
-    U8 isAnswered;              /* 1: a HELLO was answered with `nonce` */
-    U8 isUnconfirmed;           /* 1: the peer may not know of the session yet */
-    U8 hasPair;                 /* 1: `pair` has been generated */
-    U32 firstAnswer;            /* time of the first answer that contains `nonce`, us */
-    U32 lastAnswer;             /* time of the newest answer, us */
-    U32 helloAt;                /* time of the next HELLO or CONFIRM, us */
-    U32 helloEvery;             /* interval from the next HELLO or CONFIRM to the following one,
-                                 * us */
+    U8 state; /* Link_State */
+    /* only without a key: 1 after a HELLO was answered with the nonce of the candidate */
+    U8 hasCandidate;
+    U8 keys;          /* set of slots with a key */
+    U8 slot;          /* slot of the key used in the newest HELLO */
+    U8 isGround;      /* 1, with a key: this side is the ground */
+    U8 isAnswered;    /* 1: a HELLO was answered with `nonce` */
+    U8 isUnconfirmed; /* 1: the peer may not know of the session yet */
+    U8 hasPair;       /* 1: `pair` has been generated */
+    U32 firstAnswer;  /* time of the first answer that contains `nonce`, us */
+    U32 lastAnswer;   /* time of the newest answer, us */
+    U32 helloAt;      /* time of the next HELLO or CONFIRM, us */
+    /* interval between the next HELLO or CONFIRM and the one after it, us */
+    U32 helloEvery;
     U32 resetAt;                /* time of the newest answer to a frame of an unknown session, us */
     U8 nonce[LINK_NONCE_BYTES]; /* this side's nonce for the next session */
     Link_Identity present;

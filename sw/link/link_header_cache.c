@@ -47,8 +47,8 @@ static U32 headOf(const U8* m, U32 size, int type) {
         return size > LINK_HEAD_AT ? IS_REPLY : 0;
     if (type != REQUEST || size < LINK_HEAD_AT || m[9] != 0)
         return 0;
-    for (strings = 0; strings < 4; ++strings) { /* the strings are name, category, facet and
-                                                 * operation */
+    /* the strings are name, category, facet and operation */
+    for (strings = 0; strings < 4; ++strings) {
         if (strings == 2) {
             if (at >= size || m[at] > 1)
                 return 0;

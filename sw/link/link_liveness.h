@@ -12,14 +12,14 @@
 typedef struct Link_Liveness {
     Link_Pacing* pacing;
     /* The following fields are set when a session begins. */
-    U32 pingsSent;     /* number of the newest PING of this side */
-    U32 pingsAnswered; /* newest PING of this side that was answered, or that is older than an
-                        * answered one */
-    U32 askedAt;       /* time of the first PING after pingsAnswered, us */
-    U32 pingsSeen;     /* number of the peer's newest PING */
-    U32 heardAt;       /* time of the last sign of life, us */
-    U32 provenAt;      /* time at which the peer was certainly there, us */
-    U32 pingAt;        /* earliest time of the next PING, us */
+    U32 pingsSent; /* number of the newest PING of this side */
+    /* number of the newest PING of this side that was answered; older PINGs count as answered */
+    U32 pingsAnswered;
+    U32 askedAt;   /* time of the first PING after pingsAnswered, us */
+    U32 pingsSeen; /* number of the peer's newest PING */
+    U32 heardAt;   /* time of the last sign of life, us */
+    U32 provenAt;  /* time at which the peer was certainly there, us */
+    U32 pingAt;    /* earliest time of the next PING, us */
 } Link_Liveness;
 
 /* Starts with a peer that has just been heard. */

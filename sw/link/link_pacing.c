@@ -102,8 +102,8 @@ static int handOver(Link_Pacing* pacing, int isFollowed) {
     }
     pacing->slack = slack;
     pacing->early = 0;
-    if (pacing->heard && pacing->fastest > LINK_PACKET_US) { /* over a cable both sides can send
-                                                              * at once */
+    /* on a radio channel only one side can send at a time; over a cable both can */
+    if (pacing->heard && pacing->fastest > LINK_PACKET_US) {
         U32 heard = pacing->heard;
         U32 wait = timeOf(lineOf(pacing, heard), heard, full) * LINK_HEARD_QUARTERS >> 2;
         pacing->early = (time + wait) / 2U;
@@ -183,8 +183,8 @@ static int sendSealed(Link_Pacing* pacing, U8* frame, U32 header, const Link_Sea
 int link_sendNow(Link_Pacing* pacing, U8* frame, U32 header, const Link_Seal* seal) {
     if (!sendSealed(pacing, frame, header, seal))
         return 0;
-    (void)link_flush(pacing); /* otherwise the frame is sent with the packet, when the radio has
-                               * room */
+    /* the frame waits for the packet, which is sent when the radio has room */
+    (void)link_flush(pacing);
     return 1;
 }
 

@@ -22,12 +22,13 @@ typedef struct Link_Unanswered {
 /* In each part, small fields that are often used come first, because short instructions can only
  * reach low offsets. */
 typedef struct Link_Pacing {
-    U8 longest;         /* largest payload of a frame that is sent, bytes */
-    U8 packed;          /* bytes in the packet */
-    U8 heard;           /* bytes of a frame received since the last packet was sent, or 0 */
-    U8 isStream;        /* 1: several fragments are in flight, packets follow each other */
-    U8 slow;            /* number of further packets for which the modem is assumed to be slow,
-                         * because it may hold packets */
+    U8 longest;  /* largest payload of a frame that is sent, bytes */
+    U8 packed;   /* bytes in the packet */
+    U8 heard;    /* bytes of a frame received since the last packet was sent, or 0 */
+    U8 isStream; /* 1: several fragments are in flight, packets follow each other */
+    /* number of further packets that are sent as if the modem was slow, because it may hold packets
+     * back */
+    U8 slow;
     U8 mostWaiting;     /* packets that may wait for a result; 0: the radio reports none */
     U8 handed, waiting; /* packets handed over, modulo 256; packets without a result */
     U8 isHeld;          /* 1: until paceUntil only a message that overtakes is sent */
@@ -42,8 +43,8 @@ typedef struct Link_Pacing {
     U32 early;        /* largest reduction of the wait after a received frame, us */
     U32 quietUntil;   /* end of the silence after a short packet, us */
     U8 packet[LINK_MAX_FRAME]; /* packet being filled with frames */
-    Link_Unanswered own;       /* list of this link's packets, unless another link's list is
-                                * shared */
+    /* this link's list of unanswered packets, used unless the list of another link is shared */
+    Link_Unanswered own;
     Link_Contention contention;
 } Link_Pacing;
 

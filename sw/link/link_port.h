@@ -14,8 +14,8 @@ typedef enum Link_State {
 
 typedef enum Link_Outcome {
     LINK_DELIVERED, /* the peer's program has accepted the message */
-    LINK_UNKNOWN    /* the session ended before an acknowledgement: the message may or may not
-                     * have arrived */
+    /* the session ended before an acknowledgement: the message may or may not have arrived */
+    LINK_UNKNOWN
 } Link_Outcome;
 
 typedef enum Link_Status {
@@ -58,11 +58,10 @@ typedef struct Link_Statistics {
     U32 fragmentsResent;                /* number of data fragments that were sent again */
     U32 acksSent;                       /* acknowledgements, alone or piggybacked */
     U32 bytesSkipped;                   /* bytes skipped in the search for the next frame */
-    U32 duplicates;                     /* fragments that arrived although they had arrived
-                                         * before */
+    U32 duplicates;                     /* number of fragments that arrived more than once */
     U32 messagesSent, messagesReceived; /* messages that were delivered in each direction */
     U32 sessions;                       /* number of sessions */
     U32 roundTripUs;                    /* smoothed round trip, us; not a counter */
-    U32 headBytesSaved;                 /* bytes saved by compressing the headers of sent
-                                         * messages */
+    /* number of bytes saved by compressing the headers of sent messages */
+    U32 headBytesSaved;
 } Link_Statistics;

@@ -123,8 +123,8 @@ static int takeEarly(Link_Receiver* receiver, U32 seq) {
         if (other->flags && other->size != LINK_TAKEN && LINK_CHANNEL(other->flags) == channel)
             return 1;
     }
-    --receiver->expected; /* undoes the count by accept: the acknowledgement in order does not
-                           * change */
+    /* undoes the increment by accept: the next expected fragment does not change */
+    --receiver->expected;
     if (!accept(receiver, slot->flags, slot->bytes, slot->size))
         return 0;
     receiver->expected = expected;
@@ -163,8 +163,8 @@ int link_onData(Link_Receiver* receiver, U32 seq, U32 flags, const U8* data, U32
         receiver->pacing->env.now + (flags & LINK_LAST ? LINK_ACK_DELAY : LINK_ACK_WITHIN);
     if (flags & LINK_ACK_NOW)
         receiver->ackNow = 1;
-    if (ahead == 0 && !receiver->isHeld) /* the usual case: the fragment is in order and is
-                                          * appended to the message directly */
+    /* the usual case: the fragment is in order and is appended directly to the message */
+    if (ahead == 0 && !receiver->isHeld)
         return accept(receiver, flags, data, size) && drain(receiver);
     if (ahead != 0 && ahead <= receiver->mask && !slot->flags) {
         ++receiver->waiting;

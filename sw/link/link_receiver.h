@@ -29,19 +29,19 @@ typedef struct Link_Receiver {
     U8 mask;     /* number of slots minus 1 */
     U16 longest; /* size of the largest long message that may arrive, bytes */
     /* The following fields are 0 when a session begins. */
-    U8 isAssembling;        /* 1: between the first and last fragment of a long message */
-    U8 isHeld;              /* 1: a message is complete, but the program has not accepted it */
-    U8 channel;             /* channel of the complete message */
-    U8 longChannel;         /* channel of the long message that is being assembled */
-    U8 ackDue;              /* 1: an acknowledgement is sent at `ackAt` */
-    U8 ackNow;              /* 1: an acknowledgement is sent at once */
-    U8 waiting;             /* number of slots in use */
-    U8 packet;              /* packet that contained the last acknowledgement, as
-                             * Link_Pacing.handed counts */
-    U16 size;               /* size of the complete message, bytes */
-    U16 longSize;           /* number of bytes of the long message that have arrived */
-    U32 expected;           /* number of the next fragment that is expected from the peer;
-                             * acknowledgements contain it */
+    U8 isAssembling; /* 1: between the first and last fragment of a long message */
+    U8 isHeld;       /* 1: a message is complete, but the program has not accepted it */
+    U8 channel;      /* channel of the complete message */
+    U8 longChannel;  /* channel of the long message that is being assembled */
+    U8 ackDue;       /* 1: an acknowledgement is sent at `ackAt` */
+    U8 ackNow;       /* 1: an acknowledgement is sent at once */
+    U8 waiting;      /* number of slots in use */
+    /* number of the packet with the last acknowledgement, as counted by Link_Pacing.handed */
+    U8 packet;
+    U16 size;     /* size of the complete message, bytes */
+    U16 longSize; /* number of bytes of the long message that have arrived */
+    /* number of the next fragment that is expected from the peer; an acknowledgement contains it */
+    U32 expected;
     U32 ackAt;              /* time at which the acknowledgement is due, us */
     U8* start;              /* start of the complete message */
     Link_HeaderCache heads; /* headers of received messages, for decompression */

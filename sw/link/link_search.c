@@ -28,8 +28,8 @@ static int isPlausible(const Link_Codec* codec, const U8* frame) {
 static int mayTry(Link_Search* search, U32 rounds) {
     U32 now = search->session->handshake.pacing->env.now;
     U32 debt = search->paidAt - now;
-    if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY) /* older debt is paid by the time that has
-                                                        * passed */
+    /* an older debt has already been paid by the time that has passed */
+    if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY)
         debt = 0;
     debt += rounds * LINK_ROUND_EVERY;
     if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY)

@@ -18,28 +18,29 @@ typedef struct Link_Fragment {
     U32 order;           /* number of its last transmission, as `order` counts */
     U8 tries;            /* number of transmissions: 0, 1, or 2 for more */
     U8 state;            /* state, a Link_FragmentState */
-    U8 packet;           /* number of the packet of its last transmission, as Link_Pacing.handed
-                          * counts */
+    /* number of the packet with the last transmission of this fragment, as counted by
+     * Link_Pacing.handed */
+    U8 packet;
 } Link_Fragment;
 
 typedef struct Link_Sender {
     Link_Pacing* pacing;
-    Link_Receiver* receiver; /* receiver, whose acknowledgements may be sent on this sender's
-                              * fragments */
-    Link_Fragment* window;   /* window of fragments, owned by the caller */
-    U8 mask;                 /* number of fragments in the window minus 1 */
+    /* receiver whose acknowledgements may be sent together with this sender's fragments */
+    Link_Receiver* receiver;
+    Link_Fragment* window; /* window of fragments, owned by the caller */
+    U8 mask;               /* number of fragments in the window minus 1 */
     /* The following fields are 0 when a session begins. */
     U8 credit;     /* number of fragments that may be in flight now */
     U8 fullCredit; /* largest credit so far */
     U8 hasWork;    /* 1: there may be something to send */
     U8 isLossy;    /* 1: the newest acknowledgement reported missing fragments */
     U8 isLate;     /* 1: the timer has expired since the last acknowledgement */
-    U8 unasked;    /* number of transmissions since the last request for an acknowledgement, or
-                    * since the last acknowledgement */
-    U8 hasSample;  /* 1: srtt and rttvar are valid */
-    U32 base;      /* number of the oldest unacknowledged fragment; its lowest byte is SEQ */
-    U32 next;      /* number of the next new fragment */
-    U32 ahead;     /* number of the newest fragment that has overtaken */
+    /* number of transmissions since the last acknowledgement arrived or was requested */
+    U8 unasked;
+    U8 hasSample; /* 1: srtt and rttvar are valid */
+    U32 base;     /* number of the oldest unacknowledged fragment; its lowest byte is SEQ */
+    U32 next;     /* number of the next new fragment */
+    U32 ahead;    /* number of the newest fragment that has overtaken */
     U32 rto, srtt, rttvar;  /* time-out, smoothed round trip and its variation as in RFC 6298, us */
     U32 timerAt;            /* time at which the retransmission timer expires, us */
     U32 order;              /* number of transmissions so far */

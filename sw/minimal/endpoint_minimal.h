@@ -23,11 +23,11 @@ typedef struct XBeeATEndpoint {
     Link* link;
     const XBeeATEndpoint_Port* port;
     void* context;
-    U16 address;      /* address of this side's modem, MY */
-    U32 events;       /* events to be delivered, one bit each */
-    Ice_Int size;     /* bytes of the pending message */
-    Ice_Byte* buffer; /* buffer of the waiting task; 0 while no task waits: the link then keeps
-                       * the message */
+    U16 address;  /* address of this side's modem, MY */
+    U32 events;   /* events to be delivered, one bit each */
+    Ice_Int size; /* bytes of the pending message */
+    /* buffer of the waiting task; 0 while no task waits (the link then keeps the message) */
+    Ice_Byte* buffer;
     Ice_Byte from;    /* channel of the pending message */
     Ice_Byte ownOpen; /* this side's channel is open */
 } XBeeATEndpoint;

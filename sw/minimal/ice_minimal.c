@@ -63,8 +63,8 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
     target.data = is->data + target.size;
     Ice_InputStream_takeString(is, &current.name);
     Ice_InputStream_takeString(is, &current.category);
-    current.facet.size = Ice_InputStream_readByte(is); /* number of facets; a facet is not
-                                                        * supported */
+    /* number of facets; requests with a facet are not supported */
+    current.facet.size = Ice_InputStream_readByte(is);
     icec_skipStrings(is, (U32)current.facet.size);
     Ice_InputStream_takeString(is, &current.operation);
     target.size = is->position - target.size;
@@ -232,8 +232,7 @@ static Ice_Status parse(Ice_CommunicatorPtr ic, const char* text, Ice_ObjectPrxP
     if (size - 1U > ICE_IDENTITY_MAX - 4U)
         return ICE_LIMIT;
     prx->identity[0] = (Ice_Byte)size;
-    memcpy(prx->identity + 1, text, size); /* after the name follow two zeros: no category, no
-                                            * facet */
+    memcpy(prx->identity + 1, text, size); /* two zeros follow the name: no category and no facet */
     prx->identitySize = (Ice_Byte)(size + 3U);
     prx->mode = strncmp(text + size, " -o", 3) == 0; /* ICE_ONEWAY */
     if (options) {

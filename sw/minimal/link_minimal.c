@@ -129,8 +129,8 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
         else if (kind == LINK_KIND_RST && epoch == LINK_KEY_EPOCH(link->key))
             lose(link);
         return;
-    } else if (link->state != LINK_STATE_UP) { /* the frame belongs to an earlier session of the
-                                                * peer */
+    } else if (link->state != LINK_STATE_UP) {
+        /* the frame belongs to an earlier session of the peer */
         link->key = LINK_EPOCH_KEY(epoch) | LINK_NO_SEED;
         transmit(link, LINK_CONTROL_HEADER(LINK_KIND_RST, 0, 0U));
         return;

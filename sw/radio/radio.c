@@ -34,9 +34,9 @@
 typedef enum BufferState { BUFFER_FREE, BUFFER_SENDING } BufferState;
 
 static struct {
-    BufferState output[BUFFERS]; /* control vector of the paper: one entry for each buffer in
-                                  * DDR3 */
-    U32 head, used;              /* oldest buffer that is being sent; number of such buffers */
+    /* control vector of the paper: one entry for each buffer in DDR3 */
+    BufferState output[BUFFERS];
+    U32 head, used; /* oldest buffer that is being sent; number of such buffers */
     Radio_Memory memory;
     Radio_Counters counters;
     U32 failedStep;

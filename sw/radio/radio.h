@@ -35,8 +35,8 @@ typedef enum Radio_Baud {
     XBEE_BD_38400,
     XBEE_BD_57600,
     XBEE_BD_115200,
-    RADIO_250000 = 0x3D090,     /* baud rate for API mode; the rate is 111,111 if the controller
-                                 * has no API mode */
+    /* baud rate for API mode; the rate is 111,111 if the controller has no API mode */
+    RADIO_250000 = 0x3D090,
     RADIO_WIRE_115200 = 0x80007 /* a cable to a serial port replaces the modem, at 111,111 baud */
 } Radio_Baud;
 
@@ -71,14 +71,14 @@ typedef enum Radio_Status {
 /* Counts since the start. */
 typedef struct Radio_Counters {
     U32 framesSent, framesReceived;
-    U32 bytesCopiedOut, bytesCopiedIn;   /* bytes copied over the FSMC to and from the DDR3 */
-    U32 ringFull;                        /* frames that were not copied because no buffer was
-                                          * free */
+    U32 bytesCopiedOut, bytesCopiedIn; /* bytes copied over the FSMC to and from the DDR3 */
+    /* number of frames that were not copied because no buffer was free */
+    U32 ringFull;
     U32 interrupts;                      /* calls of Radio_interrupt */
     U32 hardwareOverruns, framingErrors; /* counters of the controller (docs/modem.md) */
-    U32 delivered, lost;                 /* API mode: sent packets, by the result that the modem
-                                          * reported */
-    U8 signal;                           /* API mode: RSSI of the last packet, -dBm */
+    /* API mode: number of packets that were delivered and lost, as reported by the modem */
+    U32 delivered, lost;
+    U8 signal; /* API mode: RSSI of the last packet, -dBm */
 } Radio_Counters;
 
 /* DDR3 byte addresses of the rings; each ring has 2 KiB and begins at a multiple of 128. */

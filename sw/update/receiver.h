@@ -19,20 +19,20 @@ typedef enum Receiver_State {
 
 typedef enum Receiver_Reason {
     RECEIVER_OK,
-    RECEIVER_FOREIGN,    /* the header is for another product, board or slot, or is not a header */
-    RECEIVER_OLD,        /* the version is not higher than the confirmed one */
-    RECEIVER_UNSIGNED,   /* the image is not signed with one of this vehicle's keys */
-    RECEIVER_DAMAGED,    /* the bytes of the image differ from the signed ones */
-    RECEIVER_BUSY,       /* the receiver is preparing or checking, or an image is ready */
-    RECEIVER_ON_TRIAL,   /* the running image must be confirmed first */
-    RECEIVER_NOT_BEGUN,  /* no update was begun, or bytes of the image are missing */
-    RECEIVER_MISPLACED,  /* the piece follows a gap, is not aligned, or is beyond the end */
-    RECEIVER_FLASH,      /* the flash could not be programmed */
-    RECEIVER_WENT_BACK,  /* the new image was started, but was not confirmed */
-    RECEIVER_REFUSED,    /* the FPGA did not start with the bitstream */
-    RECEIVER_NEEDS_OTHER /* the required counterpart is not confirmed; for keys: the previous list
-                          * is missing, or the running image is not signed with a key of the new
-                          * list */
+    RECEIVER_FOREIGN,   /* the header is for another product, board or slot, or is not a header */
+    RECEIVER_OLD,       /* the version is not higher than the confirmed one */
+    RECEIVER_UNSIGNED,  /* the image is not signed with one of this vehicle's keys */
+    RECEIVER_DAMAGED,   /* the bytes of the image differ from the signed ones */
+    RECEIVER_BUSY,      /* the receiver is preparing or checking, or an image is ready */
+    RECEIVER_ON_TRIAL,  /* the running image must be confirmed first */
+    RECEIVER_NOT_BEGUN, /* no update was begun, or bytes of the image are missing */
+    RECEIVER_MISPLACED, /* the piece follows a gap, is not aligned, or is beyond the end */
+    RECEIVER_FLASH,     /* the flash could not be programmed */
+    RECEIVER_WENT_BACK, /* the new image was started, but was not confirmed */
+    RECEIVER_REFUSED,   /* the FPGA did not start with the bitstream */
+    /* the bitstream (or firmware) that the image needs is not confirmed; for keys: the previous
+     * list is missing, or the running image is not signed with a key of the new list */
+    RECEIVER_NEEDS_OTHER
 } Receiver_Reason;
 
 typedef struct Receiver {
@@ -47,8 +47,7 @@ typedef struct Receiver {
     Slots_Header header; /* header of the current update */
     volatile Receiver_State state;
     Receiver_Reason reason; /* reason why the last update ended */
-    U32 received;           /* number of bytes of the image that were received, from its
-                             * beginning */
+    U32 received;           /* number of bytes at the start of the image that were received */
 } Receiver;
 
 /* Restores the state from before the last start. `running` is the slot of the running firmware

@@ -32,8 +32,9 @@ typedef struct Slots_Keys {
 
 /* State words. The values are their offsets in a slot. */
 typedef enum Slots_State {
-    SLOTS_READY = 0x1C0,     /* the image in the slot is complete and was checked
-                              * (Slots_Layout.ready can replace this word) */
+    /* the image in the slot is complete and was checked (Slots_Layout.ready can replace this
+     * word) */
+    SLOTS_READY = 0x1C0,
     SLOTS_TRIED = 0x1D0,     /* the image was started once */
     SLOTS_CONFIRMED = 0x1E0, /* the image has been confirmed to work */
     SLOTS_REFUSED = 0x1F0    /* the FPGA did not start with this image */
@@ -47,8 +48,8 @@ typedef struct Slots_Layout {
     U32 sectorBytes;    /* size of an erase sector, bytes */
     U32 readyAt, ready; /* offset of the word READY in a slot, and its value if it is set */
     U32 logAt;          /* offset of the log of confirmed versions that were erased */
-    U32 hasGolden;      /* 1: slot 0 is never written; 0: updates are written to the two slots
-                         * alternately */
+    /* 1 if slot 0 is never written; 0 if updates are written to the two slots alternately */
+    U32 hasGolden;
 } Slots_Layout;
 
 /* Layout of the processor's flash: slots in sectors 5..7 and 8..10, and the log in sector 3. */

@@ -31,8 +31,7 @@ static const Link_Config observerConfig = {&uav_linkPort, &uav_peers[UAV_OBSERVE
 static const Link_Config vehicleConfig = {&uav_linkPort, &uav_peers[UAV_VEHICLE],
                                           UAV_BYTE_TIME_US16, LINK_USE(vehicleBuffers)};
 
-static U8 toAll[LINK_MAX_FRAME]; /* a call to all vehicles; its bytes while it waits, 0 without a
-                                  * call */
+static U8 toAll[LINK_MAX_FRAME]; /* a call to all vehicles that waits */
 static U8 toAllSize;
 
 /* Adds a peer if the vehicle has one in this role. Returns 1 if a peer was added. */

@@ -8,8 +8,8 @@
 #include <string.h>
 
 #define SLOT_WORDS ((U32)(sizeof(Backup_Slot) / sizeof(U32)))
-#define STATE_NEXT 0x4E455830U /* STATE_NEXT + the slot of the next key, if both slots have a key \
-                                */
+/* STATE_NEXT + number of the slot with the next key, if both slots have a key */
+#define STATE_NEXT 0x4E455830U
 #define CHECK_SEED 0x4B455931U
 
 static int nextSlot[UAV_PEERS]; /* slot of the next key; -1 if there is only one key */

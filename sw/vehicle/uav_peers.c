@@ -8,8 +8,8 @@
 #include "link_broadcast.h"
 #include "uav_keys.h"
 
-#define NEWEST UAV_STATE_AT(UAV_GROUP) /* word with the number of the newest call to all vehicles \
-                                        */
+/* word with the number of the newest call to all vehicles */
+#define NEWEST UAV_STATE_AT(UAV_GROUP)
 
 int UAV_providePeer(int role, U32 address, const U8* key) {
     UAV_store(UAV_ADDRESS_AT(role), 0);

@@ -27,8 +27,8 @@ constexpr U32 coreClocksOfMs = CORE_CLK_HZ / 1000;
 #else
 constexpr U32 coreClocksOfMs = 100; // small, so that time-outs expire soon
 #endif
-constexpr U32 coreMemory = 0x01000000; // DDR3 byte address of the core's buffers, as the driver
-                                       // uses it
+// byte address in DDR3 of the core's buffers, as the driver uses it
+constexpr U32 coreMemory = 0x01000000;
 
 // Status of a call that neither succeeded nor threw one of its exceptions.
 class CoreError : public std::runtime_error {
@@ -154,10 +154,10 @@ public:
     CoreMemory<Module> memory_{bench_};
     BusMaster<Module> bus_{bench_};
     Hw_Core* core_ = nullptr;
-    std::function<void()> interrupt_;    // interrupt function of the servant; without it,
-                                         // Hw_Core_interrupt is used
-    std::function<void()> beforeAccess_; // called before each register access, as if another task
-                                         // ran
+    // interrupt function of the servant; if it is empty, Hw_Core_interrupt is used
+    std::function<void()> interrupt_;
+    // called before each register access, to simulate that another task runs
+    std::function<void()> beforeAccess_;
     U32 posted_ = 0;
     U32 memoryAt_ = coreMemory; // address of the buffers for the core: the value of MEMORY
     uint64_t started_ = 0, waitedClocks_ = 0;

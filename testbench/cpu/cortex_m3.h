@@ -81,8 +81,8 @@ public:
     void flashChanged(uint32_t offset, uint32_t bytes);
     // Blocks instruction fetches from flash for this many cycles; called by the bus.
     void stallFlash(uint64_t cycles) { flashFree_ = this->cycles() + cycles; }
-    uint32_t word(uint32_t address) const; // Returns the word at `address`; 0 if the address is not
-                                           // memory.
+    // Returns the word at `address`; 0 if the address is not memory.
+    uint32_t word(uint32_t address) const;
 
     // Performs a power-on or system reset: registers from the vector table; RAM is kept.
     void reset();
@@ -125,10 +125,8 @@ public:
     uint64_t cycles() const { return control_.cycles(); }
     uint64_t instructions() const { return instructions_; }
     uint64_t sleepingCycles() const { return sleeping_; }
-    uint64_t busCycles() const {
-        return waited_;
-    } // cycles in which the processor waited for
-      // windows
+    // Returns the cycles in which the processor waited for accesses to windows.
+    uint64_t busCycles() const { return waited_; }
     bool isLockedUp() const { return lockedUp_; }
     unsigned currentException() const;
     Exceptions& exceptions() { return exceptions_; }
@@ -204,8 +202,8 @@ private:
     SystemControl control_{exceptions_, 0};
 
     uint32_t pc_ = 0, executing_ = 0, expected_ = 0, unitEnd_ = 0;
-    unsigned skipped_ = 0; // number of conditional instructions of the current IT block that are
-                           // still to be executed
+    // number of instructions in the current IT block that are still to be executed or skipped
+    unsigned skipped_ = 0;
     bool masksChanged_ = false;
     uint8_t special_ = 0;     // special register of the last MSR
     bool exclusive_ = false;  // the exclusive monitor may be open

@@ -197,8 +197,8 @@ void CortexM3::enter(unsigned number) {
                         exceptions_.priorityOf(derived) < exceptions_.runningPriority();
         if (!possible)
             control_.reportHardFault(SystemControl::forced);
-        number = possible ? derived : unsigned(HardFault); // the stacked frame is lost, as on the
-                                                           // chip
+        // the stacked frame is lost, as on the chip
+        number = possible ? derived : unsigned(HardFault);
     }
     setReg(Sp, frame);
     setReg(Lr, handler ? returnHandler : process ? returnProcess : returnMain);

@@ -42,9 +42,9 @@ Instruction narrowInstruction(uint16_t op) {
     case 7:
     case 8:
     case 9:
-        return takes(op & 0x0800 ? 2 : 1); // address with an immediate offset; a store goes to the
-                                           // write buffer
-    case 12:                               // LDM, STM
+        // address with an immediate offset; a store goes to the write buffer
+        return takes(op & 0x0800 ? 2 : 1);
+    case 12: // LDM, STM
         i.base = static_cast<uint8_t>(op >> 8 & 7);
         i.alignment = 3;
         return takes(1 + ones(op & 0xFF));

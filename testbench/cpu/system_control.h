@@ -40,16 +40,16 @@ enum Exception : unsigned {
 
 class Exceptions {
 public:
-    static constexpr unsigned interrupts = 81; // number of interrupts of an STM32F2 (RM0033, table
-                                               // 61)
+    // number of interrupts of an STM32F2 (RM0033, table 61)
+    static constexpr unsigned interrupts = 81;
     static constexpr unsigned count = FirstInterrupt + interrupts;
     static constexpr uint8_t priorityBits = 0xF0; // implemented bits of a priority: the upper four
     static constexpr int none = 256;              // priority of thread mode
 
     struct State {
         bool pending = false, active = false, enabled = false;
-        bool level = false; // level of the interrupt line; while it is high, the interrupt becomes
-                            // pending again
+        // level of the interrupt line; while the line is high, the interrupt becomes pending again
+        bool level = false;
         uint8_t priority = 0;
     };
 
@@ -196,9 +196,8 @@ public:
 
     uint32_t vectorTable() const { return vtor_; }
     bool takeResetRequest();
-    bool buffersStores() const {
-        return !(actlr_ & 1u << 1);
-    } // true unless ACTLR.DISDEFWBUF is set
+    // Returns true unless ACTLR.DISDEFWBUF is set.
+    bool buffersStores() const { return !(actlr_ & 1u << 1); }
     bool alignsStack() const { return ccr_ & 1u << 9; }
 
     // Returns whether the MPU forbids a data access to `bytes` at `start`.
@@ -245,10 +244,8 @@ private:
     void controlCycleCounter(uint32_t demcr, uint32_t control);
     const Region* regionAt(uint32_t address) const;
     void checkRegion(const Region& region) const;
-    uint64_t tickUnit() const {
-        return control_ & 4 ? 1 : 8;
-    } // HCLK cycles per tick; CLKSOURCE selects
-      // HCLK or HCLK/8
+    // Returns the HCLK cycles per tick; CLKSOURCE selects HCLK or HCLK/8.
+    uint64_t tickUnit() const { return control_ & 4 ? 1 : 8; }
     uint32_t currentTicks() const;
     bool hitsExecuteNever(uint32_t address) const;
     bool hitsGuard(uint32_t start, uint32_t bytes, bool write) const;
@@ -269,7 +266,7 @@ private:
     bool resetRequested_ = false;
     uint32_t mpuControl_ = 0, mpuRegion_ = 0;
     Region region_[regions];
-    unsigned guards_ = 0;                  // number of enabled regions with restrictions
-    uint32_t neverFrom_ = 1, neverTo_ = 0; // lowest and highest address of all execute-never
-                                           // regions
+    unsigned guards_ = 0; // number of enabled regions with restrictions
+    // lowest and highest address of all execute-never regions together
+    uint32_t neverFrom_ = 1, neverTo_ = 0;
 };

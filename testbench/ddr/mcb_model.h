@@ -42,10 +42,8 @@ public:
     bool full() const { return size() == capacity; }
     T& front() { return items_[tail_ % capacity]; }
     const T& front() const { return items_[tail_ % capacity]; }
-    void push(const T& item) {
-        items_[head_++ % capacity] = item;
-    } // the caller has checked that
-      // there is room
+    // Adds an item. The caller must have checked that there is room.
+    void push(const T& item) { items_[head_++ % capacity] = item; }
     void pop() { ++tail_; }
 
 private:
@@ -57,15 +55,15 @@ class McbModel {
 public:
     static constexpr unsigned commandDepth = 4, dataDepth = 64;
     static constexpr unsigned memoryClocks = 4; // memory clocks per clock of the design
-                                                // JESD79-3, 3.3.1: 200 us in reset and 500 us until
-                                                // CKE; calibration: an estimate, 300 us.
+    // Duration of a start, clocks: 200 us in reset, 500 us until CKE (JESD79-3, 3.3.1), and an
+    // estimate of 300 us for the calibration.
     static constexpr unsigned startClocks = 100'000;
 
     // Pins of the user port; the design's side is set before cycle().
     struct Pins {
         bool cmdEn = false, wrEn = false, rdEn = false;
-        uint8_t cmdInstr = 0, cmdBl = 0, wrMask = 0; // wrMask: 1 in a bit means that the byte is
-                                                     // not written; cmdBl: number of words - 1
+        // wrMask: 1 means that the byte is not written; cmdBl: number of words minus 1
+        uint8_t cmdInstr = 0, cmdBl = 0, wrMask = 0;
         uint32_t cmdByteAddr = 0;
         uint64_t wrData = 0;
         // outputs of the model
@@ -78,10 +76,10 @@ public:
 
     // Clocks of the design for parts of an access.
     struct Timing {
-        unsigned calibration = 64; // clocks of the calibration; shorter than a real start, which
-                                   // takes startClocks
-        unsigned commandWay = 6;   // clocks between cmd_en and the command on the memory bus
-        unsigned dataWay = 5;      // clocks between the last word of a burst and rd_empty
+        // duration of the calibration, clocks; a real start takes startClocks
+        unsigned calibration = 64;
+        unsigned commandWay = 6; // clocks between cmd_en and the command on the memory bus
+        unsigned dataWay = 5;    // clocks between the last word of a burst and rd_empty
     };
 
     explicit McbModel(size_t bytes = size_t(128) << 20) : McbModel(bytes, Timing()) {}
@@ -119,14 +117,14 @@ public:
     // Faults of the lines to the memory. Each halfword of data is one transfer on DQ15..DQ0; row
     // and column addresses share A9..A0.
     struct Lines {
-        uint16_t dqLow = 0, dqHigh = 0;            // data lines that are stuck at a level
-        uint16_t dqShort = 0;                      // data lines that are shorted to each other
-        uint8_t maskLow = 0, maskHigh = 0;         // data masks that are stuck at a level: bit 0
-                                                   // LDM, bit 1 UDM
+        uint16_t dqLow = 0, dqHigh = 0; // data lines that are stuck at a level
+        uint16_t dqShort = 0;           // data lines that are shorted to each other
+        // data masks that are stuck at a level; bit 0 is LDM, bit 1 is UDM
+        uint8_t maskLow = 0, maskHigh = 0;
         uint16_t addressLow = 0, addressShort = 0; // A12..A0
-        uint8_t strobeOpen = 0;                    // open strobes: bit 0 LDQS, bit 1 UDQS; reads
-                                                   // then return noise
-        uint8_t bankLow = 0, bankShort = 0;        // BA2..BA0
+        // strobes with an open wire, whose reads return noise; bit 0 is LDQS, bit 1 is UDQS
+        uint8_t strobeOpen = 0;
+        uint8_t bankLow = 0, bankShort = 0; // BA2..BA0
     };
     void plant(const Lines& lines) {
         lines_ = lines;

@@ -53,12 +53,13 @@ struct NpiTraffic {
     double pop = 1.0;    // probability, per cycle, of popping a word that has arrived
     double writes = 0.5; // share of writes
     unsigned minSize = 0, maxSize = 5;
-    unsigned outstanding = 32; // largest number of words that were requested and not popped yet;
-                               // may be exceeded only with pop = 1 (rule 3)
-    bool byteEnables = true;   // true: byte enables are random; false: all bytes are written
-    bool anyLineWord = true;   // reads of cache lines start at a random word
-    bool sequential = false;   // true: each address follows the previous one; false: addresses are
-                               // random
+    // limit of the words that were requested and not popped yet; may be exceeded only with pop = 1
+    // (rule 3)
+    unsigned outstanding = 32;
+    bool byteEnables = true; // true: byte enables are random; false: all bytes are written
+    bool anyLineWord = true; // reads of cache lines start at a random word
+    // true if each address follows the previous one, false if addresses are random
+    bool sequential = false;
     uint32_t base = 0, bytes = 1 << 16; // part of the memory that this requester uses
     uint32_t above = 0;                 // random address bits beyond the memory, which are ignored
 };

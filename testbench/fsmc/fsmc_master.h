@@ -24,8 +24,8 @@
 namespace fsmc {
 
 constexpr uint32_t registersAt = 0xA0000000, windowsAt = 0x60000000, windowBytes = 0x04000000;
-constexpr unsigned waitLimit = 20000; // HCLK cycles during which NWAIT may stop an access before
-                                      // the model reports an error
+// number of HCLK cycles for which NWAIT may stop an access; then the model reports an error
+constexpr unsigned waitLimit = 20000;
 
 // BCR
 constexpr uint32_t bcrEnable = 1u << 0, bcrMuxed = 1u << 1, bcrTypePsram = 1u << 2,
@@ -98,8 +98,8 @@ public:
 
 private:
     struct Bank {
-        uint32_t bcr, btr = 0x0FFFFFFF, bwtr = 0x0FFFFFFF; // registers of a bank with their reset
-                                                           // values
+        // registers of a bank with their reset values
+        uint32_t bcr, btr = 0x0FFFFFFF, bwtr = 0x0FFFFFFF;
     };
     struct Timing {
         unsigned addset, addhld, datast, busturn;
@@ -130,8 +130,8 @@ private:
 
     FsmcPins& pins_;
     Design design_;
-    unsigned hclkPerUnit_, clkPerUnit_; // cycles of HCLK and of the design's clock in one unit of
-                                        // time
+    // number of HCLK cycles, and of clocks of the design, in one unit of time
+    unsigned hclkPerUnit_, clkPerUnit_;
     unsigned phase_ = 0;
     std::unique_ptr<PinDelays> delays_;
     bool looksTwice_ = false, pausesWrites_ = true, tolerant_ = false;

@@ -28,13 +28,13 @@ struct FsmcCorner {
     const char* name;
     PinDelay address, data, lanes, select, strobe; // processor
     PinDelay board;                                // delay of the board's tracks in each direction
-    PinDelay padIn, clockIn;                       // clockIn: delay of NWE and NADV, which the
-                                                   // design uses as clocks
-    PinDelay padOut;                               // delay of LUTs and pad
-    int setup, hold;                               // set-up and hold time of the design's capture
-                                                   // by NWE
-    int readSetup = 4000;                          // set-up time of the FSMC for read data, in
-                                                   // addition to one HCLK
+    // clockIn: delay of NWE and NADV, which the design uses as clocks
+    PinDelay padIn, clockIn;
+    PinDelay padOut; // delay of LUTs and pad
+    // set-up and hold time of the design's capture by NWE
+    int setup, hold;
+    // set-up time of the FSMC for read data, in addition to one HCLK
+    int readSetup = 4000;
 };
 
 // The tables of the two data sheets (STM32F2, "FSMC characteristics"; Spartan-6, DS162, IOB and

@@ -80,8 +80,9 @@ struct RfWeather {
     // additional air time.
     double loss = 0;
     double burstBegin = 0, burstEnd = 0.2,
-           burstLoss = 0.9; // bursts of loss (Gilbert-Elliott model),
-                            // decided for each packet or each 10 ms
+           // parameters of bursts of loss (Gilbert-Elliott model); drawn for each packet, or each
+           // 10 ms without packets
+        burstLoss = 0.9;
     double duplication = 0, corruption = 0;
     uint64_t delayNs = 0; // delay in addition to the time on the air, ns
     // Probability that one try of the MAC, or its acknowledgement, is lost; the MAC then retries.
@@ -146,8 +147,8 @@ struct RfWeather {
     }
     // Returns the received strength, in dBm, of a modem that sends with 0 dBm at `distance`.
     double meanRssi() const {
-        constexpr double lossOfFirstMetre = 40; // loss of the first metre in dB: free space at 2.4
-                                                // GHz
+        // loss of the first metre, dB: free space at 2.4 GHz
+        constexpr double lossOfFirstMetre = 40;
         return -lossOfFirstMetre - 20 * std::log10(std::max(distance, 1.0));
     }
 };
@@ -157,8 +158,8 @@ class RfReceiver {
 public:
     virtual ~RfReceiver() = default;
     virtual bool
-    hears(const RfPacket& packet) const = 0; // Returns whether the packet is addressed to this
-                                             // receiver. Absent: the modem is off or boots.
+    // Returns whether the packet is addressed to this receiver. Absent: the modem is off or boots.
+    hears(const RfPacket& packet) const = 0;
     // NoRoom: acknowledged but lost, because the buffer to the host is full.
     enum class Reception { Absent, NoRoom, Taken };
     virtual Reception receive(const RfPacket& packet, uint64_t now) = 0;
@@ -234,10 +235,10 @@ private:
         uint64_t over() const { return collided ? frameEnd : end; }
     };
     struct Event {
-        RfSender* sender; // sender of the frame; null for a duplicate, or if the sender was reset
-                          // or removed
-        std::shared_ptr<Frame> frame; // frame that ends at this time; null if the sender's wake()
-                                      // is due instead
+        // sender of the frame; null for a duplicate, or if the sender was reset or removed
+        RfSender* sender;
+        // frame that ends at this time; null if the sender's wake() is due at this time
+        std::shared_ptr<Frame> frame;
     };
     void land(RfSender* sender, Frame& frame, uint64_t now);
     bool isMissed(Frame& frame);

@@ -19,8 +19,8 @@ class SerialClient {
 public:
     virtual void fromHost(uint8_t byte, uint64_t now) = 0;
     virtual void framingError(uint64_t now) = 0;
-    virtual bool nextToHost(uint8_t& byte) = 0; // Returns the modem's next byte to the host;
-                                                // returns false if there is no byte
+    // Sets `byte` to the modem's next byte for the host. Returns false if there is none
+    virtual bool nextToHost(uint8_t& byte) = 0;
 
 protected:
     ~SerialClient() = default;
@@ -95,8 +95,8 @@ public:
     }
 
 private:
-    static constexpr unsigned stopBit = 10; // index of the stop bit; bit 1 is the start bit, 2..9
-                                            // are data
+    // index of the stop bit; bit 1 is the start bit, bits 2 to 9 are data
+    static constexpr unsigned stopBit = 10;
 
     bool mayTalk() const { return rts_ || !heedsRts_; }
     // Samples TXD up to `now`; TXD has not changed since the last call.
@@ -191,8 +191,9 @@ public:
     // A program may report how many bytes it has written and read; then no byte is late only
     // because the machine is busy (testbench/radio/ground_step.h).
     struct Count {
-        std::function<uint64_t()> keeper; // number of the program's session, 0 without one; counts
-                                          // start at 0 in each session
+        // returns the number of the program's session, or 0 without a session; counts start at 0 in
+        // each session
+        std::function<uint64_t()> keeper;
         std::function<void(uint64_t keeper, size_t bytes)> toProgram;
         std::function<uint64_t()> fromProgram;
     };
@@ -214,8 +215,8 @@ private:
     void readHost(uint64_t now);
     void writeHost(uint64_t now);
 
-    int master_ = -1, keeper_ = -1; // keeper_: the slave side, kept open so that closing it causes
-                                    // no hang-up
+    // keeper_: the slave side of the pty, kept open so that closing it elsewhere causes no hang-up
+    int master_ = -1, keeper_ = -1;
     std::string path_;
     uint64_t nextPoll_ = 0;
     double rxFree_ = 0, txFree_ = 0; // times at which the wire is free, in each direction
@@ -263,8 +264,8 @@ private:
             carried(line);
             other->line.wake(now);
         }
-        void framingError(uint64_t) override {} // drops a byte with a framing error; the link's
-                                                // check detects the loss
+        // drops the byte; the check of the link detects the loss
+        void framingError(uint64_t) override {}
         bool nextToHost(uint8_t& byte) override {
             if (bytes.empty())
                 return false;

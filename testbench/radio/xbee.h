@@ -22,26 +22,27 @@ class XBee : public Mac::Modem, private SerialClient {
 public:
     struct Options {
         std::string name = "xbee";
-        std::string profile = "s1";          // modem: s1, s2c or xb3
-        uint64_t bootNs = 50'000'000;        // time of the boot, 50..500 ms depending on the
-                                             // modem's firmware
-        std::map<std::string, uint32_t> set; // parameters with values that differ from the factory
-                                             // settings
-        std::string key;                     // KY, 32 hexadecimal digits
+        std::string profile = "s1"; // modem: s1, s2c or xb3
+        // duration of the boot, 50 to 500 ms depending on the modem's firmware
+        uint64_t bootNs = 50'000'000;
+        // parameters that differ from the factory settings, with their values
+        std::map<std::string, uint32_t> set;
+        std::string key; // KY, 32 hexadecimal digits
     };
     struct Counters {
         uint64_t bytesFromHost = 0, bytesToHost = 0;
-        uint64_t overflow = 0;      // bytes lost because the serial input buffer was full
-        uint64_t framingErrors = 0; // bytes with a wrong stop bit, or with a baud rate of the host
-                                    // that differs too much
+        uint64_t overflow = 0; // bytes lost because the serial input buffer was full
+        // number of bytes with a wrong stop bit, or at a baud rate too far from the modem's
+        uint64_t framingErrors = 0;
         uint64_t commands = 0, refused = 0;
         uint64_t packetsSent = 0, packetsReceived = 0;
-        uint64_t packetsDropped = 0;    // packets that were acknowledged, but lost because the
-                                        // buffer to the host was full
-        uint64_t packetsUnreadable = 0; // packets that were encrypted while EE is 0 here, or the
-                                        // reverse
-        uint64_t duplicatesDropped = 0, badFrames = 0; // duplicates; API frames with a wrong
-                                                       // checksum or type
+        // number of packets that were acknowledged and then lost, because the buffer to the host
+        // was full
+        uint64_t packetsDropped = 0;
+        // number of packets that were encrypted while EE was 0 at this modem, or the reverse
+        uint64_t packetsUnreadable = 0;
+        // number of duplicates; number of API frames with a wrong checksum or type
+        uint64_t duplicatesDropped = 0, badFrames = 0;
     };
 
     XBee(SerialLine& line, RfChannel& channel, Options options);
@@ -127,8 +128,8 @@ private:
     Options options_;
     const XBeeProfile& profile_;
     const std::map<std::string, XBeeParameter> table_; // limits of the parameters
-    Parameters written_, pending_, active_; // parameters saved by WR; set by commands but not
-                                            // applied yet; in effect
+    // parameters saved by WR; parameters set by commands but not applied yet; parameters in effect
+    Parameters written_, pending_, active_;
     Mode mode_ = Mode::Off;
     uint64_t bootDone_ = 0, lastByte_ = 0, commandUntil_ = 0, resetLowSince_ = 0;
     bool resetLow_ = false;
@@ -138,10 +139,10 @@ private:
     std::deque<uint8_t> input_;  // bytes from the host that are not sent yet
     size_t flushCount_ = 0;      // number of bytes in input_ that must be sent now
     std::deque<uint8_t> output_; // bytes to the host
-    double nextBaud_ = 0;  // rate of the line that takes effect when the following number of bytes
-                           // has been sent to the host
-    size_t atOldRate_ = 0; // number of bytes that are still sent at the old rate; the last
-                           // one belongs to the OK of the change
+    double nextBaud_ = 0; // baud rate that the line takes after the bytes counted by atOldRate_
+    // number of bytes that are still sent at the old rate; the last of them belongs to the OK of
+    // the command
+    size_t atOldRate_ = 0;
     bool inFlight_ = false, cts_ = true;
     Mac mac_;
     uint64_t busyUntil_ = 0;

@@ -18,33 +18,33 @@ struct XBeeParameter {
 // Parameters of the series 1; xbeeParameters adds the differences of the others.
 inline const std::map<std::string, XBeeParameter>& xbeeParametersOfS1() {
     static const std::map<std::string, XBeeParameter> table = {
-        {"MY", {0, 0, 0xFFFF, true}},     // 16-bit address of this modem; FFFE and FFFF disable it
-        {"DH", {0, 0, 0xFFFFFFFF, true}}, // destination, high word; 0 with DL <= FFFF: 16-bit
-                                          // address
-        {"DL", {0, 0, 0xFFFFFFFF, true}}, // destination, low word; FFFF: broadcast
+        {"MY", {0, 0, 0xFFFF, true}}, // 16-bit address of this modem; FFFE and FFFF disable it
+        // high word of the destination; with 0 and DL <= FFFF, DL is a 16-bit address
+        {"DH", {0, 0, 0xFFFFFFFF, true}},
+        {"DL", {0, 0, 0xFFFFFFFF, true}},           // destination, low word; FFFF: broadcast
         {"SH", {0x0013A200, 0, 0xFFFFFFFF, false}}, // serial number
         {"SL", {0x40000000, 0, 0xFFFFFFFF, false}},
         {"ID", {0x3332, 0, 0xFFFF, true}}, // network; FFFF: all networks
         {"CH", {0x0C, 0x0B, 0x1A, true}},  // channel
         {"BD", {3, 0, 0x3D090, true}},     // baud rate: a code, or above 7 the rate itself
-        {"RO", {3, 0, 0xFF, true}},        // silence after which a packet is sent, in character
-                                           // times
-        {"RN", {0, 0, 3, true}},           // smallest exponent of the random wait before sending
-        {"MM", {0, 0, 3, true}},           // 0: header and acknowledgements, 1: neither, 2:
-                                           // acknowledgements, 3: header
-        {"RR", {0, 0, 6, true}},           // additional rounds of the MAC's four tries
-        {"EE", {0, 0, 1, true}},           // encryption
-        {"GT", {1000, 2, 3300, true}},     // ms of silence around the command sequence
-        {"CT", {100, 2, 0xFFFF, true}},    // time without a command that ends command mode, 100 ms
-        {"CC", {'+', 0, 0xFF, true}},      // character of the command sequence
-        {"D6", {0, 0, 5, true}},           // 1: the modem obeys RTS
-        {"D7", {1, 0, 5, true}},           // 1: CTS is driven
-        {"AP", {0, 0, 2, true}},           // 1 API frames, 2 with escapes
-        {"DB", {0x28, 0, 0xFF, false}},    // -dBm of the last packet, 0x17 to 0x5C
-        {"EC", {0, 0, 0xFFFF, true}},      // number of packets not sent because the channel was
-                                           // never clear
-        {"EA", {0, 0, 0xFFFF, true}}};     // number of packets that were not acknowledged in any of
-                                           // their tries
+        // silence after which a packet is sent, in character times
+        {"RO", {3, 0, 0xFF, true}},
+        {"RN", {0, 0, 3, true}}, // smallest exponent of the random wait before sending
+        // 0: header and acknowledgements, 1: neither, 2: acknowledgements only, 3: header only
+        {"MM", {0, 0, 3, true}},
+        {"RR", {0, 0, 6, true}},        // additional rounds of the MAC's four tries
+        {"EE", {0, 0, 1, true}},        // encryption
+        {"GT", {1000, 2, 3300, true}},  // ms of silence around the command sequence
+        {"CT", {100, 2, 0xFFFF, true}}, // time without a command that ends command mode, 100 ms
+        {"CC", {'+', 0, 0xFF, true}},   // character of the command sequence
+        {"D6", {0, 0, 5, true}},        // 1: the modem obeys RTS
+        {"D7", {1, 0, 5, true}},        // 1: CTS is driven
+        {"AP", {0, 0, 2, true}},        // 1 API frames, 2 with escapes
+        {"DB", {0x28, 0, 0xFF, false}}, // -dBm of the last packet, 0x17 to 0x5C
+        // number of packets that were not sent because the channel was never clear
+        {"EC", {0, 0, 0xFFFF, true}},
+        // number of packets that were not acknowledged in any of their tries
+        {"EA", {0, 0, 0xFFFF, true}}};
     return table;
 }
 
@@ -55,8 +55,8 @@ inline std::map<std::string, XBeeParameter> xbeeParameters(const XBeeProfile& pr
     if (!profile.hasLegacyMode)
         return table;
     table["C8"] = {0, 0, 3, true}; // bit 0: packets as short as those of the series 1
-    table["FT"] = {profile.threshold, 17, profile.inputBytes - 12, true}; // bytes held when CTS is
-                                                                          // deasserted
+    // number of bytes in the buffer at which CTS is deasserted
+    table["FT"] = {profile.threshold, 17, profile.inputBytes - 12, true};
     return table;
 }
 

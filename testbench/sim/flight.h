@@ -120,14 +120,13 @@ private:
     RfChannel air_;
     Station ground_;
     SocModel soc_;
-    std::vector<std::unique_ptr<Follower>> followers_; // additional vehicles, with the addresses 2
-                                                       // and up
-    std::unique_ptr<Station> second_;                  // second ground station; only with several
-                                                       // vehicles
-    std::unique_ptr<Trouble> trouble_;                 // faults, with several vehicles
-    std::map<const SocModel*, unsigned> starts_;       // number of starts of each vehicle's vision
-                                                       // core
-    std::unique_ptr<Cable> cable_;                     // cable that replaces the modems and the air
+    std::vector<std::unique_ptr<Follower>> followers_; // additional vehicles, with addresses from 2
+    // second ground station; only in flights with several vehicles
+    std::unique_ptr<Station> second_;
+    std::unique_ptr<Trouble> trouble_; // faults, with several vehicles
+    // number of times that the vision core of each vehicle was started
+    std::map<const SocModel*, unsigned> starts_;
+    std::unique_ptr<Cable> cable_; // cable that replaces the modems and the air
     Child child_;
     Events events_;
     Pace pace_;

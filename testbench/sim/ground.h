@@ -126,8 +126,8 @@ public:
     int delivered = 0, unknown = 0;               // number of messages by outcome
     uint64_t deliveredBytes = 0;                  // bytes of acknowledged messages
     size_t backlog() const { return backlog_; }   // bytes of undelivered messages
-    std::vector<uint8_t> key; // key of the link, used from the next start(); without a key,
-                              // unencrypted
+    // key of the link, used from the next start(); if it is empty, the link is not encrypted
+    std::vector<uint8_t> key;
     const Link_Statistics& statistics() const { return *Link_statistics(link_.get()); }
     bool validated = false, running = true;
     unsigned hurry = 1; // factor by which the clock of the link is sped up (UavMachine::hurry)

@@ -33,13 +33,13 @@ public:
         uint64_t seed = 1; // seed of the random number generator
         // Contents of the FPGA's configuration flash; empty: the FPGA needs no configuration.
         std::vector<uint8_t> fpgaFlash = {};
-        bool isWired = false;                         // true if the jumper of PB1 is set (board.h)
-        uint32_t address = 1;                         // address of the vehicle that the factory has
-                                                      // set
-        std::vector<SimulatedBoard::Peer> peers = {}; // peers that the vehicle serves in addition
-                                                      // to its ground station
-        bool isTransparent = false;                   // written to uav_transparent in the same way
-                                                      // as guardMs
+        bool isWired = false; // true if the jumper of PB1 is set (board.h)
+        // address of the vehicle, as the factory sets it
+        uint32_t address = 1;
+        // peers that the vehicle serves in addition to its ground station
+        std::vector<SimulatedBoard::Peer> peers = {};
+        // value written to uav_transparent, in the same way as guardMs
+        bool isTransparent = false;
     };
     // `poll` is called about once per simulated millisecond; when it returns false, run() ends.
     M3Machine(SocModel& soc, const Config& config, std::function<bool()> poll);

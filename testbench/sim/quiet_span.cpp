@@ -11,23 +11,23 @@
 #include <cstring>
 #include <set>
 
-#pragma GCC diagnostic ignored "-Winvalid-offsetof" // offsetof is valid here: the class has no
-                                                    // bases that matter
+// offsetof is valid for this class, because no base class changes the layout
+#pragma GCC diagnostic ignored "-Winvalid-offsetof"
 
 namespace {
 
-constexpr uint32_t phaseMask = (1u << 18) - 1, phaseCarry = 1u << 18; // width and carry of the
-                                                                      // phase in modem_baud.v
+// width and carry of the phase in modem_baud.v
+constexpr uint32_t phaseMask = (1u << 18) - 1, phaseCarry = 1u << 18;
 constexpr uint32_t timerLast = (1u << 17) - 1; // count at which the timer of modem_timer.v ticks
-constexpr unsigned everyCarryTicks = 5;        // lowest code of the baud rate with which every
-                                               // carry is a tick
+// lowest code of the baud rate with which every carry is a tick
+constexpr unsigned everyCarryTicks = 5;
 // number of the last tick of a bit in modem_uart_rx.v and modem_uart_tx.v
 constexpr uint8_t lastTick = 7;
-constexpr uint64_t worth = 4;    // fewest clocks that are worth skipping; fewer
-                                 // clocks are evaluated
-constexpr uint64_t margin = 2;   // clocks before an event that are always evaluated
-constexpr uint64_t settling = 8; // clocks after a carry during which its tick may still have
-                                 // effects
+// number of clocks below which skipping does not pay; fewer clocks are evaluated
+constexpr uint64_t worth = 4;
+constexpr uint64_t margin = 2; // clocks before an event that are always evaluated
+// number of clocks after a carry in which its tick may still have effects
+constexpr uint64_t settling = 8;
 constexpr uint64_t least = 8;    // clocks that the platform is skipped alone at first
 constexpr unsigned longest = 32; // largest number of clocks between two tests of a busy chip
 constexpr uint64_t blameEvery =

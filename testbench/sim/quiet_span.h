@@ -95,26 +95,27 @@ private:
     Counters before_{};       // counters at the last comparison
     bool isFixed_ = false;    // true if only counters change in the platform
     bool isAllFixed_ = false; // true if only counters change in the other parts as well
-    bool isCalm_ = false;     // true if only counters change in the platform, in a clock in which
-                              // it was not stirred
-    bool stirs_ = true;       // value of stirs_o before the next clock
-    bool stirred_ = true;     // value of stirs_o before the last clock
-    unsigned since_ = 0;      // clocks evaluated since the whole image was last compared
-    uint64_t rest_ = 0;       // clocks left in which only the platform is skipped, before the next
-                              // look
-    std::vector<std::pair<size_t, size_t>> platform_; // ranges of the platform in an image: first
-                                                      // and end offset
-    uint32_t step_ = 0;                               // amount added to the phase per clock
+    // true if only counters have changed in the platform, in a clock in which stirs_o was low
+    bool isCalm_ = false;
+    bool stirs_ = true;   // value of stirs_o before the next clock
+    bool stirred_ = true; // value of stirs_o before the last clock
+    unsigned since_ = 0;  // clocks evaluated since the whole image was last compared
+    // number of clocks for which only the platform is skipped, until the next look
+    uint64_t rest_ = 0;
+    // ranges in an image that belong to the platform: first and end offset
+    std::vector<std::pair<size_t, size_t>> platform_;
+    uint32_t step_ = 0; // amount added to the phase per clock
     bool timerRuns_ = false;
-    unsigned ticks_ = 0;   // ticks of the baud rate since the image was last compared
-    uint64_t nullAge_ = 0; // number of clocks after a carry until the chip has the state of the
-                           // image again; 0 if unknown
-    uint8_t rxStep_ = 0, txStep_ = 0;        // steps of the UART's tick counters per tick
-    unsigned patience_ = 0, pause_ = 0;      // clocks to wait before the next look at a busy chip:
-                                             // after each busy look, and left now
-    uint64_t busyLooks_ = 0;                 // comparisons that found the chip busy
-    unsigned blamed_ = 0;                    // number of busy looks in which the changed cores were
-                                             // recorded
-    std::map<std::string, unsigned> movers_; // for each core, the number of looks in which it had
-                                             // changed
+    unsigned ticks_ = 0; // ticks of the baud rate since the image was last compared
+    // number of clocks after a carry until the chip is again in the state of the image; 0 if
+    // unknown
+    uint64_t nullAge_ = 0;
+    uint8_t rxStep_ = 0, txStep_ = 0; // steps of the UART's tick counters per tick
+    // patience_: clocks between two looks at a busy chip; pause_: clocks left until the next look
+    unsigned patience_ = 0, pause_ = 0;
+    uint64_t busyLooks_ = 0; // comparisons that found the chip busy
+    // number of looks at a busy chip in which the changed cores were recorded
+    unsigned blamed_ = 0;
+    // number of looks in which each core had changed, by the name of the core
+    std::map<std::string, unsigned> movers_;
 };

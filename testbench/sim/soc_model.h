@@ -23,8 +23,8 @@
 
 class SocModel {
 public:
-    static constexpr uint64_t clkHz = SOC_CLK_HZ; // frequency of the design's clock, set by `make
-                                                  // run CLK_HZ=`
+    // frequency of the design's clock, Hz; set by `make run CLK_HZ=`
+    static constexpr uint64_t clkHz = SOC_CLK_HZ;
     static constexpr uint64_t clkNs = 1'000'000'000 / clkHz;
 
     // `hclkPerUnit` and `clkPerUnit` are the ratio of HCLK to clkHz: by default that of 120 MHz to

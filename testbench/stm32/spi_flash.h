@@ -89,9 +89,9 @@ public:
     uint64_t busyNs() const { return end_ > now_() ? end_ - now_() : 0; }
 
     std::vector<uint8_t> memory;
-    uint64_t operations() const {
-        return operations_;
-    } // number of erases and writes that have begun Called when an erase or a write has begun.
+    // Returns the number of erases and writes that have begun.
+    uint64_t operations() const { return operations_; }
+    // Called when an erase or a write has begun.
     std::function<void()> onOperation;
 
 private:
@@ -131,8 +131,8 @@ private:
 
     std::function<uint64_t()> now_;
     std::mt19937_64 random_;
-    std::vector<uint8_t> in_, page_; // the instruction; the page being written, empty during an
-                                     // erase
+    // in_: the instruction; page_: the page that is being written, empty during an erase
+    std::vector<uint8_t> in_, page_;
     bool isSelected_ = false, mayWrite_ = false, isUnder_ = false;
     uint32_t at_ = 0, size_ = 0; // address and size of the current operation
     uint64_t end_ = 0, operations_ = 0;

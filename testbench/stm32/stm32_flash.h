@@ -113,13 +113,11 @@ public:
         optcr_ = erasedOptions | uint32_t(protection_) << 8 | 1;
     }
 
-    uint8_t protection() const {
-        return protection_;
-    } // level of the read protection; 0xAA: not
-      // protected
-    uint64_t operations() const {
-        return operations_;
-    } // number of erases and writes that have begun Called when an erase or a write has begun.
+    // Returns the level of the read protection; 0xAA means not protected.
+    uint8_t protection() const { return protection_; }
+    // Returns the number of erases and writes that have begun.
+    uint64_t operations() const { return operations_; }
+    // Called when an erase or a write has begun.
     std::function<void()> onOperation;
     // Called when bytes of the flash have changed.
     std::function<void(uint32_t offset, uint32_t size)> onChange;

@@ -11,10 +11,10 @@ namespace {
 
 constexpr uint64_t lsiNs = 31'250; // period of the LSI oscillator, 32 kHz
 constexpr uint64_t hsiHz = 16'000'000;
-constexpr uint64_t waitStateHz = 30'000'000; // HCLK frequency for each wait state of the flash at
-                                             // 2.7 to 3.6 V
-constexpr unsigned extiVector = 6;           // vector of EXTI line 0; each of the lines 0 to 4 has
-                                             // its own vector
+// HCLK frequency up to which each wait state of the flash suffices, at 2.7 to 3.6 V, Hz
+constexpr uint64_t waitStateHz = 30'000'000;
+// vector of EXTI line 0; lines 0 to 4 have a vector each
+constexpr unsigned extiVector = 6;
 
 } // namespace
 

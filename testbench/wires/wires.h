@@ -67,8 +67,8 @@ private:
     std::vector<bool> ringing_;
     std::vector<End> ends_;
     std::vector<Level> others_;
-    std::vector<int8_t> drive_, pull_; // driver and pull of each node, used while levels are
-                                       // computed
+    // driver and pull of each node; only valid while levels are computed
+    std::vector<int8_t> drive_, pull_;
     std::vector<bool> fight_;
     bool dirty_ = true;
     uint64_t due_ = ~0ull, fights_ = 0;

@@ -12,16 +12,16 @@ namespace gateway {
 
 namespace {
 
-const char* const maintenanceType = "::IceSoC::Maintenance"; // selected by metadata
-                                                             // [":maintenance"]
+// type that an interface with metadata [":maintenance"] has
+const char* const maintenanceType = "::IceSoC::Maintenance";
 
-constexpr size_t longBytes = 512;  // size in bytes above which a call or reply uses the lane for
-                                   // long messages
+// size in bytes above which a call or reply uses the lane for long messages
+constexpr size_t longBytes = 512;
 constexpr size_t mostUnderWay = 8; // requests of a lane
 // Bytes in flight, short lane and long lane; a single longer request is allowed.
 constexpr size_t mostBytesUnderWay[] = {1536, 8192};
-constexpr size_t mostUnconfirmed = 4; // one-way requests before a ping must confirm their
-                                      // arrival
+// limit of the one-way requests after which a ping must confirm that they have arrived
+constexpr size_t mostUnconfirmed = 4;
 
 std::exception_ptr refusal(const Ice::Identity& maintained) {
     return unknown("'" + Ice::identityToString(maintained) +
@@ -55,8 +55,9 @@ void Forwarder::take(std::shared_ptr<Request> request) {
         if (!queues_.hasRoom(*request) && !stopped_) {
             if (!queues_.block(request->subject)) {
                 lock.unlock();
-                if (request->isOneway()) // a one-way request has no reply: its loss is only noticed
-                                         // when the connection closes
+                // a one-way request has no reply, so its loss is only noticed when the connection
+                // closes
+                if (request->isOneway())
                     request->current.con->close(Ice::ConnectionClose::Forcefully);
                 throw Ice::UnknownException(__FILE__, __LINE__,
                                             "icesoc-gateway: '" + request->subject +
@@ -178,8 +179,8 @@ void Forwarder::ask(const Connection& connection, const Object& object) {
             std::rethrow_exception(why);
         } catch (const Ice::RequestFailedException&) { // the object may exist later
             answered(object, false, false, nullptr);
-        } catch (const Ice::MarshalException&) { // the object answers any request, but not with a
-                                                 // type
+        } catch (const Ice::MarshalException&) {
+            // the vehicle has answered, but its object does not report a type
             answered(object, true, false, nullptr);
         } catch (...) {
             answered(object, false, false, why);
@@ -209,8 +210,8 @@ void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
         if (isKnown && lanes_[shortCalls].connection)
             types_.record(object, isMaintenance);
         for (const auto& request : waiting) {
-            request->mayMaintain = !isMaintenance; // this request is sent without asking for the
-                                                   // type again
+            // this request is sent without asking for the type again
+            request->mayMaintain = !isMaintenance;
             if (!why && !isMaintenance)
                 ready_.push_back(request);
         }

@@ -57,11 +57,11 @@ private:
     enum { shortCalls, longCalls, lanes };
     struct Lane {
         Connection connection;
-        bool isConnecting = false, isMissing = false;  // isMissing: the lane has no connection
-                                                       // because no channel was free
+        // isMissing: the lane has no connection, because no channel was free
+        bool isConnecting = false, isMissing = false;
         std::deque<std::shared_ptr<Request>> underWay; // requests that were sent, oldest first
-        size_t requests = 0, bytes = 0;                // number and bytes of requests that are
-                                                       // chosen or in flight
+        // number of requests that are chosen or in flight, and the sum of their bytes
+        size_t requests = 0, bytes = 0;
         bool isConfirming = false;
     };
     void forget(const Connection& connection);

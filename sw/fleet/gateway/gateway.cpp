@@ -314,8 +314,8 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
 } // namespace
 
 int main(int argc, char** argv) {
-    const sigset_t signals = endings(); // these signals are blocked in all threads; sigtimedwait
-                                        // receives them
+    // these signals are blocked in all threads; sigtimedwait receives them
+    const sigset_t signals = endings();
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
     CLI::App app{"A stock Ice server that passes requests to the UAV: Ice programs reach its "
@@ -336,8 +336,8 @@ int main(int argc, char** argv) {
         serve(ic.communicator(), o);
     } catch (const CLI::ParseError& e) {
         return app.exit(e);
-    } catch (const Ice::ConnectFailedException& e) { // error of the modem's serial port; the plugin
-                                                     // has logged the details
+    } catch (const Ice::ConnectFailedException& e) {
+        // an error of the modem's serial port; the plugin has logged the details
         std::cerr << "gateway: error: cannot use " << o.device << ": " << reasonOf(e) << "\n";
         return 1;
     } catch (const Ice::Exception& e) {

@@ -194,8 +194,8 @@ class Mission:
         self.log = Log(self.air, args.out, os.path.dirname(os.path.abspath(args.plugin)))
         self.communicators = [communicator]
         self.log.patience, self.log.give_up = args.patience, self.give_up
-        self.timeout = 0x7FFFFFFF  # time-out of connections, ms; practically unlimited, because
-                                   # Ice counts real time
+        # time-out of connections, ms; practically unlimited, because Ice measures real time
+        self.timeout = 0x7FFFFFFF
         self.station = make_station(Autopilot, self.log, self.timeout)
 
     def give_up(self):

@@ -115,8 +115,8 @@ void TcpEndpoint_tune(int fd) {
     int on = 1;
     (void)setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     (void)setsockopt(fd, SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
-#ifdef TCP_USER_TIMEOUT /* Linux: seconds until the first probe, between probes, milliseconds in \
-                           all */
+#ifdef TCP_USER_TIMEOUT
+    /* Linux: time until the first probe and between probes, s; time-out of all probes, ms */
     {
         int idle = 30, between = 10, all = 60000;
         (void)setsockopt(fd, IPPROTO_TCP, TCP_KEEPIDLE, &idle, sizeof idle);

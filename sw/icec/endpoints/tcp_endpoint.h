@@ -24,10 +24,10 @@
 #define TCP_ENDPOINT_TYPE 1
 
 typedef struct TcpEndpoint_Connection {
-    int fd;                       /* -1: free */
-    Ice_Byte accepted, reported;  /* reported: the event OPENED has been delivered */
-    Ice_Byte sending, over;       /* over: 1 if the connection is closed and only a sending task
-                                   * still uses it */
+    int fd;                      /* -1: free */
+    Ice_Byte accepted, reported; /* reported: the event OPENED has been delivered */
+    /* over: 1 if the connection is closed, and only a sending task still uses it */
+    Ice_Byte sending, over;
     Ice_Byte spoke;               /* this side has sent a message */
     Ice_Byte served;              /* a request or reply was sent or received */
     Ice_Int skip;                 /* remaining bytes of a refused message */

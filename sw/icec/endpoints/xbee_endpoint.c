@@ -203,8 +203,8 @@ static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* me
     int tries = 0;
     lock(self);
     if (message)
-        self->offered = (Ice_Byte)connection; /* only one message is offered at a time, because
-                                               * the caller holds ICE_LOCK_SEND */
+        /* only one message is offered at a time, because the caller holds ICE_LOCK_SEND */
+        self->offered = (Ice_Byte)connection;
     for (;;) {
         if (!message)
             status = openOwn(self, PEER_OF(connection));

@@ -25,12 +25,12 @@
 
 /* Functions of the application, which owns the link in its radio task. */
 typedef struct XBeeATEndpoint_Port {
-    void (*lock)(void* context); /* acquires the lock, which is held during each use of the link
-                                  * and in its callbacks */
+    /* acquires the lock, which is held while the link is used and during its callbacks */
+    void (*lock)(void* context);
     void (*unlock)(void* context);
-    void (*kick)(void* context);                   /* makes the radio task poll the link soon */
-    int (*wait)(void* context, Ice_Int timeoutMs); /* waits for `signal`; returns 1 if it was
-                                                    * signalled */
+    void (*kick)(void* context); /* makes the radio task poll the link soon */
+    /* waits for `signal`; returns 1 if it was signalled */
+    int (*wait)(void* context, Ice_Int timeoutMs);
     void (*signal)(void* context);
     U32 (*nowMs)(void* context);
 } XBeeATEndpoint_Port;
@@ -43,19 +43,20 @@ typedef struct XBeeATEndpoint {
     U16 addresses[XBEE_PEERS]; /* addresses of the peers; the first ground has 0 */
     U32 events;                /* events to be delivered, one bit for each */
     Ice_Int size;              /* size of the pending message, bytes */
-    Ice_Byte* buffer;          /* buffer of the receiving task; 0 while no task receives: the
-                                * link then keeps the message */
-    Ice_Byte from;             /* connection of the pending message */
-    Ice_Byte ownOpen;          /* peers to which this side's channel is open, one bit for each */
-    Ice_Byte held;             /* 1: the link keeps a message that could not be delivered */
-    Ice_Byte offered;          /* connection of the message that is being sent; another value if the
-                                * connection has ended */
+    /* buffer of the receiving task; 0 while no task receives (the link then keeps the message) */
+    Ice_Byte* buffer;
+    Ice_Byte from;    /* connection of the pending message */
+    Ice_Byte ownOpen; /* peers to which this side's channel is open, one bit for each */
+    Ice_Byte held;    /* 1: the link keeps a message that could not be delivered */
+    /* connection of the message that is being sent; another value if the connection has ended */
+    Ice_Byte offered;
     /* ---- fields for xbee_peers.c ---- */
-    Ice_Byte own[XBEE_PEERS];  /* number of the connection that this side opens to each peer */
-    Ice_Byte vehicles, dialed; /* vehicles: peers that are vehicles; dialed: vehicles that are
-                                * dialed; one bit for each */
-    U32 dialedAt[XBEE_PEERS];  /* time at which dialing began, ms */
-    U32 received[XBEE_PEERS];  /* number of messages received before dialing */
+    Ice_Byte own[XBEE_PEERS]; /* number of the connection that this side opens to each peer */
+    /* vehicles: peers that are vehicles; dialed: vehicles that are dialed now; one bit for each
+     * peer */
+    Ice_Byte vehicles, dialed;
+    U32 dialedAt[XBEE_PEERS]; /* time at which dialing began, ms */
+    U32 received[XBEE_PEERS]; /* number of messages received before dialing */
 } XBeeATEndpoint;
 
 /* Registers the transport with the communicator. `name` is always "xbee-at". */

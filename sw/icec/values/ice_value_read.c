@@ -198,8 +198,8 @@ typedef struct SliceHead {
     Ice_String id;
     Ice_Int compactId;         /* -1 if none */
     const Ice_ValueType* type; /* 0 if the type is not known */
-    Ice_Bool isObject;         /* true for ::Ice::Object, the base of all classes, which ends an
-                                * instance in encoding 1.0 */
+    /* 1 for ::Ice::Object, the base of all classes; its slice ends an instance in encoding 1.0 */
+    Ice_Bool isObject;
 } SliceHead;
 
 static Ice_String typeByIndex(Ice_InputStreamPtr is) {
@@ -281,8 +281,8 @@ static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** 
         if (head.type)
             return head.type;
         if (is->sliceEnd == 0) {
-            icec_failRead(is, ICE_FAILED_MALFORMED); /* the format does not contain the end of
-                                                      * the slice */
+            /* this format does not store where the slice ends */
+            icec_failRead(is, ICE_FAILED_MALFORMED);
             return 0;
         }
         if (is->minor == 0) {

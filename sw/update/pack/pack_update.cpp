@@ -50,8 +50,8 @@ void save(const std::string& path, const Bytes& bytes) {
 
 // Reads the seed of a private key. Returns false if the file does not exist.
 bool readSeed(const std::string& path, Bytes& seed) {
-    const int in = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC); // O_NONBLOCK: opening a
-                                                                          // pipe must not block
+    // O_NONBLOCK: opening a pipe must not block
+    const int in = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (in < 0 && errno == ENOENT)
         return false;
     if (in < 0)

@@ -266,7 +266,7 @@ class Mistakes(Work):
         if subprocess.run([*other, "test", "-x", TREE / "icesoc"]).returncode:
             self.skipTest("another user cannot read this tree")
         words = [*other, "./icesoc", "build", "configure", "--build"]
-        tree = {"ICESOC_TREE": str(self.work / "tree"), "PYTHONDONTWRITEBYTECODE": "1"}
+        tree = {"ICESOC_TREE": str(self.work / "tree")}
         self.assertIn(f"you may not write in {theirs}", ask(*words, str(theirs), **tree)[1])
         self.assertIn("XDG_CACHE_HOME", ask(*words, str(self.work / "mine"), HOME=str(theirs),
                                             XDG_CACHE_HOME="", **tree)[1])

@@ -8,7 +8,6 @@ the options (./icesoc commands --schema).
 import json
 import os
 import re
-import secrets
 from pathlib import Path
 
 from icesoc.cli import choices, keys
@@ -241,7 +240,7 @@ def make_key(path):
     """Creates a key that only its owner may read; returns False if it exists."""
     temporary = f"{path}.{os.getpid()}"
     with open(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
-        file.write(secrets.token_hex(16) + "\n")
+        file.write(os.urandom(16).hex() + "\n")
     try:
         os.link(temporary, path)
         return True

@@ -107,6 +107,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         trace, said = folder + "/trace", b""
         environment["TMPDIR"] = environment["HOME"] = folder
+        compiled = str(cache / "icesoc/python")
+        environment["PYTHONPYCACHEPREFIX"] = compiled  # see tools/python
         tracing = [*TRACING, "-o", trace]
         if not shutil.which("strace") or subprocess.run(tracing + ["true"],
                                                         stderr=subprocess.DEVNULL).returncode:
@@ -125,7 +127,8 @@ def main():
         for path, (listed, written) in touched(trace).items():
             if own and path.startswith(own):
                 path = os.path.realpath(path)  # a link from there
-            if (path + "/").startswith((own or "/dev/", folder + "/", "/proc/", "/dev/", "/sys/")):
+            if (path + "/").startswith((own or "/dev/", folder + "/", compiled + "/", "/proc/",
+                                        "/dev/", "/sys/")):
                 continue
             if not path.startswith(ROOT + "/") and path != ROOT:
                 listed = False

@@ -22,7 +22,6 @@ import subprocess
 import sys
 import tarfile
 import tempfile
-import urllib.request
 
 from icesoc import TREE
 
@@ -93,6 +92,7 @@ def kept(url, checksum, part=None):
     necessary. `part` is a regular expression: only the text of its group is checked and kept."""
     file = CACHE / "foreign" / checksum
     if not file.exists():
+        import urllib.request  # takes a fifth of the start of every command
         print(f"Fetching {url.rsplit('/', 1)[1]} ...", flush=True)
         try:
             with urllib.request.urlopen(url, timeout=60) as answer:

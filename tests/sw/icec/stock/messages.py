@@ -5,6 +5,7 @@ operations executed, the replies, and whether the connection ends.
 
 usage: messages.py PROGRAM ECHO_ICE
        messages.py --serve ECHO_ICE     (the stock server)"""
+import concurrent.futures
 import socket
 import struct
 import subprocess
@@ -16,6 +17,7 @@ HEAD = b"IceP\1\0\1\0"
 # Time-outs, s, for the next reply after a call on a second connection was answered. A loaded
 # machine may exceed the first, so reactions that differ are compared again with the second.
 QUICK, PATIENT = 0.3, 10
+PAIRS = 6  # pairs of servers; while one waits for a time-out, the others work
 
 
 def size(n):
@@ -296,31 +298,38 @@ def serve(ice):
         ic.waitForShutdown()
 
 
-def main():
-    if sys.argv[1] == "--serve":
-        return serve(sys.argv[2])
-    ours = Server([sys.argv[1]])
-    stock = Server([sys.executable, __file__, "--serve", sys.argv[2]])
-    wrong = 0
-    for name, data in CASES.items():
+def compare(names):
+    """Sends these messages to both servers. Returns a line for each unexpected difference."""
+    stock_words = [sys.executable, __file__, "--serve", sys.argv[2]]
+    ours, stock, wrong = Server([sys.argv[1]]), Server(stock_words), []
+    for name in names:
         for timeout in QUICK, PATIENT:
-            mine = ours.ask(data, timeout)
+            mine = ours.ask(CASES[name], timeout)
             try:
-                theirs = stock.ask(data, timeout)
+                theirs = stock.ask(CASES[name], timeout)
             except OSError:  # the server crashed on this message
                 theirs = "died", 0
                 stock.process.kill()
-                stock = Server([sys.executable, __file__, "--serve", sys.argv[2]])
+                stock = Server(stock_words)
             expected = DIFFERENT.get(name, theirs)[:2]
             if mine == expected:
                 break
         else:
-            wrong += 1
-            print(f"{name}: expected {expected}, got {mine}")
+            wrong.append(f"{name}: expected {expected}, got {mine}")
     for server in ours, stock:
         server.process.kill()
-    print(f"{len(CASES)} messages, {wrong} differ")
-    return wrong != 0
+    return wrong
+
+
+def main():
+    if sys.argv[1] == "--serve":
+        return serve(sys.argv[2])
+    names = list(CASES)
+    with concurrent.futures.ThreadPoolExecutor(PAIRS) as pool:
+        parts = pool.map(compare, [names[first::PAIRS] for first in range(PAIRS)])
+        wrong = [line for part in parts for line in part]
+    print("\n".join([*wrong, f"{len(CASES)} messages, {len(wrong)} differ"]))
+    return bool(wrong)
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ import pathlib
 import re
 import shutil
 
-from icesoc.regress.runner import Result
+from icesoc.regress.junit import Result
 from icesoc.util.files import write
 
 # Lines printed by a runner, or at the end of a flight. Names, times and counts in them differ for
@@ -50,6 +50,12 @@ class Failure:
                                  # itself
     save: str = ""  # path of the GTKWave save file, or ""
     clock: int = 0  # clock of the failure in the waveform; 0: its end
+
+    def entry(self):
+        """Returns the message and the text of the failure for JUnit."""
+        return f"{self.reason} (SEED={self.result.seed})", "".join(
+            f"{key}: {value}\n" for key in ("changed", "log", "repeat", "wave")
+            if (value := getattr(self, key)))
 
 
 def comparison(match):

@@ -23,7 +23,8 @@ from icesoc.regress.failures import examine
 from icesoc.regress.history import History, make_run
 from icesoc.regress.lights import text_of
 from icesoc.regress.report import gather, write_reports
-from icesoc.regress.runner import run_tests, write_junit
+from icesoc.regress.junit import write_junit
+from icesoc.regress.runner import run_tests
 from icesoc.regress.tests import (Graph, Name, fingerprint, list_tests, read_plan, targets_of,
                                   unmatched, write_numbers)
 from icesoc.regress.waves import add_waves
@@ -252,7 +253,9 @@ class Regression:
             data = gather(history, tests, results, failures, o.source)
             try:
                 write_reports(data, failures, o.build / "page", o.out)
-                write_junit(o.out / "junit.xml", results, failures, begin, commit, stopped)
+                of = {id(failure.result): failure for failure in failures}
+                write_junit(o.out / "junit.xml", results, begin, lambda each: of[id(each)].entry(),
+                            commit=commit, stopped=stopped)
             finally:  # a full disk must not hide the results
                 summary(data, failures, o.out)
         return interrupted.status if interrupted else 1 if failures else 0

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""runner: runs selected tests with CTest, prints the progress, ends hangs, and writes JUnit."""
-import collections
+"""runner: runs selected tests with CTest, prints the progress, and ends hangs."""
 import contextlib
-import dataclasses
 import os
 import pathlib
 import re
@@ -10,26 +8,15 @@ import signal
 import sys
 import threading
 import time
-import xml.etree.ElementTree as xml
 
+from icesoc.regress.junit import ended, finished, logs, read_junit, status_of
 from icesoc.regress.tests import write_numbers
 from icesoc.util.errors import Interrupted, Stop
-from icesoc.util.files import write
 from icesoc.util.process import children, collect, descendants, end_descendants
 
 SHORTEST_HANG = 30  # s; a test is never ended before it has used this CPU time, or has run for this
                     # time without using the CPU
 IDLE = 10  # time in which a test must use a second of CPU time, or it counts as idle, s
-
-
-@dataclasses.dataclass
-class Result:
-    name: str
-    status: str  # "passed", "failed", "skipped"
-    seconds: float
-    log: str = ""
-    end: str = ""  # for a failed test: "SegFault", "Hang, ..."; "" if it ended by itself
-    seed: str = ""
 
 
 class Progress:
@@ -196,15 +183,15 @@ def run_tests(tests, build, out, seed, jobs, history):
     def on_line(line):
         if begun := re.match(r" *Start +\d+: (\S+)", line):
             progress.start(begun[1])
-        if ended := re.match(r" *\d+/\d+ Test +#\d+: (\S+) \.*(.*?) +([0-9.]+) sec", line):
-            name, how = ended[1], ended[2]
-            ends[name] = how, float(ended[3])
-            progress.end(name, status_of(how), float(ended[3]))
+        if end := ended(line):
+            name, outcome, seconds, _ = end
+            ends[name] = outcome, seconds
+            progress.end(name, status_of(outcome), seconds)
 
     def wait_for_log():
         """Waits until CTest has logged the test that has just ended."""
         for _ in range(40):
-            if all(log is not None for _, _, log in logged_cases(build, ends)):
+            if ends.keys() <= logs(build).keys():
                 break
             time.sleep(0.05)
     done = threading.Event()
@@ -227,97 +214,19 @@ def run_tests(tests, build, out, seed, jobs, history):
     if sys.stdout.isatty():
         print("\r\033[K", end="")
     if interrupted:
-        cases = [(name, status_of(how), seconds, log or "") for name, (how, seconds), log in
-                 logged_cases(build, ends)]
+        results = finished(build, ends)
+    elif junit.exists():
+        results = read_junit(junit)
     else:
-        cases = junit_cases(junit, status, text)
-    results = []
-    for name, how, seconds, log in cases:
-        log = readable(log)
-        if log.startswith("Unable to find"):  # its program
-            how = "failed"
-        end = ends.get(name, ("",))[0]
-        end = "" if end in ("***Failed", "***Not Run") else re.sub("[*]{3}(Exception: *)?", "", end)
-        if name in progress.hangs:
-            end, stacks = progress.hangs[name]
-            how, log = "failed", log + stacks
-        results.append(Result(name, how, seconds, log, end, seed))
-    return results, interrupted
-
-
-def status_of(how):
-    """Returns the status that CTest prints for a test: `Passed`, `***Failed`, `***Skipped`."""
-    return "passed" if "Passed" in how else "skipped" if "Skipped" in how else "failed"
-
-
-def junit_cases(junit, status, text):
-    """Yields (name, status, seconds, log) of the results that CTest wrote; `status` and `text`:
-    its exit status and output."""
-    try:
-        cases = xml.parse(junit).iter("testcase")
-    except FileNotFoundError:
-        raise Stop(f"ctest gave no results ({status}):\n{text}") from None
-    except xml.ParseError as error:
-        raise Stop(f"{junit}: {error}; is the disk full?") from None
-    for case in cases:
-        how = {"run": "passed", "fail": "failed"}.get(case.get("status"), "skipped")
-        yield (case.get("name"), how, float(case.get("time")),
-               case.findtext("system-out") or "")
-
-
-def logged_cases(build, ends):
-    """Yields (name, end, log) of finished tests from the log that CTest writes while it runs; None
-    if a test is not in it yet."""
-    folder = pathlib.Path(build) / "Testing/Temporary"
-    path = next((path for name in ("LastTest.log.tmp", "LastTest.log")
-                 if (path := folder / name).exists()), None)
-    log = path.read_text(errors="replace") if path else ""
-    for name, end in ends.items():
-        line = "-" * 58 + "\n"
-        found = re.search(rf'^"{re.escape(name)}" start time: [^\n]*\nOutput:\n{line}(.*?)'
-                          r"^<end of output>\nTest time =", log, re.M | re.S)
-        yield name, end, found and found[1]
-
-
-def kind_of(result):
-    """Returns the JUnit kind: a failed test that did not end by itself is an error."""
-    return {"skipped": "skipped", "passed": ""}.get(result.status,
-                                                    "error" if result.end else "failure")
-
-
-def write_junit(path, results, failures, begin, commit, stopped):
-    """Writes JUnit of all results, for CI systems: a suite for each program and seed, begun at
-    `begin` (RFC 3339). The text of a failure names its log and waveform. `stopped`: "after 52 of
-    57", or "". Jenkins' junit-10.xsd has no properties of a test."""
-    of, suites = {id(failure.result): failure for failure in failures}, {}
+        raise Stop(f"ctest gave no results ({status}):\n{text}")
     for result in results:
-        suites.setdefault((result.name.split(".")[0], result.seed), []).append(result)
-
-    def totals(results):
-        kinds = collections.Counter(kind_of(result) for result in results)
-        return {"tests": str(len(results)), "failures": str(kinds["failure"]),
-                "errors": str(kinds["error"]), "skipped": str(kinds["skipped"]),
-                "time": f"{sum(each.seconds for each in results):.3f}"}
-    whole = totals(results)
-    del whole["skipped"]  # required by the schema
-    root = xml.Element("testsuites", name="icesoc", **whole)
-    for (name, seed), results_ in suites.items():
-        suite = xml.SubElement(root, "testsuite", name=name, timestamp=begin, **totals(results_))
-        properties = xml.SubElement(suite, "properties")
-        for key, value in (("seed", seed), ("commit", commit), ("stopped", stopped)):
-            if value:
-                xml.SubElement(properties, "property", name=key, value=value)
-        for result in results_:
-            case = xml.SubElement(suite, "testcase", name=result.name, classname=name,
-                                  time=f"{result.seconds:.3f}")
-            if result.status == "failed":
-                failure = of[id(result)]
-                entry = xml.SubElement(case, kind_of(result),
-                                       message=f"{failure.reason} (SEED={result.seed})")
-                entry.text = "".join(
-                    f"{key}: {value}\n" for key in ("changed", "log", "repeat", "wave")
-                    if (value := getattr(failure, key)))
-                xml.SubElement(case, "system-out").text = result.log
-            elif result.status == "skipped":
-                xml.SubElement(case, "skipped")
-    write(path, '<?xml version="1.0"?>\n' + xml.tostring(root, encoding="unicode") + "\n")
+        result.log, result.seed = readable(result.log), seed
+        if result.log.startswith("Unable to find"):  # its program
+            result.status = "failed"
+        end = ends.get(result.name, ("",))[0]
+        result.end = "" if end in ("***Failed", "***Not Run") else \
+            re.sub("[*]{3}(Exception: *)?", "", end)
+        if result.name in progress.hangs:
+            result.end, stacks = progress.hangs[result.name]
+            result.status, result.log = "failed", result.log + stacks
+    return results, interrupted

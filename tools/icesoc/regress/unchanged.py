@@ -14,8 +14,8 @@ import json
 import os
 import pathlib
 import re
-import xml.etree.ElementTree as xml
 
+from icesoc.regress.junit import read_junit
 from icesoc.regress.tests import list_tests
 from icesoc.util.files import digest, write
 from icesoc.util.process import collect
@@ -159,13 +159,12 @@ class Passes:
         return left, len(some) - len(left)
 
     def note(self, junit):
-        """Adds the passes in CTest's results, unless an input has changed meanwhile, and removes
+        """Adds the passes in these results, unless an input has changed meanwhile, and removes
         the failures."""
-        results = xml.parse(junit).iter("testcase") if junit.exists() else ()
         now = Inputs(self.inputs.source, self.inputs.build, self.inputs.seed)
-        for case in results:
-            name = case.get("name")
-            if name in self.tests and case.get("status") == "run" \
+        for result in read_junit(junit) if junit.exists() else ():
+            name = result.name
+            if name in self.tests and result.status == "passed" \
                     and now.of(self.tests[name]) == self.prints[name]:
                 self.kept[name] = self.prints[name]
             else:

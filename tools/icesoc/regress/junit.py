@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT
+"""junit: reads and writes results of tests as JUnit, and reads the log of a CTest that was stopped,
+which writes its JUnit only at its end."""
+import collections
+import dataclasses
+import pathlib
+import re
+import xml.etree.ElementTree as xml
+
+from icesoc.util.errors import Stop
+from icesoc.util.files import write
+
+
+@dataclasses.dataclass
+class Result:
+    name: str
+    status: str  # "passed", "failed", "skipped"
+    seconds: float
+    log: str = ""
+    end: str = ""  # for a failed test: "SegFault", "Hang, ..."; "" if it ended by itself
+    seed: str = ""
+
+
+def read_junit(path):
+    """Returns the results in a JUnit file, of CTest or of write_junit."""
+    try:
+        cases = xml.parse(path).iter("testcase")
+    except xml.ParseError as error:
+        raise Stop(f"{path}: {error}; is the disk full?") from None
+    results = []
+    for case in cases:
+        parts = {each.tag for each in case}
+        status = "failed" if parts & {"failure", "error"} else \
+            "skipped" if "skipped" in parts else "passed"
+        results.append(Result(case.get("name"), status, float(case.get("time")),
+                              case.findtext("system-out") or ""))
+    return results
+
+
+def ended(line):
+    """Returns (name, outcome, seconds, number of tests of the run) of the line that CTest prints
+    when a test has ended, such as (..., "***Skipped", ...); None for any other line."""
+    found = re.match(r" *\d+/(\d+) Test +#\d+: (.*?) \.+ *(\S.*?) +([0-9.]+) sec", line)
+    return found and (found[2], found[3], float(found[4]), int(found[1]))
+
+
+def status_of(outcome):
+    """Returns the status of an outcome that CTest prints: `Passed`, `***Failed`, `***Skipped`."""
+    return "passed" if "Passed" in outcome else "skipped" if "Skipped" in outcome else "failed"
+
+
+def logs(build):
+    """Returns the outputs of the finished tests by name, from the log that CTest writes while it
+    runs. The log does not distinguish skipped tests from passed ones."""
+    folder = pathlib.Path(build) / "Testing/Temporary"
+    path = next((path for name in ("LastTest.log.tmp", "LastTest.log")
+                 if (path := folder / name).exists()), None)
+    log = path.read_text(errors="replace") if path else ""
+    return dict(re.findall(r'^"(.+)" start time: .*\nOutput:\n-{58}\n([\s\S]*?)^<end of output>\n'
+                           r"Test time =", log, re.M))
+
+
+def finished(build, ends):
+    """Returns the results of a run that was stopped. `ends`: (outcome, seconds) of each test."""
+    known = logs(build)
+    return [Result(name, status_of(outcome), seconds, known.get(name, ""))
+            for name, (outcome, seconds) in ends.items()]
+
+
+def kind_of(result):
+    """Returns the JUnit kind: a failed test that did not end by itself is an error."""
+    return {"skipped": "skipped", "passed": ""}.get(result.status,
+                                                    "error" if result.end else "failure")
+
+
+def write_junit(path, results, begin, failed, **properties):
+    """Writes JUnit of all results, for CI systems: a suite for each program and seed, begun at
+    `begin` (RFC 3339), with these properties, except empty ones. `failed` returns the message and
+    the text of a failed result. Jenkins' junit-10.xsd has no properties of a test."""
+    suites = {}
+    for result in results:
+        suites.setdefault((result.name.split(".")[0], result.seed), []).append(result)
+
+    def totals(results):
+        kinds = collections.Counter(kind_of(result) for result in results)
+        return {"tests": str(len(results)), "failures": str(kinds["failure"]),
+                "errors": str(kinds["error"]), "skipped": str(kinds["skipped"]),
+                "time": f"{sum(each.seconds for each in results):.3f}"}
+    whole = totals(results)
+    del whole["skipped"]  # required by the schema
+    root = xml.Element("testsuites", name="icesoc", **whole)
+    for (name, seed), results_ in suites.items():
+        suite = xml.SubElement(root, "testsuite", name=name, timestamp=begin, **totals(results_))
+        entries = xml.SubElement(suite, "properties")
+        for key, value in {"seed": seed, **properties}.items():
+            if value:
+                xml.SubElement(entries, "property", name=key, value=value)
+        for result in results_:
+            case = xml.SubElement(suite, "testcase", name=result.name, classname=name,
+                                  time=f"{result.seconds:.3f}")
+            if result.status == "failed":
+                message, text = failed(result)
+                xml.SubElement(case, kind_of(result), message=message).text = text
+                log = re.sub(r"[^\t\n\x20-\uFFFD]", "?", result.log)  # characters that XML has
+                xml.SubElement(case, "system-out").text = log
+            elif result.status == "skipped":
+                xml.SubElement(case, "skipped")
+    write(path, '<?xml version="1.0"?>\n' + xml.tostring(root, encoding="unicode") + "\n")

@@ -267,7 +267,7 @@ class Mistakes(Work):
             self.skipTest("another user cannot read this tree")
         words = [*other, "./icesoc", "build", "configure", "--build"]
         tree = {"ICESOC_TREE": str(self.work / "tree")}
-        self.assertIn(f"you may not write in {theirs}", ask(*words, str(theirs), **tree)[1])
+        self.assertIn(f"{theirs} is not writable", ask(*words, str(theirs), **tree)[1])
         self.assertIn("XDG_CACHE_HOME", ask(*words, str(self.work / "mine"), HOME=str(theirs),
                                             XDG_CACHE_HOME="", **tree)[1])
 
@@ -339,7 +339,7 @@ class Trees(Work):
         self.assertTrue((old / "build/kept").exists())
         old.rename(new)
         status, text = self.configure(new)
-        self.assertIn(f"build was made for the tree in {old}: creating it again", text)
+        self.assertIn(f"build was configured for the tree in {old}: creating it again", text)
         self.assertEqual(status, 0)
         self.assertEqual((config / "icesoc/update.key").read_bytes(), b"private")
         # A value that CMake refuses is not stored; otherwise all later commands would fail.

@@ -105,7 +105,7 @@ def change_alone(args):
     if talk(args, new, lambda ring: ring.count()) != 1:
         raise RuntimeError("the vehicle has not taken the new key; both are in the file: try again")
     os.replace(new, args.key)
-    print("change_key: vehicle 0x%04x and %s have a new key; the old one opens nothing any more" % (
+    print("change_key: vehicle 0x%04x and %s have a new key; the old key is no longer valid" % (
         args.address, args.key))
 
 
@@ -119,14 +119,14 @@ def main():
     parser.add_argument("--address", type=lambda text: int(text, 0), default=1,
                         help="address of the vehicle")
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
-    parser.add_argument("--patience", type=int, default=60, help="seconds that an answer may take")
+    parser.add_argument("--patience", type=int, default=60, help="time-out for an answer, s")
     args = parser.parse_args()
     Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), args.slice])
     try:
         change(args)
         return 0
     except Ice.UserException as e:
-        sys.exit("change_key: %s" % ("the vehicle flies: it takes no key before it has landed"
+        sys.exit("change_key: %s" % ("the vehicle is in flight: it accepts a new key after landing"
                                      if e.ice_id() == "::Autopilot::InFlight" else e))
     except (Ice.Exception, provide_key.Failed, RuntimeError, OSError) as e:
         sys.exit("change_key: %s" % e)

@@ -109,8 +109,8 @@ def provide(port, command, patience):
     end = time.monotonic() + patience
     while "icesoc: key?" not in (asked := read_line(port, PAUSE)):
         if time.monotonic() > end:
-            raise Failed("no vehicle has asked for %d s: is it wired, and was it switched on "
-                         "meanwhile?" % patience)
+            raise Failed("no vehicle asked for a key within %d s: is it wired, and was it switched "
+                         "on in this time?" % patience)
         fcntl.ioctl(port, TIOCSBRK)
         time.sleep(BREAK)
         termios.tcflush(port, termios.TCIFLUSH)
@@ -121,7 +121,7 @@ def provide(port, command, patience):
     os.write(port, command.encode() + b"\n")
     answer = read_line(port, 10)
     if answer != "ok":
-        raise Failed("the vehicle did not take it: '%s'" % answer)
+        raise Failed("the vehicle rejected the command: '%s'" % answer)
 
 
 def main():
@@ -130,12 +130,12 @@ def main():
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("--key", help="file with the key, mode 0600")
     what.add_argument("--open", action="store_true",
-                      help="instead of a key: anyone with a radio may call the vehicle")
+                      help="use no key; anyone with a radio may then call the vehicle")
     what.add_argument("--protect", action="store_true",
-                      help="instead of a key: set read protection level 1; switch the vehicle off "
-                      "and on then")
-    parser.add_argument("--old", help="file with the vehicle's present key, if it has one, and its "
-                        "jumper is not wired")
+                      help="set read protection level 1, and change no key; switch the vehicle off "
+                      "and on afterwards")
+    parser.add_argument("--old", help="file with the present key of the vehicle; needed if it has "
+                        "a key and its jumper is not connected")
     parser.add_argument("--address", type=address, default=1,
                         help="address for the vehicle, and its line in the file (default: 0x0001)")
     second = parser.add_mutually_exclusive_group()
@@ -144,9 +144,9 @@ def main():
     second.add_argument("--fellow", type=address, help="modem address of another vehicle; the two "
                         "vehicles call each other, and the key is for them only")
     second.add_argument("--group", action="store_const", dest="ground", const=GROUP,
-                        help="gives it the key of calls to all vehicles, in the line 0xffff")
+                        help="give the vehicle the group key, from the line 0xffff of the file")
     parser.add_argument("--patience", type=int, default=120,
-                        help="time-out without a vehicle, s")
+                        help="time to wait for a vehicle, s")
     args = parser.parse_args()
     try:
         owner = GROUP if args.ground == GROUP else args.address

@@ -179,8 +179,8 @@ has core_pins.ucf '^NET "core_pins_i<2>" TNM_NET = "tuner_clk";$' \
     '^TIMESPEC "TS_tuner_clk" = PERIOD "tuner_clk" 20.833 ns HIGH 50%;$' \
     '^TIMESPEC "TS_made_clk" = PERIOD "made_clk" 41.667 ns HIGH 50%;$' \
     '^TIMESPEC "TS_soc_to_other" = FROM "soc_clk" TO "other_clk" 8 ns DATAPATHONLY;$'
-refused 'clock=3/4: 75000000 Hz' 'tuner clock=3/4\n'
-refused 'clock=2/99: 2020202 Hz' 'tuner clock=2/99\n'
+refused 'for .tuner., got 75000000 Hz' 'tuner clock=3/4\n'
+refused 'for .tuner., got 2020202 Hz' 'tuner clock=2/99\n'
 refused 'clock=9/8: expected a fraction' 'tuner clock=9/8\n'
 refused 'clock=x: expected a fraction' 'tuner clock=x\n'
 refused "has no input pin 'clock'" 'led clock=6/25\n'
@@ -231,9 +231,9 @@ yosys -q -p "verilog_defaults -add -I$out -I$gen $(for f in bus hdl/fsmc hdl/ddr
 hash=$(sed -n 's/.*"names":\([0-9]*\),"signals":\[\["u_adder.irq_o".*/\1/p' "$out/probes.json")
 grep -q "WORDS(1), .NAMES(32'h$(printf %08X "$hash"))) u_other" "$out/soc_cores.vh" ||
     fail 'chip and ground have other hashes of what a probe records'
-refused "1: error: 'probe' records nothing" 'probe\n'
+refused "1: error: 'probe' records no signals" 'probe\n'
 refused "signals: 'u_a.b:0': expected a name and a width" 'probe signals=u_a.b:0\n'
-refused 'signals: 224 bits; a probe has 223' 'probe signals=a:200,b:24\n'
+refused 'signals: expected at most 223 bits, got 224' 'probe signals=a:200,b:24\n'
 refused "'led' has no input pin 'signals'" 'led signals=a\n'
 accepted hole 'led slot=63\n'
 is SLOT_COUNT 0x40
@@ -243,34 +243,36 @@ is MEMORY_MOVER 0x1000000
 is MEMORY_LAST 0x1000800
 is MEMORY_CAMERA 0x1001000
 
-refused 'memory=0x1000400: buffers of 2048 bytes begin at a multiple' 'mover memory=0x1000400\n'
-refused 'memory=0x0: buffers of 2048 bytes begin' 'mover memory=0\n'
-refused 'memory=0x8000000: buffers' 'mover memory=0x8000000\n'
+refused "memory=0x1000400: expected a multiple of the buffers' size, 2048" \
+    'mover memory=0x1000400\n'
+refused 'memory=0x0: expected a multiple' 'mover memory=0\n'
+refused 'memory=0x8000000: expected a multiple' 'mover memory=0x8000000\n'
 refused '2: error: memory=0x1000800 is within the buffers of line 1' \
     'mover memory=0x1000800\nmover name=b memory=0x1000800\n'
-refused 'memory=1x: a byte address' 'mover memory=1x\n'
+refused 'memory=1x: expected a byte address' 'mover memory=1x\n'
 refused 'a byte address in DDR3' "mover memory=1$(printf '%05000d' 0)\n"
-refused 'memory=0x1000000: a byte address in DDR3, for a core with buffers' 'led memory=0x1000000\n'
+refused 'memory=0x1000000: expected a byte address in DDR3, and a core with' \
+    'led memory=0x1000000\n'
 refused "1: error: no core 'missing'" 'missing\n'
 refused "2: error: 'led' is already on line 1; give one" 'led\nled\n'
 refused "3: error: slot 7 is taken on line 2" '#\nled slot=7\nadder slot=7\n'
-refused "slot=1: 2..63" 'led slot=1\n'
-refused "slot=64: 2..63" 'led slot=64\n'
+refused "slot=1: expected 2 to 63" 'led slot=1\n'
+refused "slot=64: expected 2 to 63" 'led slot=64\n'
 refused "slot=x" 'led slot=x\n'
-refused "'modem' is a name of the platform's" 'led name=modem\n'
-refused "name=Led: small letters" 'led name=Led\n'
+refused "'modem' is a name of the platform;" 'led name=modem\n'
+refused "name=Led: expected small letters" 'led name=Led\n'
 refused "identity 'a' is taken" 'led identity=a\nadder identity=a\n'
 refused "'slot' is given twice" 'led slot=3 slot=4\n'
-refused "'as' *: after the core's folder" 'led as\n'
+refused "'as': expected name=, identity=" 'led as\n'
 refused "has no input pin 'colour'; it has button_i" 'led colour=red\n'
-refused 'button_i=@A4,A5: 2 places for 1 bits' 'led button_i=@A4,A5\n'
+refused 'button_i=@A4,A5: expected 1 places, one per bit, got 2' 'led button_i=@A4,A5\n'
 refused '2: error: place A4 is taken on line 1' 'led button_i=@A4\nled name=b led_o=@A4\n'
-refused 'places are letters and digits' 'led button_i=@A-4\n'
+refused 'expected places of letters and digits' 'led button_i=@A-4\n'
 refused "1: error: gate=on: 'led' has no output idle_o" 'led gate=on\n'
-refused 'gate=off: on, or without the word' 'adder gate=off\n'
-refused "no core's output of 1 bits" 'led button_i=mover.nothing_o\n'
-refused "_o=none: it is not a pin" 'mover\nmover name=a\nmover name=b\nmover name=c\n'
-coremap --help | grep -q 'a core a line' || fail 'no help'
+refused 'gate=off: expected gate=on' 'adder gate=off\n'
+refused "expected a core's output of 1 bits" 'led button_i=mover.nothing_o\n'
+refused "_o=none leaves it unconnected" 'mover\nmover name=a\nmover name=b\nmover name=c\n'
+coremap --help | grep -q 'one core per line' || fail 'no help'
 ! coremap "$work/missing" --base "$source/bus/map.regs.json" 2>"$work/messages" ||
     fail 'a missing list is accepted'
 grep -q 'cannot read' "$work/messages" || fail 'a missing list is not said'

@@ -56,7 +56,7 @@ refused "ours.v:1: module 'npi_fifo' has the name of .*hdl/ddr/npi_fifo.v:" wb_p
 sed '1i `include "sizes.vh"' wb_port.v >head.v
 refused "sizes.vh.*" wb_port wishbone head.v
 refused 'FILES may also name headers' wb_port wishbone head.v
-refused 'all Verilog or all VHDL' wb_port wishbone wb_port.v lamps.vhd
+refused 'only Verilog or only VHDL' wb_port wishbone wb_port.v lamps.vhd
 refused "TOP: expected the name of a module or an entity, got 'wb_port; x'" \
     'wb_port; x' wishbone wb_port.v
 refused "no entity 'lamp' in FILES; found lamps" lamp own lamps.vhd
@@ -87,9 +87,9 @@ echo 'module odd(input clk, input [23:0] i_tdata, input i_tvalid, output [7:0] o
 refused 'more than one port for s_tdata: a_tdata, b_tdata' two axis two.v
 refused 'odd has 24 and 8 bits: expected 8, 16, 32 or 64' odd axis odd.v
 refused 'has no port for s_tdata' wb_port axis wb_port.v
-refused "CLOCK=fast: the frequency" wb_port wishbone CLOCK=fast wb_port.v
-refused 'ADDRESS=fast: words or bytes' wb_port wishbone ADDRESS=fast wb_port.v
-refused 'ack= is not for it' apb_words apb ack=1 pin=PREADY "$here/apb_words.v" timescale.v
+refused "CLOCK=fast: expected 3000000" wb_port wishbone CLOCK=fast wb_port.v
+refused 'ADDRESS=fast: expected words or bytes' wb_port wishbone ADDRESS=fast wb_port.v
+refused 'leave out ack=' apb_words apb ack=1 pin=PREADY "$here/apb_words.v" timescale.v
 refused 'CLOCK: a core with AXI-Streams' axis_scale axis CLOCK=24000000 cores.v
 refused 'LIBRARY: expected VHDL files, got Verilog' req_words own LIBRARY=lights cores.v
 refused 'a setting requires BUS=axis' req_words own setting=value cores.v

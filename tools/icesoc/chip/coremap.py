@@ -131,8 +131,8 @@ class Chip:
         given = {}
         for word in words:
             key, _, value = word.partition("=")
-            core.check(value, f"'{word}': after the core's folder come name=, identity=, slot=, "
-                              "memory=, gate=, signals= and its pins")
+            core.check(value, f"'{word}': expected name=, identity=, slot=, memory=, gate=, "
+                              "signals=, or a pin of the core")
             core.check(key not in given, f"'{key}' is given twice")
             given[key] = value
         for key, value in given.items():
@@ -144,10 +144,12 @@ class Chip:
         core.check(core.says_idle or not core.has_gate,
                    f"gate=on: '{core.folder}' has no output idle_o (idle in its core.toml)")
         core.check(core.signals or not core.is_probe,
-                   f"'{core.name}' records nothing: signals=u_fir.busy,u_fir.count:9")
+                   f"'{core.name}' records no signals: expected a list such as "
+                   "signals=u_fir.busy,u_fir.count:9")
         core.identity = core.identity or core.name
         known = self.names.setdefault(core.name, line)
-        core.check(known, f"'{core.name}' is a name of the platform's")
+        core.check(known, f"'{core.name}' is a name of the platform; give the core another name by "
+                          "name=")
         core.check(known == line, f"'{core.name}' is already on line {known}; give one of the two "
                                   "another name by name=")
         core.check(core.identity not in self.identities,
@@ -156,7 +158,8 @@ class Chip:
         return core
 
     def describe(self, core, block):
-        core.check("type" in block, f"'{core.folder}' has no type: its description is not a slot's")
+        core.check("type" in block, f"'{core.folder}': expected the description of a slot, got one "
+                                    "without a type")
         if block.get("memory_port"):
             core.port = self.ports
             self.ports += 1
@@ -188,20 +191,21 @@ class Chip:
         """Parses one word of the line of a core."""
         if key == "name":
             core.check(re.fullmatch("[a-z][a-z0-9_]*", value),
-                       f"name={value}: small letters, digits and _")
+                       f"name={value}: expected small letters, digits and _")
             core.name = value
         elif key == "identity":
             core.check(not re.search(r'["\\/]', value),
-                       f"identity={value}: without quotes, \\ and /")
+                       f"identity={value}: expected no quotes, \\ and /")
             core.identity = value
         elif key == "slot":
             core.slot = int(value) if re.fullmatch("[0-9]{1,2}", value) else 0
             core.check(self.first <= core.slot < SLOT_LIMIT,
-                       f"slot={value}: {self.first}..{SLOT_LIMIT - 1} are for cores")
+                       f"slot={value}: expected {self.first} to {SLOT_LIMIT - 1}, the slots for "
+                       "cores")
         elif key == "memory":
             digits = "0[xX][0-9a-fA-F]{1,8}|0|[1-9][0-9]{0,9}"
             core.check(core.memory_bytes and re.fullmatch(digits, value),
-                       f"memory={value}: a byte address in DDR3, for a core with buffers")
+                       f"memory={value}: expected a byte address in DDR3, and a core with buffers")
             core.memory, core.is_placed = int(value, 0), True
         elif key == "signals" and core.is_probe:
             core.signals = []  # these replace the manifest's signals
@@ -209,7 +213,7 @@ class Chip:
         elif key == "clock" and core.own_clock:
             self.set_clock(core, value)
         elif key == "gate":
-            core.check(value == "on", f"gate={value}: on, or without the word")
+            core.check(value == "on", f"gate={value}: expected gate=on, or no gate=")
             core.has_gate = True
         else:
             self.set_pin(core, key, value)
@@ -237,8 +241,8 @@ class Chip:
                    f"clock={value}: expected a fraction of the chip clock, such as 3/8 "
                    "(2..256 / 2..256)")
         core.check(LEAST_HZ <= core.clock_hz <= core.own_clock,
-                   f"clock={value}: {core.clock_hz:.0f} Hz; '{core.folder}' is for {LEAST_HZ:.0f} "
-                   f"to {core.own_clock} Hz")
+                   f"clock={value}: expected {LEAST_HZ:.0f} to {core.own_clock} Hz for "
+                   f"'{core.folder}', got {core.clock_hz:.0f} Hz")
         core.pins[-1].internal = True
 
     @staticmethod
@@ -252,19 +256,21 @@ class Chip:
                        "u_fir.count:9")
             core.signals.append((match[1], width))
         bits = sum(width for _, width in core.signals)
-        core.check(bits <= PROBE_BITS, f"signals: {bits} bits; a probe has {PROBE_BITS}")
+        core.check(bits <= PROBE_BITS, f"signals: expected at most {PROBE_BITS} bits, got {bits}")
 
     def set_places(self, core, pin, value):
         """Handles pwm_o=@A4,B4: locations of the bits on the board, bit 0 first."""
         for place in value[1:].split(","):
             core.check(re.fullmatch("[A-Za-z0-9]+", place),
-                       f"{pin.name}={value}: places are letters and digits, as @A4,B4")
+                       f"{pin.name}={value}: expected places of letters and digits, such as "
+                       "@A4,B4")
             core.check(place not in self.places,
                        f"place {place} is taken on line {self.places.get(place)}")
             self.places[place] = core.line
             pin.places.append(place)
         core.check(len(pin.places) == pin.width,
-                   f"{pin.name}={value}: {len(pin.places)} places for {pin.width} bits")
+                   f"{pin.name}={value}: expected {pin.width} places, one per bit, got "
+                   f"{len(pin.places)}")
 
     def give_slots(self):
         taken = {}
@@ -296,8 +302,8 @@ class Chip:
             if core.is_placed:
                 core.check(core.memory % core.memory_bytes == 0
                            and self.buffers <= core.memory < self.memory_end,
-                           f"memory=0x{core.memory:X}: buffers of {core.memory_bytes} bytes begin "
-                           f"at a multiple of that, from 0x{self.buffers:X} on and below "
+                           f"memory=0x{core.memory:X}: expected a multiple of the buffers' size, "
+                           f"{core.memory_bytes} bytes, from 0x{self.buffers:X} to below "
                            f"0x{self.memory_end:X}")
                 other = neighbour(core)
                 core.check(not other, f"memory=0x{core.memory:X} is within the buffers of line "
@@ -326,13 +332,14 @@ class Chip:
             elif pin.source:
                 origin = outputs.get(pin.source)
                 core.check(origin and origin.width == pin.width,
-                           f"{pin.name}={pin.source}: no core's output of {pin.width} bits")
+                           f"{pin.name}={pin.source}: expected a core's output of {pin.width} "
+                           "bits")
             elif not pin.internal:
                 pin.lsb = self.pins[pin.direction]
                 self.pins[pin.direction] += pin.width
                 core.check(self.pins[pin.direction] <= PIN_LIMIT,
-                           f"'{pin.name}' of '{core.name}': the chip has {PIN_LIMIT} pins of a "
-                           f"direction for cores; {pin.name}=none: it is not a pin")
+                           f"'{pin.name}' of '{core.name}': the chip has only {PIN_LIMIT} pins per "
+                           f"direction for cores; {pin.name}=none leaves it unconnected")
 
 
 def aligned(address, size):
@@ -367,7 +374,7 @@ def of_core(file, registers):
 
 def parts(option, text, form):
     found = text.split("=", form.count("="))
-    check(len(found) == form.count("=") + 1, f"1: error: {option} {form}, not '{text}'")
+    check(len(found) == form.count("=") + 1, f"1: error: {option}: expected {form}, got '{text}'")
     return found
 
 
@@ -396,7 +403,7 @@ def main():
         description="Puts the cores of a list into the chip: address map, instances in Verilog, "
                     "the firmware's table.")
     parser.add_argument(
-        "list", help="a core a line: folder [name=] [identity=] [slot=] [memory=] [gate=on] "
+        "list", help="one core per line: folder [name=] [identity=] [slot=] [memory=] [gate=on] "
         "[clock=3/8] [signals=u_fir.count:9] [input=core.output] [pin=@places]")
     parser.add_argument("--base", required=True, help="the platform's map.regs.json")
     for option, text in (
@@ -404,7 +411,7 @@ def main():
             ("--slice", "folder=a Slice file of its servant"),
             ("--block", "slot=name=description of a block of the platform, for the pages")):
         parser.add_argument(option, action="append", default=[], help=text)
-    parser.add_argument("--output-dir", default=".", help="where the files go")
+    parser.add_argument("--output-dir", default=".", help="output folder")
     asked = parser.parse_args()
     try:
         for name, text in build(asked).items():

@@ -24,7 +24,7 @@ def writable(folder, otherwise):
     except OSError:
         pass
     if not os.access(folder, os.W_OK):
-        raise Stop(f"you may not write in {folder}, {otherwise}")
+        raise Stop(f"{folder} is not writable; {otherwise}")
 
 
 def cores_in(folder):
@@ -60,14 +60,14 @@ class BuildFolder:
     def configure(self, *arguments):
         """Runs CMake, unless the folder is configured. If the folder was made for another path,
         CMake refuses it, so it is removed first."""
-        writable(self.folder, "where the build goes: take a clone of your own, or give --build "
-                 "(BUILD=) a folder that is yours")
+        writable(self.folder, "the build is written there: use a clone of your own, or give "
+                 "--build (BUILD=) a folder that you can write")
         cache = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.environ["HOME"], ".cache")
-        writable(cache, "where what is fetched and compiled is kept: set XDG_CACHE_HOME to a "
-                 "folder that is yours")
+        writable(cache, "downloads and compiler results are stored there: set XDG_CACHE_HOME to a "
+                 "folder that you can write")
         home = self.cached("CMAKE_HOME_DIRECTORY")
         if home and not (os.path.isdir(home) and os.path.samefile(home, ".")):
-            warn(f"{self.folder} was made for the tree in {home}: creating it again")
+            warn(f"{self.folder} was configured for the tree in {home}: creating it again")
             keys.rescue(self.folder)
             shutil.rmtree(self.folder)
             self.folder.mkdir()

@@ -35,7 +35,7 @@ def rescue(built):
             new.touch(mode=0o600)
             new.write_bytes(old.read_bytes())
             old.unlink()
-            say(f"{old} is {new} now: keys are kept outside of what is built")
+            say(f"{old} was moved to {new}: keys are kept outside the build folders")
 
 
 def make_certificate(path):
@@ -72,13 +72,13 @@ def check_authority(authority, signs):
     """Fails unless certificate and key of the authority are regular files, and only their owner can
     read the key."""
     if os.path.lexists(authority) != os.path.lexists(signs):
-        raise Stop(f"of '{authority}' and '{signs}' one is missing: keep both, or neither")
+        raise Stop(f"expected both '{authority}' and '{signs}', or neither; one of them is missing")
     for path in authority, signs:
         if os.path.lexists(path) and not path.is_file():
             raise Stop(f"'{path}': expected a regular file")
     if signs.exists() and signs.stat().st_mode & 0o077:
         raise Stop(f"others may read '{signs}': chmod 600 '{signs}', and make new certificates if "
-                   "anybody may have read it")
+                   "somebody else may have read it")
 
 
 def sign(name, cert, key, constraint, *by):

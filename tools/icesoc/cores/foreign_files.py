@@ -114,7 +114,7 @@ def check_names(slot, top, files):
     for name, file, line in declared(ours, "module"):
         if name == slot:
             fail(f"'{slot}' is the name of this project's module in "
-                 f"{os.path.relpath(file, room)}: give the slot another")
+                 f"{os.path.relpath(file, room)}: give the slot another name")
         if name in first and first[name][0] != file:
             fail(f"{first[name][0]}:{first[name][1]}: module '{name}' has the name of this "
                  f"project's {os.path.relpath(file, room)}:{line}: give it another name, also "

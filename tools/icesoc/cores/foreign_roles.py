@@ -178,26 +178,27 @@ def check_needed(top, bus, ports, roles, latency):
              *(["stb"] if bus == "wishbone" and "cyc" in roles.values() else [])}
     missing = [say.get(r, r) for r in NEEDED[bus] + ["clock"] if r not in there]
     if missing:
-        fail(f"{top} has no port for {', '.join(missing)}: {', '.join(ports)}; say which by "
+        fail(f"{top} has no port for {', '.join(missing)}: {', '.join(ports)}; name it by "
              f"PORTS='{missing[0]}=port ...'"
-             + (", or by ack=1 that what is read is there a clock later"
+             + (", or give ack=1 if read data is valid one clock later"
                 if "ack" in missing else ""))
     often = {"", "clock", "reset", "resetn", "interrupt", "interruptn", "setting", "low", "high",
              "open", "1", "2", *(("adr", "ack") if bus == "own" else ())}
     for r in there - often:
         if len(same := [n for n in ports if roles[n] == r]) > 1:
-            fail(f"{top} has more than one port for {say.get(r, r)}: {', '.join(same)}; what the "
-                 f"others are by PORTS='pin={same[-1]} ...'")
+            fail(f"{top} has more than one port for {say.get(r, r)}: {', '.join(same)}; give the "
+                 f"role of the others by PORTS='pin={same[-1]} ...'")
     if "strobe" in roles.values() and "ack" not in there:
-        fail("PORTS: a strobe of one clock needs an ack; what answers in the same clock has select")
+        fail("PORTS: a strobe of one clock needs an ack; for a core that answers in the same "
+             "clock, use select")
 
 
 def check_limits(top, bus, ports, roles, latency):
     """Fails if the adapter of the bus cannot serve the ports."""
     if bus == "apb" and latency:
-        fail("PORTS: an APB core without PREADY ends each transfer in its access phase: ack= is "
-             "not for it")
+        fail("PORTS: an APB core without PREADY ends each transfer in its access phase: leave out "
+             "ack=")
     if wide := [n for n in ports if bus != "axis" and roles[n] in ("wdata", "rdata")
                 and len(ports[n]["bits"]) > 32]:
         fail(f"'{wide[0]}' of {top} has {len(ports[wide[0]]['bits'])} bits: a slot's bus has 32; "
-             "put a module between that halves the words")
+             "put a module in between that splits the words")

@@ -68,12 +68,12 @@ class Request:
         """Ends the program if the request is impossible."""
         if self.clock and not (re.fullmatch("[0-9]{7,9}", self.clock)
                                and 3000000 <= int(self.clock) <= 100000000):
-            fail(f"CLOCK={self.clock}: the frequency of the core's separate clock, 3000000 to "
-                 "100000000 Hz")
+            fail(f"CLOCK={self.clock}: expected 3000000 to 100000000 Hz, the frequency of the "
+                 "core's separate clock")
         if self.clock and self.bus == "axis":
             fail("CLOCK: a core with AXI-Streams uses a DDR3 port, which has the chip clock")
         if self.address not in ("", "words", "bytes") or self.address and self.bus == "axis":
-            fail(f"ADDRESS={self.address}: words or bytes, for a core with registers")
+            fail(f"ADDRESS={self.address}: expected words or bytes, and a core with registers")
         if self.bus not in NEEDED:
             fail(f"BUS: expected {', '.join(NEEDED)}, got '{self.bus}'")
         if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", self.name):
@@ -107,7 +107,8 @@ class Request:
         self.headers = [f for f in files if kind_of(f) == "header"]
         self.files = packages_first([f for f in files if f not in self.headers])
         if not self.files or len({is_vhdl(f) for f in self.files}) > 1:
-            fail("FILES are all Verilog or all VHDL, and at least one is in the library of TOP")
+            fail("FILES: expected only Verilog or only VHDL files, and at least one in the library "
+                 "of TOP")
         self.is_vhdl, self.is_synthesised = is_vhdl(self.files[0]), True
         if not self.is_vhdl:
             self.params = verilog_params(self.params)
@@ -125,7 +126,7 @@ def read_core(asked):
              "names around it")
     if two_way := [n for n, p in ports.items() if p["direction"] == "inout"]:
         fail(f"{asked.top} has the inout port '{two_way[0]}': tri-states belong to the chip's "
-             "pads; take a top without")
+             "pads; choose a top module without it")
     ports = with_members(ports, asked.bus, asked.ports)
     if asked.is_vhdl:
         return ports, [], {}
@@ -142,7 +143,7 @@ def slot_texts(asked, ports, params):
         left_out = " ".join(f"{'open' if ports[n]['direction'] == 'output' else 'low'}={n}"
                             for n in wide)
         fail(f"'{wide[0]}' of {asked.top} has {len(ports[wide[0]]['bits'])} bits, and a pin at "
-             f"most 32: PORTS='{left_out}' leaves out all of those")
+             f"most 32: PORTS='{left_out}' leaves such ports unconnected")
     said = {n: roles[n] or "pin " + pin_name(n, p) for n, p in ports.items()}
     for n, p in ports.items():
         if not roles[n] and p["direction"] == "output" and ASKED.search(n):

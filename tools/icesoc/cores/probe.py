@@ -39,8 +39,8 @@ class Signals:
                          "chip, gen/probes.json"
                          % (path, e))
         if name not in probes:
-            raise Failed("--map %s has no probe '%s', but %s" %
-                         (path, name, ", ".join(probes) or "none at all"))
+            raise Failed("--map %s: expected a probe '%s', found %s" %
+                         (path, name, ", ".join(probes) or "none"))
         self.names = probes[name]["names"]
         self.identity = probes[name]["identity"]
         self.list = [(signal, width) for signal, width in probes[name]["signals"]]
@@ -67,13 +67,14 @@ class Signals:
             try:
                 value = int(number, 0)
             except ValueError:
-                raise Failed("--trigger: '%s' is not as u_fir.count=0x10" % word)
+                raise Failed("--trigger: expected a signal and a value such as u_fir.count=0x10, "
+                             "got '%s'" % word)
             if not 0 <= value < 1 << width:
                 raise Failed("--trigger: %s has %d bits, and is never %s" % (name, width, number))
             if lsb + width > 31:
-                raise Failed("--trigger: %s is at bits %d to %d of the list; those below 31 can "
-                             "trigger: name it further"
-                             " in front" % (name, lsb, lsb + width - 1))
+                raise Failed("--trigger: %s is at bits %d to %d of the list, and only bits below "
+                             "31 can trigger; list it earlier in signals=" %
+                             (name, lsb, lsb + width - 1))
             mask |= (1 << width) - 1 << lsb
             wanted |= value << lsb
         return mask, wanted
@@ -168,15 +169,15 @@ def capture(probe, signals, args, say):
     mask, value = signals.trigger(args.trigger)
     ring = RING_BYTES // (8 * state.words)
     if args.before < 0 or args.after < 0 or args.before + args.after >= ring:
-        raise Failed("the ring has room for %d changes: --before and --after together take less" %
-                     ring)
+        raise Failed("--before and --after: expected fewer than %d changes together, the size of "
+                     "the ring" % ring)
     probe.arm(signed(mask), signed(value), bool(args.trigger) and not args.level, args.after)
-    say("armed; waiting for %s" % (args.trigger or "nothing: it begins now"))
+    say("armed; waiting for %s" % (args.trigger or "changes; the capture begins at once"))
     end = time.monotonic() + args.wait
     while str((state := probe.getState()).phase) != "done":
         if time.monotonic() > end:
             say("%s after %d s: stopped with the changes so far" % (
-                "no trigger" if state.trigger < 0 else "not all changes behind the trigger",
+                "no trigger" if state.trigger < 0 else "not all changes after the trigger",
                 args.wait))
             probe.stop()
             state = probe.getState()
@@ -188,30 +189,33 @@ def capture(probe, signals, args, say):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("out", help="the waveform: a VCD file")
+    parser.add_argument("out", help="output file for the waveform (VCD)")
     parser.add_argument("--map", default=str(TREE / "build/main/gen/probes.json"),
                         help="default: build/main/gen/probes.json")
     parser.add_argument("--probe", default="probe",
                         help="name in the list of cores, if it was renamed (name=)")
     parser.add_argument("--trigger", default="",
-                        help="signals and values, u_fir.sent=1,u_fir.count=0x10: begins when all "
-                             "become "
-                        "so; without: at once")
-    parser.add_argument("--level", action="store_true", help="begin also if they are so already")
-    parser.add_argument("--before", type=int, default=500, help="changes before the trigger (500)")
-    parser.add_argument("--after", type=int, default=1500, help="changes behind it (1500)")
+                        help="signals and values, such as u_fir.sent=1,u_fir.count=0x10; the "
+                             "capture begins when all signals have changed to these values "
+                             "(default: at once)")
+    parser.add_argument("--level", action="store_true",
+                        help="begin at once if the signals already have these values")
+    parser.add_argument("--before", type=int, default=500,
+                        help="changes before the trigger (default: 500)")
+    parser.add_argument("--after", type=int, default=1500,
+                        help="changes after the trigger (default: 1500)")
     parser.add_argument("--wait", type=float, default=60,
                         help="time-out, s, after which the changes so far are used (default: 60)")
     parser.add_argument("--device", help="serial port of the modem")
     parser.add_argument("--proxy",
-                        help="instead of --device: proxy of the object, as 'probe:tcp -h host -p "
-                             "4061'")
+                        help="instead of --device: proxy of the object, such as 'probe:tcp -h host "
+                             "-p 4061'")
     parser.add_argument("--plugin", help="folder of libxbeeat.so.37")
-    parser.add_argument("--key", default="", help="file with the link's key; without: in the clear")
+    parser.add_argument("--key", default="", help="file with the link key (default: unencrypted)")
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
     args = parser.parse_args()
     if not args.device and not args.proxy:
-        parser.error("give --device, or --proxy")
+        parser.error("expected --device or --proxy")
     import Ice
     import plugged
     Ice.loadSlice("", [str(TREE / "ip/probe/Probe.ice")])
@@ -229,8 +233,8 @@ def main():
     except KeyboardInterrupt:
         return 130
     except Ice.ObjectNotExistException:
-        sys.exit("probe: the vehicle has no probe '%s': ip/cores.list needs its line, the chip and "
-                 "the firmware a build" % signals.identity)
+        sys.exit("probe: the vehicle has no probe '%s': add its line to ip/cores.list, and build "
+                 "the chip and the firmware" % signals.identity)
     except (Failed, Ice.Exception, OSError) as e:
         sys.exit("probe: %s" % e)
     finally:

@@ -23,7 +23,7 @@ def reason(text):
     """Returns the text of GTEST_SKIP, or the last output line of a script that ended with 77."""
     said = re.search(r": Skipped\n(.+)", text)
     lines = [line for line in text.splitlines() if line.strip()]
-    return said[1] if said else lines[-1] if lines else "it does not say why"
+    return said[1] if said else lines[-1] if lines else "no reason was printed"
 
 
 def write_finished(folder, results, ends, total):

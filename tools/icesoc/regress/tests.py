@@ -258,7 +258,8 @@ def read_plan(source):
     for page, rows in pages.items():
         for text, patterns in rows.items() if isinstance(rows, dict) else [(page, rows)]:
             if not isinstance(patterns, str) or not patterns.split() or rows == patterns:
-                raise Stop(f'{path}: {text}: not `"requirement" = "test.pattern ..."` of a page')
+                raise Stop(f'{path}: {text}: expected `"requirement" = "test.pattern ..."` below '
+                           'the name of a page')
     return [Requirement(page, text, patterns.split())
             for page, rows in pages.items() for text, patterns in rows.items()]
 

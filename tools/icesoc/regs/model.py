@@ -287,22 +287,24 @@ def register_of(r):
 
 def check_register(r, taken):
     name, word, page = r.name, r.word, r.page
-    check(0 <= word < WORDS_PER_SLOT, f"{name}: word {word} is not in 0..15")
+    check(0 <= word < WORDS_PER_SLOT, f"{name}: expected a word from 0 to 15, got {word}")
     check((word, page) not in taken and (page < 0 or (word, -1) not in taken),
           f"{name}: word {word} is taken")
     taken.add((word, page))
     check(page < 0 or (word >= 8 and page % 32 == 0),
-          f"{name}: only words 8..15 have a page, a multiple of 32")
-    check(0 < r.width <= 32, f"{name}: its width is 1..32 bits")
+          f"{name}: expected a page that is a multiple of 32, in a word from 8 to 15")
+    check(0 < r.width <= 32, f"{name}: expected a width of 1 to 32 bits, got {r.width}")
     check(r.access in ACCESSES,
-          f"{name}: access '{r.access}' is not one of {' '.join(ACCESSES)}")
+          f"{name}: access: expected one of {' '.join(ACCESSES)}, got '{r.access}'")
     check(word < FIRST_WORD or r.storage in STORAGES[r.access],
           f"{name}: storage of a register with access {r.access}: expected "
           f"{' or '.join(STORAGES[r.access])}, got '{r.storage}'")
-    check(not r.registered or r.pulses, f"{name}: registered is for a ws register with bits")
-    check(not r.lock or r.is_written, f"{name}: lock is for a register that is written")
+    check(not r.registered or r.pulses,
+          f"{name}: registered: expected only in a ws register with bits")
+    check(not r.lock or r.is_written, f"{name}: lock: expected only in a register that is written")
     for strobe in r.strobes:
-        check(strobe == "read" or r.is_written, f"{name} is ro: it has no write strobe")
+        check(strobe == "read" or r.is_written,
+              f"{name}: strobes: expected no write strobe in a ro register")
     used = 0
     for f in r.fields:
         check(f.lsb >= 0 < f.width and f.msb < 32,
@@ -313,7 +315,7 @@ def check_register(r, taken):
               f"{name}.{f.name}: access of a field: expected {r.access}"
               f"{' or ro' if r.access in MIXED else ''}, got '{f.access}'")
         check(not (f.hwset or f.hwclr) or (f.access == "rw" and r.is_stored),
-              f"{name}.{f.name}: hwset and hwclr are for rw in flip-flops")
+              f"{name}.{f.name}: hwset, hwclr: expected only in a rw field with flip-flops")
     for part in r.parts:
         check(part.reset is None or part.reset >> part.width == 0,
               f"{name}{'.' + part.name if part.name else ''}: reset 0x{part.reset or 0:X} does not "

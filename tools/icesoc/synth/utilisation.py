@@ -195,31 +195,32 @@ def options_of(words):
                         help="further FPGA family, in addition to xc6s (may be repeated)")
     parser.add_argument("--yosys", default="yosys", help="the program")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(),
-                        help="synthesis runs at a time (%(default)s)")
+                        help="number of parallel synthesis runs (%(default)s)")
     parser.add_argument("--accept", action="store_true",
                         help="record these figures in synth/baseline.json")
     parser.add_argument("--core", action="append", default=[],
-                        help="only tell what this core costs in the accepted chip (may be "
-                             "repeated); with --design soc in the current chip")
+                        help="only print the cost of this core in the accepted chip (may be "
+                             "repeated), or with --design soc, in the current chip")
     parser.add_argument("--compare", type=folder, metavar="REPORT.JSON",
-                        help="only tell how the last report differs from this one")
+                        help="only print how the last report differs from this one")
     parser.add_argument("--reports", action="store_true",
-                        help="only hold the estimates against published reports")
+                        help="only compare the estimates with published reports")
     parser.add_argument("--edif", metavar="DESIGN",
                         help="only write this design as EDIF for ISE, into the folder ise")
     parser.add_argument("--list", action="store_true", help="only print the designs' names")
     parser.add_argument("--equivalent", action="store_true",
-                        help="only prove that netlists are equivalent to their RTL, or tell tests")
+                        help="only prove that netlists are equivalent to their RTL, or list the "
+                             "tests for it")
     parser.add_argument("--junit", type=folder, help="results of the tests that --equivalent lists")
     parser.add_argument("--seconds", type=int, default=300,
-                        help="limit of a proof of --equivalent (%(default)s)")
+                        help="time limit of each proof of --equivalent, s (%(default)s)")
     parser.add_argument("--netlist", metavar="DESIGN",
                         help="only write this design's netlist as Verilog for a simulator")
     parser.add_argument("--set", metavar="NAME=VALUE", action="append", default=[],
                         type=lambda text: text.split("=", 1),
-                        help="a parameter of --netlist's top module (may be repeated)")
+                        help="parameter of --netlist's top module (may be repeated)")
     parser.add_argument("--to", type=folder, default="build/synth/netlist.v",
-                        help="the file of --netlist (%(default)s)")
+                        help="output file of --netlist (%(default)s)")
     o = parser.parse_args(words)
     o.family = [family for family in FAMILIES if family in [FAMILIES[0], *o.family]]
     return o

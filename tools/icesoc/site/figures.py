@@ -32,9 +32,13 @@ PLACES = {
         "MAVLink 2: {mav.key}; {mav.clear} |",
         "| 0 of {hostile} |",
         "| 0 of {firmware}; 0 of {bitstream} |",
-        "have {full} bytes in the vehicle",
-        "(link {full.link}, IceC {full.icec}, FSMC {full.fsmc}, radio {full.radio}, "
-        "crypto {full.crypto}, endpoint {full.endpoint})",
+        "| FSMC | 1116 | {minimal.fsmc} | {full.fsmc} |",
+        "| radio | 1795 | {minimal.radio} | {full.radio} |",
+        "| link | 1307 | {minimal.link} | {full.link} |",
+        "| IceC | 2622 | {minimal.icec} | {full.icec} |",
+        "| radio endpoint | not listed | {minimal.endpoint} | {full.endpoint} |",
+        "| encryption | none | none | {full.crypto} |",
+        "| all | 6840 | {minimal} | {full} |",
         "occupies {ram} of the chip's"],
     "docs/utilisation.md": [
         "with these, Table I's content takes {table1.through}. ",
@@ -120,10 +124,12 @@ def values(tree):
             "ram": "full: RAM with all objects and all stacks, including the main stack"}.items():
         if row in measured:
             found[name] = measured[row]
-    layers = {f"full.{layer}": measured[f"full.{layer}"]
+    layers = {f"{program}.{layer}": measured[f"{program}.{layer}"]
+              for program in ("minimal", "full")
               for layer in ("link", "icec", "fsmc", "radio", "crypto", "endpoint")
-              if f"full.{layer}" in measured}
-    return {**found, **layers, "full": str(sum(map(int, layers.values())))}
+              if f"{program}.{layer}" in measured}
+    full = sum(int(bytes_) for name, bytes_ in layers.items() if name.startswith("full."))
+    return {**found, **layers, "full": str(full)}
 
 
 def pattern(text):

@@ -27,7 +27,7 @@ module async_fifo #(
     output wire             empty_o
 );
     reg [WIDTH-1:0] words [0:(1<<LOG2)-1];
-    reg [LOG2:0]  written, taken;       // pointers, one bit wider than the address
+    reg [LOG2:0]  written, taken;       // read and write pointers, one bit wider than the address
     // the same pointers in Gray code, registered in the clock of the side that sends them
     reg [LOG2:0]  to_reader, to_writer;
     wire [LOG2:0] to_reader_async, to_writer_async;
@@ -75,9 +75,9 @@ module async_fifo #(
 `endif
 
 `ifdef FORMAL
-    // Words leave in order and unchanged. Time advances in steps; in each step either clock, both
-    // or none has an edge. A bit that changed in the step before an edge of the other clock may
-    // arrive with its old or its new value, independently for each bit.
+    // Proves that words leave in order and unchanged. Time advances in steps; in each step either
+    // clock, both or none has an edge. A bit that changed in the step before an edge of the other
+    // clock may arrive with its old or its new value, independently for each bit.
     (* hierconn, init = 8'd0 *) wire [LOG2:0] \u_to_reader.bit_meta , \u_to_writer.bit_meta ;
 
     (* gclk *) wire step;

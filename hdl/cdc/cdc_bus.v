@@ -2,10 +2,11 @@
 //
 // cdc_bus: transfers each word of src_clk_i exactly once to dst_clk_i, two to three clocks later.
 //
-// A word is held in a register of the source. The destination copies it in the clock in which the
-// second flip-flop of the synchroniser toggles, so the next word may follow two dst_clk_i clocks
-// plus the skew of the paths later, without a handshake. The module has no reset. Constraint: one
-// dst_clk_i period from src_data's register to the copy, and the constraint of cdc_bit.
+// A register of the source holds the word. The destination copies it in the clock in which the
+// second flip-flop of the synchroniser toggles. There is no handshake, so the next word must follow
+// at least two dst_clk_i clocks plus the skew of the paths later. The module has no reset.
+// Constraint: one dst_clk_i period from src_data's register to the copy, and the constraint of
+// cdc_bit.
 
 `default_nettype none
 
@@ -18,7 +19,7 @@ module cdc_bus #(
     output reg  [WIDTH-1:0] src_data_o,     // last accepted word, in the clock src_clk_i
     input  wire             dst_clk_i,
     output wire             dst_valid_o,    // one cycle
-    // valid from dst_valid_o until src_clk_i takes the next word
+    // word, valid from dst_valid_o until src_clk_i takes the next word
     output wire [WIDTH-1:0] dst_data_o,
     output wire             pending_sync_o, // pending_async_o, synchronised to dst_clk_i
     output wire             pending_async_o // a word has not been transferred yet
@@ -36,15 +37,16 @@ module cdc_bus #(
         u_cdc_copy (.clk_i(dst_clk_i), .bus_async_i(src_data_o), .bus_sync_o(dst_data_o));
 
 `ifdef FORMAL
-    // Each word is transferred once, in order and unchanged. Time advances in steps; either clock
-    // and the data may change in each, so every ratio and phase is covered. An input that changes
-    // at the same time as an edge is sampled with its old value; cdc_bit may sample the new value
-    // one clock later.
+    // Proves that each word is transferred once, in order and unchanged. Time advances in steps;
+    // either clock and the data may change in each step, so every ratio and phase is covered. An
+    // input that changes at the same time as an edge is sampled with its old value; cdc_bit may
+    // sample the new value one clock later.
     (* gclk *) wire step;
     reg past = 1'b0, was_src = 1'b1, was_clk = 1'b1, was_valid = 1'b0, known = 1'b0;
     reg [WIDTH-1:0] was_data = 0;
     reg was_given = 1'b0, gave = 1'b0;
-    // words that have not been transferred yet; if there are none, `newer` is the last word
+    // up to two words that have not been transferred yet; if there are none, `newer` is the last
+    // word
     reg [WIDTH-1:0] older = 0, newer = 0;
     reg [1:0] count = 2'd0;
     reg [2:0] clocks = 3'd3;             // edges of dst_clk_i since the source edge of the last
@@ -78,7 +80,7 @@ module cdc_bus #(
         assume (!new_write || clocks >= 3'd3);
     end
     wire [1:0] left  = count - {1'b0, handed}; // number of words left after this step
-    wire       gives = edge_of_clk ? was_valid : gave; // high in the clock after dst_valid_o
+    wire       gives = edge_of_clk ? was_valid : gave; // dst_valid_o was high in the previous clock
     always @* if (past) begin
         // Each word is pending immediately and is transferred once, in order, unchanged.
         assert (!handed || count != 2'd0);

@@ -3,11 +3,11 @@
 // cdc_pulse: turns an event in src_clk_i into a one-cycle pulse in dst_clk_i, two to three clocks
 // later.
 //
-// A flip-flop toggles with each event and passes a two-stage synchroniser; a change of its output
-// is the event. Events must be at least two dst_clk_i clocks plus path delays apart; a closer one,
-// such as ringing, counts as the same event. src_clk_i needs no other edges. The module has no
-// reset, so a reset of either side neither creates nor loses an event. Constraint: as for cdc_bit,
-// and one dst_clk_i period from turned_sync to turned.
+// A flip-flop toggles with each event and passes a two-stage synchroniser; a change of the
+// synchroniser's output is the event. Events must be at least two dst_clk_i clocks plus path delays
+// apart; closer events, such as ringing, count as one event. src_clk_i needs no edges other than
+// the events. The module has no reset, so a reset of either side neither creates nor loses an
+// event. Constraint: as for cdc_bit, and one dst_clk_i period from turned_sync to turned.
 
 `default_nettype none
 

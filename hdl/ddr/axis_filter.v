@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// axis_filter: sends a buffer through a core with an AXI-Stream in and one out, of 8, 16, 32 or 64
-// bits, and writes the core's output into another buffer (`make new-foreign BUS=axis`).
+// axis_filter: sends a buffer through a core with one AXI-Stream input and one output, of 8, 16, 32
+// or 64 bits, and writes the core's output into another buffer (`make new-foreign BUS=axis`).
 //
 // An operation ends with the core's tlast. Without tlast (LAST 0) it ends after as many output
 // beats as input beats. An operation with 0 bytes is refused. If the output is longer than the
@@ -11,7 +11,7 @@
 
 module axis_filter #(
     parameter WIDTH     = 8,   // data width of the core in both directions: 8, 16, 32, 64
-    parameter BYTE_BITS = 11,  // width of the number of bytes, 7..32
+    parameter BYTE_BITS = 11,  // width of a byte count, 7..32
     parameter ROOM      = 1024, // size of the target buffer in bytes, a multiple of 8
     parameter LAST      = 1    // 0: the output of the core has no tlast
 ) (
@@ -22,18 +22,19 @@ module axis_filter #(
     input  wire                 core_rst_i, // abandons the operation
     input  wire                 start_i,
     input  wire [31:0]          source_i,   // byte address, a multiple of 64
-    input  wire [BYTE_BITS-1:0] bytes_i,    // a multiple of WIDTH / 8, unless the core uses tkeep
+    input  wire [BYTE_BITS-1:0] bytes_i,    // number of bytes; a multiple of WIDTH / 8, unless the
+                                            // core uses tkeep
     input  wire [31:0]          target_i,
     output wire                 done_o,     // high for a clock
     output wire                 refused_o,  // with done
     output wire [BYTE_BITS-1:0] bytes_o,    // number of output bytes, valid since done_o
-    // to the core
+    // stream to the core
     output wire                 m_axis_tvalid_o,
     input  wire                 m_axis_tready_i,
     output wire [WIDTH-1:0]     m_axis_tdata_o,
     output wire [WIDTH/8-1:0]   m_axis_tkeep_o,
     output wire                 m_axis_tlast_o,
-    // from the core
+    // stream from the core
     input  wire                 s_axis_tvalid_i,
     output wire                 s_axis_tready_o,
     input  wire [WIDTH-1:0]     s_axis_tdata_i,
@@ -48,13 +49,14 @@ module axis_filter #(
     localparam WORD_BITS = BYTE_BITS - 2; // width of a word count
 
     reg         waiting; // transfers of an earlier, abandoned operation are still in progress
-    reg         writing; // the output goes to memory
-    // closing: the last word was taken, and the burst is being filled up; closed: waits until the
-    // burst is in memory
+    reg         writing; // the output is being written to memory
+    // closing: the last word was taken, and the rest of its burst is being filled; closed: the
+    // module waits until the burst is in memory
     reg         closing, closed;
     reg         empty, over; // refused
     reg  [BYTE_BITS-1:0] left; // bytes not yet sent to the core
-    reg  [BYTE_BITS-1:0] bytes; // number of bytes written; while waiting, the size of the operation
+    reg  [BYTE_BITS-1:0] bytes; // number of bytes written; while `waiting`, the size of the next
+                                // operation
     wire        read_idle, write_idle, write_ready, word_valid;
     wire [63:0] word;
     wire        go        = waiting && read_idle && write_idle && !core_rst_i;
@@ -65,7 +67,7 @@ module axis_filter #(
 
     // ---- splitting a word from memory into beats ----
     reg  [3:0]  beat;
-    wire [7:0]  rest    = word_keep >> KEEP * beat >> KEEP; // enabled bytes of the beats after this
+    wire [7:0]  rest    = word_keep >> KEEP * beat >> KEEP; // byte enables of the beats after this
                                                             // one
     wire        is_last = beat == LAST_BEAT || rest == 8'd0;
     wire        sent    = m_axis_tvalid_o && m_axis_tready_i;
@@ -91,7 +93,7 @@ module axis_filter #(
     wire        last = LAST != 0 ? s_axis_tlast_i : awaited <= STEP;
     assign s_axis_tready_o = !full || out_ready;
 
-    reg [3:0] out_bytes; // number of bytes up to the last one that is kept
+    reg [3:0] out_bytes; // number of bytes up to the last byte that is kept
     integer b;
     always @* begin
         out_bytes = 4'd0;
@@ -159,7 +161,8 @@ module axis_filter #(
     wire flush = closing || core_rst_i;
     npi_stream #(.WORD_BITS(WORD_BITS)) u_stream (
         `include "memory_connect.vh"
-        .clk_i(clk_i), .rst_i(rst_i), // not core_rst_i: requested words must still be taken
+        .clk_i(clk_i), .rst_i(rst_i), // not core_rst_i: words that were requested must still be
+                                      // taken
         .read_start_i(go), .read_base_i(source_i[31:6]),
         .read_words_i({1'b0, bytes[BYTE_BITS-1:3]} + {{(WORD_BITS-1){1'b0}}, |bytes[2:0]}),
         .read_stop_i(core_rst_i), .read_valid_o(word_valid), .read_data_o(word),
@@ -173,18 +176,18 @@ module axis_filter #(
     wire unused = &{1'b0, shifted, kept, source_i[5:0], target_i[5:0], 1'b0};
 
 `ifdef FORMAL
-    // Words are split into beats and beats are joined into words, each once and in order, and the
-    // rules of npi_stream are kept. npi_stream has a separate proof. It is cut out of this one,
-    // which assumes only what that proof shows.
+    // Proves that words are split into beats and beats are joined into words, each once and in
+    // order, and that the rules of npi_stream are kept. npi_stream has a separate proof. Here it is
+    // cut out, and only the properties of its proof are assumed.
     reg past = 1'b0;
     reg [3:0] f_sent;  // beats of the word that the core has taken
-    reg [3:0] f_size;  // beats that the bytes of the word need
+    reg [3:0] f_size;  // number of beats for the bytes of the word
     reg [3:0] f_count; // beats of the output that are not in memory yet
-    // Any beat of a word, with its bytes as they arrived.
+    // any lane of a word, with its bytes as they arrived
     (* anyconst *) reg [3:0] f_lane;
     reg [WIDTH-1:0] f_data;
     reg [KEEP-1:0]  f_keep;
-    // bytes of the operation; bytes that arrived, up to the number sent
+    // bytes of the operation; bytes that arrived so far, up to the number sent
     reg [BYTE_BITS-1:0] f_bytes = 0, f_came = 0;
     reg [WORD_BITS-1:0] f_left = 0;   // words that npi_stream still delivers
     reg [WORD_BITS-1:0] f_written = 0; // words passed to npi_stream in this operation
@@ -247,8 +250,9 @@ module axis_filter #(
         end
     end
     always @* if (past && !f_rst) begin
-        // Rules of npi_stream: a start only when idle, no word with a start or a flush. It writes
-        // every word that has room.
+        // Rules of npi_stream: the module starts it only when it is idle, and passes no word
+        // together with a start or a flush. npi_stream writes every word for which the buffer has
+        // room.
         assert (!go || (read_idle && write_idle && !write && !flush));
         assert (!flush || !write);
         assert ({2'd0, waiting} + {2'd0, writing} + {2'd0, closing} + {2'd0, closed} <= 3'd1);

@@ -3,8 +3,8 @@
 // mcb_backend: connects the command stream of the arbiter to a 64-bit user port of the Spartan-6
 // memory controller block, MCB (UG388).
 //
-// The read FIFO of the MCB holds 64 words and loses words that do not fit. A read therefore waits
-// until half of the FIFO, the longest burst, is not reserved for other reads.
+// The read FIFO of the MCB holds 64 words; the MCB loses words that do not fit. A read therefore
+// waits until half of the FIFO, which holds the longest burst, is not reserved for other reads.
 
 `default_nettype none
 
@@ -14,11 +14,11 @@ module mcb_backend #(
     input  wire        clk_i,
     input  wire        rst_i,
     `include "mcb_ports.vh"
-    // from the arbiter
+    // commands from the arbiter
     input  wire        cmd_valid_i,
     input  wire        cmd_read_i,
     input  wire [ADDR_WIDTH-1:0] cmd_addr_i,
-    input  wire [4:0]  cmd_last_i, // words - 1
+    input  wire [4:0]  cmd_last_i, // number of words minus 1
     output wire        cmd_ready_o,
     input  wire        wr_valid_i,
     input  wire [63:0] wr_data_i,
@@ -30,7 +30,7 @@ module mcb_backend #(
 );
     generate
         if (ADDR_WIDTH < 9 || ADDR_WIDTH > 30) begin : g_refused
-`ifdef VERILATOR // as in npi_arbiter
+`ifdef VERILATOR // Stops elaboration, as in npi_arbiter.
             $error("mcb_backend: ADDR_WIDTH is 9..30");
 `elsif YOSYS
             $error("mcb_backend: ADDR_WIDTH is 9..30");
@@ -56,8 +56,8 @@ module mcb_backend #(
     assign rd_data_o   = mcb_rd_data_i;
     assign mcb_rd_en_o = rd_valid_o && rd_ready_i;
 
-    // `free` is the number of words in the read FIFO that are not promised, 0..64. Subtracting n is
-    // adding ~(n - 1).
+    // `free` is the number of words in the read FIFO that are not promised to a read, 0..64.
+    // Subtracting n is adding ~(n - 1).
     reg  [6:0] free;
     wire       take = mcb_cmd_en_o && cmd_read_i;
     wire [7:0] next = {free, 1'b1} + {take ? {2'b11, ~cmd_last_i} : 7'd0, mcb_rd_en_o};
@@ -68,10 +68,10 @@ module mcb_backend #(
     wire unused = &{1'b0, next[0], 1'b0};
 
 `ifdef FORMAL
-    // The MCB never gets a command that it refuses, and no word is lost.
+    // Proves that the MCB never gets a command that it refuses, and that no word is lost.
     reg past = 1'b0;
     initial assume (rst_i);
-    reg [7:0] asked = 0; // words of reads requested and not yet taken
+    reg [7:0] asked = 0; // number of words requested by reads and not yet taken
     always @(posedge clk_i) begin
         past <= 1'b1;
         asked <= rst_i ? 8'd0
@@ -93,8 +93,8 @@ module mcb_backend #(
             if (mcb_cmd_en_o)
                 assert (mcb_cmd_instr_o == {2'b00, cmd_read_i} &&
                         mcb_cmd_bl_o == {1'b0, cmd_last_i});
-            // Writes never wait for room of reads; reads wait only while more than half is
-            // promised.
+            // Writes never wait for room of reads; reads wait only while more than half of the FIFO
+            // is promised.
             if (mcb_calib_done_i && !mcb_cmd_full_i && (!cmd_read_i || asked <= 8'd32))
                 assert (cmd_ready_o);
             cover (asked == 8'd64);

@@ -7,7 +7,7 @@
 
 module memory_mcb #(
     parameter             PORTS      = 2, // number of ports, 2..8
-    parameter [PORTS-1:0] URGENT     = 0, // this and the following: see npi_arbiter
+    parameter [PORTS-1:0] URGENT     = 0, // this parameter and the following ones: see npi_arbiter
     parameter [2:0]       URGENT_RUN = 3'd3,
     parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}},
     parameter             BLOCK_RAM  = 1,
@@ -21,7 +21,7 @@ module memory_mcb #(
 );
     wire        cmd_valid, cmd_read, cmd_ready, wr_valid, wr_ready, rd_valid, rd_ready;
     wire [ADDR_WIDTH-1:0] cmd_addr;
-    wire [4:0]  cmd_last; // words - 1
+    wire [4:0]  cmd_last; // number of words minus 1
     wire [63:0] wr_data, rd_data;
     wire [7:0]  wr_be;
 

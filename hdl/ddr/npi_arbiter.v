@@ -10,16 +10,19 @@
 
 module npi_arbiter #(
     parameter             PORTS      = 2, // number of ports, 2..8
-    parameter [PORTS-1:0] URGENT     = 0, // one bit per port: served before others (npi_select)
+    parameter [PORTS-1:0] URGENT     = 0, // one bit per port: the port is served before others
+                                          // (npi_select)
     parameter [2:0]       URGENT_RUN = 3'd3, // urgent grants in a row while others wait, 1..7
-    // One bit per port: the port has a read FIFO. A port without one must take each word at once;
-    // otherwise it holds up all ports.
+    // one bit per port: the port has a read FIFO. A port without a read FIFO must take each word at
+    // once; otherwise it holds up all ports.
     parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}},
     parameter             BLOCK_RAM  = 1,  // 1: FIFOs in block RAM; 0: in LUT RAM, which is one
                                            // clock faster
     parameter             ADDR_WIDTH = 27, // width of a byte address, 9..32 (27: 128 MiB)
-    parameter             FIFO_LOG2  = 5,  // FIFO depth: 32 words as specified; less in proofs
-    parameter             QUEUE_LOG2 = 4   // queue depth: 15 requests; less in proofs
+    parameter             FIFO_LOG2  = 5,  // FIFO depth, 2**n words: 32 as specified; less in
+                                           // proofs
+    parameter             QUEUE_LOG2 = 4   // queue depth, 2**n: 15 requests, because one place
+                                           // stays free; less in proofs
 ) (
     input  wire                clk_i,
     input  wire                rst_i,
@@ -28,7 +31,7 @@ module npi_arbiter #(
     output wire                cmd_valid_o,
     output wire                cmd_read_o,
     output wire [ADDR_WIDTH-1:0] cmd_addr_o,
-    output wire [4:0]          cmd_last_o, // words - 1
+    output wire [4:0]          cmd_last_o, // number of words minus 1
     input  wire                cmd_ready_i,
     output wire                wr_valid_o,
     output wire [63:0]         wr_data_o,
@@ -55,7 +58,7 @@ module npi_arbiter #(
 
     localparam PORT_BITS = PORTS > 4 ? 3 : PORTS > 2 ? 2 : 1;
 
-    // The bit of a request is still high in the cycle of its acknowledgement.
+    // The bit of a request is still high in the cycle of the request's acknowledgement.
     wire             full, granted;
     wire [PORTS-1:0] choice;
     npi_select #(.PORTS(PORTS), .URGENT(URGENT), .URGENT_RUN(URGENT_RUN)) u_select (
@@ -64,8 +67,8 @@ module npi_arbiter #(
         .ack_o(npi_addr_ack_o)
     );
 
-    // The chosen request is an OR over all ports, so that all ports have the same delay. For two
-    // ports one bit suffices. Without a grant the result is not used.
+    // The address and size of the chosen request are an OR over all ports, so that all ports have
+    // the same delay. For two ports one bit suffices. Without a grant the result is not used.
     wire [PORTS-1:0]    pick = PORTS == 2 ? {choice[PORTS-1:1], !choice[1]} : choice;
     reg [ADDR_WIDTH-1:0] addr;
     reg [2:0]           size;

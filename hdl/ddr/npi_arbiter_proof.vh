@@ -3,23 +3,25 @@
 // npi_arbiter_proof: proves npi_arbiter and its parts together; included at the end of npi_arbiter,
 // only for the prover (formal.npi_arbiter*).
 //
-// `me` is any port that keeps the rules of docs/memory.md; the other ports are free and must not
-// harm it. `mark` is any accepted request (every fourth, starting with any), `w_mark` any word that
-// `me` pushes, `r_mark` any word that it pops. The assertions on them therefore hold for all:
+// `me` is any port that keeps the rules of docs/memory.md; the other ports may do anything and must
+// not harm it. `mark` is any accepted request (every fourth, starting with any), `w_mark` any word
+// that `me` pushes, `r_mark` any word that `me` pops. The assertions on these marks therefore hold
+// for all requests and words:
 // - commands are the accepted requests, in order, each once, aligned; the command of a write
 //   follows all its words;
 // - words of a write leave the FIFO of their port in order, with the command's position in the
 //   stream to the back-end;
 // - words of a read reach the port that requested them, in order, each with its position in its
 //   transfer;
-// - no FIFO of `me` overflows or is read when empty; its flags are correct; a word is there when it
+// - no FIFO of `me` overflows or is read when empty; its flags are correct; a word is in the FIFO
+//   when it
 //   is needed;
-// - a request stays visible to npi_select until it is granted, so that the bound on waiting proven
-//   there holds.
+// - a request stays visible to npi_select until it is granted, so that the bound on waiting that is
+//   proven for npi_select holds.
 //
 // The second half relates the counts in the harness to the registers of the arbiter, so that a
-// fault is detected where it begins. With it all assertions together are inductive: runs of any
-// length are proven.
+// fault is detected where it begins. With these relations, all assertions together are inductive:
+// the proof covers runs of any length.
 
     // The state of the arbiter's parts, for two ports.
     localparam KIND = PORT_BITS + 4, ADDR_BITS = ADDR_WIDTH - 3, X = 2 * FIFO_LOG2;
@@ -29,7 +31,8 @@
     (* hierconn *) wire [(ADDR_BITS<<QUEUE_LOG2)-1:0] \u_queue.f_addrs ;
     (* hierconn *) wire [4*QUEUE_LOG2-1:0]          \u_queue.f_places ;
     (* hierconn *) wire [4:0]                       \u_queue.f_moved ;
-    (* hierconn *) wire [KIND:0]                    \u_queue.f_moving ; // something moves; its kind
+    // a request is moving words; its kind
+    (* hierconn *) wire [KIND:0]                    \u_queue.f_moving ;
     (* hierconn *) wire [(72<<FIFO_LOG2)-1:0]       \g_port[0].u_write.f_words ,
         \g_port[1].u_write.f_words ;
     (* hierconn *) wire [X-1:0]                     \g_port[0].u_write.f_indexes ,
@@ -61,14 +64,14 @@
     (* anyconst *) reg [PORT_BITS-1:0] me;
     (* anyconst *) reg [Q-1:0] mark;
     (* anyconst *) reg [W-1:0] w_mark, r_mark;
-    // `me` pops every word at once, and has any number outstanding
+    // `me` pops every word at once, and may have any number of words outstanding
     (* anyconst *) reg         eager;
     reg [PORTS-1:0] was_granted;
-    reg             asked = 1'b0; // `me` requests and has not been chosen
+    reg             asked = 1'b0; // `me` has a request that was not chosen yet
     initial assume (rst_i);
     always @* assume ({1'b0, me} < PORTS);
 
-    // ---- `me`'s pins and FIFOs; of data the first and the last bit of all
+    // ---- Pins and FIFOs of `me`; of the data, only the first and the last bit
     localparam DEPTH_INT = 1 << F;
     reg          req, ack, rnw, my_grant, push, pop, has_fifo, w_full, w_empty, r_empty, w_flush,
         r_flush, w_pop, r_push;
@@ -119,12 +122,13 @@
     wire [3:0]   out_word  = {wr_be_o[7], wr_data_o[63], wr_be_o[0], wr_data_o[0]};
 
     // ---- Counts, modulo 2**W
-    reg [W-1:0] w_pushed, w_claimed, w_moved; // words of `me`: in its FIFO; of accepted writes;
-                                              // gone
+    reg [W-1:0] w_pushed, w_claimed, w_moved; // words of `me`: pushed into its FIFO; claimed by
+                                              // accepted writes; moved to the back-end
     reg [W-1:0] r_claimed, r_pushed, r_popped;
-    reg [W-1:0] all_w, all_moved;             // words of accepted writes of all ports; gone
-    reg [W-1:0] all_r, all_asked, all_came;   // words of accepted reads; of issued commands;
-                                              // arrived
+    reg [W-1:0] all_w, all_moved;             // words of accepted writes of all ports; moved to the
+                                              // back-end
+    reg [W-1:0] all_r, all_asked, all_came;   // words of accepted reads; words of issued commands;
+                                              // words that have arrived
     reg [Q-1:0] accepted, issued;             // requests
     wire        moves  = wr_valid_o && wr_ready_i;
     wire        comes  = rd_valid_i && rd_ready_o;
@@ -135,7 +139,7 @@
     reg [PORT_BITS-1:0] g_from;
     reg                 g_read;
     reg [2:0]           g_size;
-    reg [ADDR_BITS-1:0] g_addr; // address of its first word
+    reg [ADDR_BITS-1:0] g_addr; // address of the first word of this request
     integer g;
     always @* begin
         {g_from, g_read, g_size} = 0;
@@ -162,7 +166,7 @@
     reg [ADDR_BITS-1:0] t_addr;
     reg [W-1:0]         t_stream, t_own;
     wire [W-1:0] t_words = words_of(t_size);
-    // index of the next word, if it belongs to the marked request
+    // index of the next word within the marked request, if it belongs to this request
     wire [W-1:0] t_index = (t_read ? all_came : all_moved) - t_stream;
     wire         t_next  = t_live && t_index < t_words;
     wire [W-1:0] t_own_index = t_own + t_index; // among `me`'s
@@ -178,7 +182,8 @@
     reg  [3:0] w_value;
     reg  [5:0] r_value;
     reg        r_have = 1'b0;
-    wire [W-1:0] w_level = w_pushed - w_moved, r_level = r_pushed - r_popped; // words in the FIFOs
+    // numbers of words in the FIFOs
+    wire [W-1:0] w_level = w_pushed - w_moved, r_level = r_pushed - r_popped;
     wire       w_have = w_mark - w_moved < w_level;
 
     always @(posedge clk_i) begin
@@ -239,9 +244,9 @@
     integer q;
     always @* begin
         for (q = 0; q < PORTS; q = q + 1)
-            // the FIFOs' depth; npi_queue is proven with all sizes
+            // no transfer is larger than the FIFOs of the proof; npi_queue is proven with all sizes
             assume (npi_size_i[4*q +: 3] <= F);
-        assume (!asked || req); // a request is held
+        assume (!asked || req); // a request is held until it is acknowledged
         assume (!push || !w_full);
         assume (!asks_write || w_pushed - w_claimed + {{(W - 1){1'b0}}, push} >= words);
         assume (!asks_read || !has_fifo || eager || r_claimed - r_popped + words <= DEPTH);
@@ -249,14 +254,15 @@
         assume (!eager || pop == !r_empty);
         assume (!w_flush || (!asks_write && w_claimed == w_moved));
         assume (!r_flush || (!asks_read && r_claimed == r_pushed));
-        assume (!rd_valid_i || all_asked != all_came); // the back-end delivers requested words only
+        assume (!rd_valid_i || all_asked != all_came); // the back-end delivers only requested words
     end
 
     // ---- Guarantees
     integer o;
     always @* if (!rst_i) begin
         assert (npi_addr_ack_o == was_granted);
-        assert (!asked || !ack); // so npi_select sees it continuously, and its bound holds
+        assert (!asked || !ack); // the request is not withdrawn, so npi_select sees it
+                                 // continuously, and its bound holds
         assert ((grant & ~npi_addr_req_i) == 0 && (grant & npi_addr_ack_o) == 0 &&
                 (grant & (grant - 1'b1)) == 0);
         assert (!cmd_valid_o || issued != accepted);
@@ -270,24 +276,25 @@
             if (t_mine && t_own_index == w_mark)
                 assert (w_have && out_word == w_value);
         end
-        for (o = 0; o < PORTS; o = o + 1) // all leaving bits
+        for (o = 0; o < PORTS; o = o + 1) // for each port: all bits that leave
             assert (!wr_pops[o] ||
                     {wr_be_o, wr_data_o} == {wr_bes[8*o +: 8], wr_datas[64*o +: 64]});
         assert (moves == |wr_pops && (!moves || all_moved != all_w));
         if (rd_valid_i && t_next && t_read) begin
             assert (rd_pushes == (comes ? t_one : 0));
-            if (t_mine && !has_fifo && !r_empty) // a port without a FIFO takes it in this clock
+            if (t_mine && !has_fifo && !r_empty) // a port without a FIFO takes the word in this
+                                                 // clock
                 assert (rd_ready_o == pop &&
                         pop_word == {t_index[1:0] | 4'd0, rd_data_i[63], rd_data_i[0]});
         end
         assert (comes == |rd_pushes);
         if (has_fifo && r_have && !r_empty && r_popped == r_mark)
             assert (pop_word == r_value);
-        // the flags and their meaning
+        // the flags match the levels
         assert (w_level <= DEPTH);
         assert (w_full == (w_level == DEPTH));
         assert (!w_pop || !w_empty);
-        assert (w_claimed - w_moved <= w_level); // requested words are present
+        assert (w_claimed - w_moved <= w_level); // the requested words are in the FIFO
         assert (BLOCK_RAM != 0 || w_empty == (w_level == 0));
         assert (w_empty || w_level != 0);
         if (has_fifo) begin
@@ -358,7 +365,7 @@
                  !move_kind[3] ? {{((1<<PORT_BITS)-1){1'b0}}, 1'b1} << move_kind[KIND-1:4] : 0));
         assert (accepted == head && issued == issue);
         assert (n_issue <= n_move && n_move <= n_head);
-        assert (!g_any || {1'b0, n_head} != SLOTS - 1); // the queue has room for it
+        assert (!g_any || {1'b0, n_head} != SLOTS - 1); // the queue has room for the request
         assert (moved == 0 || (move != head && !move_kind[3] && moved < words_of(move_kind[2:0])));
         assert (came == 0 || (back != issue && back_kind[3] && came < words_of(back_kind[2:0])));
         assert (all_moved == b_w[W*move +: W] + moved && w_moved == b_wo[W*move +: W] + moved_me);

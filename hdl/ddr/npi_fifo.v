@@ -12,10 +12,10 @@
 module npi_fifo #(
     parameter WIDTH = 72,
     parameter LOG2  = 5, // depth, 2**LOG2 words; LOG2 2..24
-    parameter BLOCK = 0  // 1: words in block RAM
+    parameter BLOCK = 0  // 1: words are in block RAM; 0: in LUT RAM
 ) (
     input  wire             clk_i,
-    input  wire             rst_i, // also empties the FIFO
+    input  wire             rst_i, // reset, which also empties the FIFO
     input  wire             push_i,
     input  wire [WIDTH-1:0] data_i,
     input  wire             pop_i,
@@ -29,9 +29,9 @@ module npi_fifo #(
     reg  [LOG2-1:0] write_place, read_place;
     wire [LOG2-1:0] write_next = after(write_place);
 
-    // full_o is a register, because paths of the requesters begin here.
-    wire nearly; // room for one, of any count but the full one
-    wire moves;  // the word at read_place need not wait
+    // full_o is a register, because paths of the requesters begin at it.
+    wire nearly; // room for exactly one word; also high for a full FIFO
+    wire moves;  // the word at read_place can move to data_o
     reg  full;
     assign full_o = full;
 
@@ -85,7 +85,7 @@ module npi_fifo #(
     endgenerate
 
 `ifdef FORMAL
-    // Words leave in order and unchanged; the flags match the count.
+    // Proves that words leave in order and unchanged, and that the flags match the count.
     parameter PROOF = 0; // 1 for the proof of the FIFO itself: errors of its user are excluded by
                          // assumptions
 
@@ -118,7 +118,7 @@ module npi_fifo #(
                 end
         end else begin : g_proof
             initial assume (rst_i);
-            // Any word leaves unchanged, in its position.
+            // A word chosen by the prover leaves unchanged, in its position.
             (* anyconst *) reg [LOG2-1:0] place;
             reg [WIDTH-1:0] value;
             reg inside = 1'b0;
@@ -139,7 +139,7 @@ module npi_fifo #(
                     if (BLOCK == 0)
                         assert (empty_o == (count == 0));
                     else if ($past(count) != 0 && !$past(pop_i) && !$past(rst_i))
-                        assert (!empty_o); // a clock later, not more
+                        assert (!empty_o); // the word appears one clock later, not more
                     if (BLOCK != 0 && empty_o)
                         assert (count <= 1);
                     assert (inside == ({1'b0, from_read} < count));

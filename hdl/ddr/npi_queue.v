@@ -8,8 +8,8 @@
 //   move   write that sends words to the back-end now (reads are skipped)
 //   issue  request that sends its command now, after all words of a write
 //   back   read that receives words now (writes are skipped)
-// In one cycle a request is accepted, a write word moves, a command is issued and a read word
-// arrives. Commands are issued in the order of acceptance.
+// In the same cycle, a request can be accepted, a write word can move, a command can be issued and
+// a read word can arrive. Commands are issued in the order of acceptance.
 
 `default_nettype none
 `include "shift_order.vh"
@@ -17,7 +17,7 @@
 module npi_queue #(
     parameter PORT_BITS = 1,  // width of a port number
     parameter ADDR_BITS = 24, // width of the address of a 64-bit word
-    parameter LOG2      = 4   // places, 2**LOG2; LOG2 2..5
+    parameter LOG2      = 4   // number of places, 2**LOG2; LOG2 2..5
 ) (
     input  wire                 clk_i,
     input  wire                 rst_i,
@@ -25,7 +25,7 @@ module npi_queue #(
     input  wire                 push_i,
     input  wire [PORT_BITS-1:0] push_port_i,
     input  wire                 push_read_i,
-    input  wire [2:0]           push_size_i, // 2**size words, 0..5
+    input  wire [2:0]           push_size_i, // size of the transfer: 2**size words, 0..5
     input  wire [ADDR_BITS-1:0] push_addr_i,
     output wire                 full_o,
     // words of writes
@@ -36,20 +36,20 @@ module npi_queue #(
     output wire                 cmd_valid_o,
     output wire                 cmd_read_o,
     output wire [ADDR_BITS-1:0] cmd_addr_o,
-    output wire [4:0]           cmd_last_o,   // words - 1
+    output wire [4:0]           cmd_last_o,   // number of words minus 1
     input  wire                 cmd_ready_i,
     // words of reads
-    output wire                 back_valid_o, // the next word is for this port
+    output wire                 back_valid_o, // the next word from the back-end is for this port
     output wire [PORT_BITS-1:0] back_port_o,
-    output wire [4:0]           back_index_o, // its position in its transfer
+    output wire [4:0]           back_index_o, // position of the word in its transfer
     input  wire                 back_done_i   // the word arrives in this cycle
 );
     localparam KIND = PORT_BITS + 4;
 
     reg [ADDR_BITS-1:0] addrs [0:(1<<LOG2)-1];
-    reg [KIND-1:0] kinds [0:(1<<LOG2)-1]; // port, read, size
-    // The initial value prevents Yosys from merging the RAM's address registers into it and keeping
-    // them twice.
+    reg [KIND-1:0] kinds [0:(1<<LOG2)-1]; // kind of a request: port, read, size
+    // The initial value prevents Yosys from using these registers as the RAM's address registers
+    // and keeping two copies of them.
     reg [LOG2-1:0] head = 0, move = 0, issue = 0, back = 0;
     reg [4:0]      move_index, back_index;
 
@@ -57,13 +57,13 @@ module npi_queue #(
     `SHIFT_ORDER(moved_after, 5)
     `SHIFT_NUMBERS(moved_of, moved_number, moved_after, 5)
 
-    // words - 1 of a size; 6 and 7 count as 5
+    // Returns the number of words minus 1 for a size; 6 and 7 count as 5.
     function [4:0] last_of;
         input [2:0] size;
         last_of = {size[2] && |size[1:0], size[2], size[2] || &size[1:0], size[2] || size[1],
                    |size};
     endfunction
-    // The same function for the size at `move`.
+    // Returns the same for the size of the request at `move`.
     function [4:0] move_last_of;
         input [2:0] size;
         case (size)
@@ -76,7 +76,8 @@ module npi_queue #(
         endcase
     endfunction
 
-    // Full means that all places but one are in use; a register, because requests wait for it.
+    // The queue is full if all places but one are in use. This is a register, because requests wait
+    // for it.
     wire [LOG2-1:0] head_next = after(head);
     wire            nearly    = after(head_next) == back;
     reg             full;
@@ -174,15 +175,16 @@ module npi_queue #(
     reg past = 1'b0;
     initial assume (rst_i);
 
-    // A request in any position of the ring leaves unchanged, once, in its turn.
+    // A request in any position of the ring leaves unchanged, once, and in its turn.
     (* anyconst *) reg [LOG2-1:0] place;
     reg [ADDR_BITS-1:0] addr;
     reg [KIND-1:0] kind;
     reg            inside = 1'b0, issued = 1'b0;
-    reg [5:0]      moved = 0, came = 0; // words of the request
+    reg [5:0]      moved = 0, came = 0; // words of the request that have moved, and that have
+                                        // arrived
     wire           is_read   = kind[3];
     wire [5:0]     all_words = {1'b0, last_of(kind[2:0])} + 6'd1;
-    // distances from `back`, the oldest
+    // distances of the pointers from `back`, the oldest
     wire [LOG2-1:0] f_head, f_move, f_issue, f_back;
     assign {f_head, f_move, f_issue, f_back} = f_places;
     wire [LOG2-1:0] n_head = f_head - f_back, n_move = f_move - f_back, n_issue = f_issue - f_back,
@@ -212,7 +214,7 @@ module npi_queue #(
         if (rst_i)
             inside <= 1'b0;
         if (past && !rst_i) begin
-            // The four places keep their order.
+            // The four pointers keep their order.
             assert (n_issue <= n_move);
             assert (n_move <= n_head);
             assert (inside == (n_place < n_head));
@@ -264,7 +266,7 @@ module npi_queue #(
             cover (full_o);
             cover (inside && issued && is_read && came == 6'd4);
             cover (cmd_valid_o && !cmd_read_o && cmd_last_o == 5'd3);
-            // all four in one cycle, as far as three positions allow
+            // reaches all four actions in one cycle, as far as three positions allow
             cover (move_done_i && cmd_valid_o && cmd_ready_i && back_done_i);
             cover (push_i && move_done_i && back_done_i);
         end

@@ -22,15 +22,15 @@ module npi_select #(
     input  wire             rst_i,
     input  wire [PORTS-1:0] req_i,    // requests, held until the cycle of ack_o
     input  wire             enable_i, // a grant can be given in this cycle
-    output wire [PORTS-1:0] choice_o, // port served with any_o: one-hot, or 0
+    output wire [PORTS-1:0] choice_o, // port that is served while any_o is high: one-hot, or 0
     output wire             any_o,    // a grant is given
     output reg  [PORTS-1:0] ack_o     // grant of the previous cycle
 );
     // Round-robin mask: the ports after the last one served in their class.
     reg [PORTS-1:0] later;
     reg [2:0]       run;
-    // ack_o has a high fan-out and paths from many ports are long: they begin at a copy of it. The
-    // copy has no reset; otherwise synthesis would merge the two.
+    // ack_o has a high fan-out, and paths from many ports are long; these paths begin at a copy of
+    // ack_o. The copy has no reset; otherwise synthesis would merge the two.
     reg [PORTS-1:0] copy;
     wire [PORTS-1:0] served = PORTS > 2 ? copy : ack_o;
 
@@ -39,13 +39,13 @@ module npi_select #(
     wire [PORTS-1:0] normal  = asking & ~URGENT;
     wire             overdue = run == URGENT_RUN;
     wire [PORTS-1:0] members = |urgent && !(overdue && |normal) ? URGENT : ~URGENT;
-    // The port served last is not in `later`, so req_i can replace `asking` here, which saves one
-    // input per port.
+    // The port served last is not in `later`. Therefore req_i can replace `asking` here, which
+    // saves one input per port.
     wire [PORTS-1:0] first   = req_i & later & members;
     wire [PORTS-1:0] turn    = asking & members;
 
-    // The lowest bit of each, and the ports above the chosen one. Written without a carry chain,
-    // because there are few ports.
+    // The lowest bit of `first` and of `turn`, and the ports above the chosen one. Written without
+    // a carry chain, because there are few ports.
     reg [PORTS-1:0] first_low, turn_low, above;
     integer i;
     always @* begin
@@ -83,12 +83,12 @@ module npi_select #(
     end
 
 `ifdef FORMAL
-    // At most one grant per clock, only to a requester, within a bounded time.
+    // Proves that there is at most one grant per clock, only to a requester, within a bounded time.
     wire [PORTS-1:0] f_later = later, f_served = served; // for npi_arbiter_proof
     reg past = 1'b0;
     initial assume (rst_i);
 
-    (* anyconst *) reg [PORTS-1:0] me; // any one port, one-hot
+    (* anyconst *) reg [PORTS-1:0] me; // any port, one-hot; chosen by the prover
     localparam [5:0] N = PORTS;
     reg  [5:0] waited = 0;             // grants to other ports since the request began to wait
     reg  [5:0] urgents, bound;
@@ -119,7 +119,7 @@ module npi_select #(
         if (past && !rst_i) begin
             assert ((grant & (grant - 1'b1)) == 0);   // at most one grant
             assert ((grant & ~asking) == 0);          // grants only to requesters
-            assert (|grant == (enable_i && |asking)); // no cycle is lost
+            assert (|grant == (enable_i && |asking)); // no cycle is lost while a port asks
             assert (!any_o || grant == choice_o);
             assert (any_o == |grant);
             assert ((later & served) == 0 && (ack_o & ~served) == 0);

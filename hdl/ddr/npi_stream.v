@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_stream: turns a memory port (docs/memory.md) into two streams of 64-bit words. One reads a
-// buffer in order and one writes a buffer in order, in bursts of 64 bytes. It reads ahead up to the
-// depth of the port's FIFO.
+// npi_stream: turns a memory port (docs/memory.md) into two streams of 64-bit words. One stream
+// reads a buffer in order, and the other one writes a buffer in order, in bursts of 64 bytes. The
+// module reads ahead up to the depth of the port's FIFO.
 //
-// read_start_i, while read_idle_o is high, starts reading a buffer; its words are delivered by
-// valid/take. Words of a burst beyond read_words_i, and all words after read_stop_i, are discarded.
-// write_start_i, while write_idle_o is high, starts writing a buffer; words are accepted by
-// valid/ready. write_flush_i, high for one clock without valid, completes the current burst with
-// words with byte enables 0. write_idle_o is high when all accepted words are acknowledged, so
-// that every later request of any port sees them.
+// read_start_i, while read_idle_o is high, starts reading a buffer; valid/take delivers its words.
+// Words of a burst beyond read_words_i, and all words after read_stop_i, are discarded.
+// write_start_i, while write_idle_o is high, starts writing a buffer; valid/ready accepts its
+// words. write_flush_i, high for one clock without valid, completes the current burst with words
+// whose byte enables are 0. write_idle_o is high when all accepted words are acknowledged, so that
+// every later request of any port sees them.
 
 `default_nettype none
 
 module npi_stream #(
     parameter ADDR_BITS = 32, // width of a byte address, 7..32
-    parameter WORD_BITS = 24  // width of the number of words to read, 4..32
+    parameter WORD_BITS = 24  // width of the word count of a read, 4..32
 ) (
     `include "memory_ports.vh"
     input  wire                 clk_i,
@@ -100,8 +100,8 @@ module npi_stream #(
             request_read <= 1'b0;
         end
 
-        // The idle signals are registers, so one clock late, because the start of a core depends on
-        // them.
+        // The idle signals are registers, and therefore one clock late, because the start of a core
+        // depends on them.
         read_idle_o  <= to_give == {WORD_BITS{1'b0}} && outstanding == 6'd0 &&
             !(request && request_read) && !read_start_i;
         write_idle_o <= filled == 3'd0 && bursts == 3'd0 && !push;
@@ -139,7 +139,7 @@ module npi_stream #(
 
         if (rst_i) begin
             request     <= 1'b0;
-            request_read <= 1'b1; // same as while idle, also before npi_init_done_i
+            request_read <= 1'b1; // the same value as while idle, also before npi_init_done_i
             to_ask      <= {WORD_BITS{1'b0}};
             to_give     <= {WORD_BITS{1'b0}};
             outstanding <= 6'd0;
@@ -152,8 +152,8 @@ module npi_stream #(
     end
 
 `ifdef FORMAL
-    // Requests follow the rules of docs/memory.md; the core receives exactly its words.
-    // The port has two FIFOs of 32 words and a controller that acknowledges at any time.
+    // Proves that requests follow the rules of docs/memory.md, and that the core receives exactly
+    // its words. The port has two FIFOs of 32 words and a controller that acknowledges at any time.
     reg       past = 1'b0;
     reg [5:0] f_pushed;         // words in the write FIFO
     reg [5:0] promised;         // words of acknowledged reads, not popped yet
@@ -162,8 +162,9 @@ module npi_stream #(
     (* anyseq *) wire may_move, may_come;
     wire      moved = may_move && f_owed != 7'd0;
     wire      came  = may_come && there != promised;
-    // The core takes words only when offered, starts only when idle, and flushes without a word.
-    reg [WORD_BITS-1:0] f_left; // words that it may still take
+    // The core takes words only when they are offered, starts only when the stream is idle, and
+    // flushes without a word.
+    reg [WORD_BITS-1:0] f_left; // number of words that the core may still take
     reg [2:0] f_begun;          // words sent since the burst began
     reg [ADDR_BITS-1:6] f_read, f_write; // addresses of the next bursts, after a start
     reg       f_reads, f_writes;
@@ -175,7 +176,7 @@ module npi_stream #(
         assume (npi_wr_almost_full_i == (f_pushed == 6'd32));
         assume (npi_init_done_i || !f_ready);
     end
-    always @* if (!rst_i) begin // idle_proof proves these for streams of cores
+    always @* if (!rst_i) begin // idle_proof proves these for the streams of cores.
         core_takes:   assume (!read_take_i || read_valid_o);
         core_reads:   assume (!read_start_i || (read_idle_o && !read_stop_i));
         core_writes:  assume (!write_start_i || (write_idle_o && !write_valid_i && !write_flush_i));
@@ -210,7 +211,7 @@ module npi_stream #(
         end
     end
     always @* if (!rst_i && past) begin
-        // By the rules of docs/memory.md no FIFO overflows or is popped when empty, and the words
+        // By the rules of docs/memory.md, no FIFO overflows or is popped when empty, and the words
         // of a write precede its request.
         assert (!npi_wr_push_o || f_pushed != 6'd32);
         assert (!npi_rd_pop_o || there != 6'd0);
@@ -234,7 +235,7 @@ module npi_stream #(
         assert (!padding || filled != 3'd0);
         assert (!npi_addr_req_o || npi_rnw_o || bursts != 3'd0);
         assert (request_read || f_ready);
-        // Bursts follow each other from the base.
+        // Bursts follow each other from the base address of the buffer.
         assert (!f_reads || read_addr == f_read);
         assert (!f_writes || write_addr == f_write);
         // A padding word writes nothing.

@@ -22,7 +22,7 @@
 
 namespace {
 
-// A controller with `count` ports; bits: ADDR_WIDTH.
+// A controller with `count` ports; `bits` is ADDR_WIDTH.
 template <class Module, unsigned count, unsigned bits = 27> struct Kind {
     static constexpr unsigned ports = count, width = bits;
     using Bench = MemoryBench<Module, count>;
@@ -43,7 +43,7 @@ protected:
         for (unsigned p = 0; p < ports; ++p)
             memory_.requesters.traffic(p) = traffic;
     }
-    // Runs, and names the seed of a failure.
+    // Runs the traffic, and adds the seed to the message of a failure.
     void run(uint64_t cycles) {
         ASSERT_NO_THROW(memory_.run(cycles); memory_.drain()) << "SEED=" << seed_;
         for (unsigned p = 0; p < ports; ++p)

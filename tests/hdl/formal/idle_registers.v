@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A flip-flop that must keep its value when the gate of its clock closes: techmap for idle_proof.
-// In rest_proof it must also have kept its value in the previous clock (REST), or its clock is
+// In rest_proof, it must also have kept its value in the previous clock (REST), or its clock is
 // stopped (HELD).
 module \$dff (input CLK, input [WIDTH-1:0] D, output [WIDTH-1:0] Q);
     parameter WIDTH = 1;

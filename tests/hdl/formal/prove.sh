@@ -1,24 +1,29 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # prove: module depth source-folder work-folder [yosys commands for parameters]
-# It is shell because it only calls Yosys, abc and CaDiCaL, each with a limit of processor time.
+# It is a shell script because it only calls Yosys, abc and CaDiCaL, each with a limit of processor
+# time.
 #
-# 1. induction: no assertion ever fails: by k-induction (MiniSat) if the assertions are inductive;
-# otherwise property-directed reachability finds the inductive invariant and has it checked (z3's
-# k-induction did not end on 64-bit data);
-# 2. bounded: if that does not prove it, the shortest counterexample of `depth` clocks (BMC);
+# 1. induction: no assertion ever fails. If the assertions are inductive, k-induction (MiniSat)
+#    shows this; otherwise property-directed reachability finds and checks the inductive invariant
+#    (z3's k-induction did not end on 64-bit data);
+# 2. bounded: if step 1 does not prove it, the shortest counterexample of `depth` clocks (BMC);
 # 3. cover: every cover statement is reached within 4 * `depth` clocks.
-# PROVE_PDR: switches of pdr, if others are faster. PROVE_STEP=k: the assertions are inductive over
-# k clocks, but are too many for MiniSat: CaDiCaL does the step.
-# PROVE_BOUNDED=1: bounded only.
+#
+# PROVE_PDR: switches of pdr, if others are faster.
+# PROVE_STEP=k: the assertions are inductive over k clocks, but are too many for MiniSat: CaDiCaL
+#   does the induction step.
+# PROVE_BOUNDED=1: the proof is only bounded.
 # PROVE_READ: more words of read_verilog: defines, files.
 # PROVE_CORE: the name of a core and its files: the core in idle_proof.
 # PROVE_SCRIPT: Yosys script that changes the flattened design; it may use idle_registers.v.
-# PROVE_MUTANT: Yosys commands before flattening (tools/icesoc/mutants/drawn.py); no trace then.
+# PROVE_MUTANT: Yosys commands to run before flattening (tools/icesoc/mutants/drawn.py); there is no
+#   trace then.
+#
 # Leaves in <work> the parts of Yosys' script: state.ys, from modules to flip-flops, and gates.ys,
-# from flip-flops to AIGER's gates.
-# A failed assertion leaves <work>/trace.vcd. The module may instantiate modules of its folder, of
-# bus/, hdl/system/ and hdl/cdc/; for a proof in testbench/sim/, hdl/ddr/ replaces its folder.
+# from flip-flops to AIGER's gates. A failed assertion leaves <work>/trace.vcd. The module may
+# instantiate modules of its folder, of bus/, hdl/system/ and hdl/cdc/; for a proof in
+# testbench/sim/, the modules of hdl/ddr/ replace those of its folder.
 set -eu
 here=$(dirname "$(readlink -f "$0")")
 module=$1 depth=$2 source=$3 work=$4 parameters=${5:-}
@@ -124,7 +129,7 @@ failed() {
     echo "$module: $2" >&2
     exit 1
 }
-replay() { # replay: lets smtbmc replay abc's counterexample, which gives names and a waveform
+replay() { # replay: smtbmc replays abc's counterexample, which gives names and a waveform
     awk -v n="$(head -1 assert.aig | cut -d' ' -f3)" 'NR == 1 { print "1" }
         { print NR == 1 ? $0 : substr($0, 1, n) }' assert.aiw >replay.aiw 2>/dev/null || true
     timeout 100 yosys-smtbmc -s z3 --unroll --noprogress --aig assert.map:replay.aiw \
@@ -140,8 +145,9 @@ abc() { limited yosys-abc -c "$1" >"$2" 2>&1 || true; }
 step() {
     abc "read_aiger assert.aig; fold; strash; orpos; frames -F $(($1 + 1)); comb;
         write_blif frames.blif" step.log
-    # The first outputs of the model show whether an assertion fails in each clock. They become a
-    # single output: only in the last clock did an assertion fail.
+    # The first outputs of the model show whether an assertion fails in each clock. They are joined
+    # into a single output, which is 1 if an assertion failed in the last clock, and in no earlier
+    # one.
     awk -v bads=$(($1 + 1)) '
         /\\$/ { # a line that continues on the next line
             sub(/\\$/, "")
@@ -206,7 +212,7 @@ else
         }
     fi
     if [ -z "$carried" ]; then
-        bounded "$depth" 5 # a failure found within seconds here may take pdr minutes
+        bounded "$depth" 5 # if there is a failure, this finds it in seconds; pdr may take minutes
         # sat: scorr alone may find the output constant; newer versions of abc then have nothing to
         # prove
         abc "read_aiger assert.aig; fold; strash; scorr -F 2; pdr ${PROVE_PDR:-};

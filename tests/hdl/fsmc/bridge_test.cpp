@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// bridge_test: the FSMC bridge between the STM32's FSMC, a bus slave and a memory that stall, fail
-// and hang.
+// bridge_test: tests the FSMC bridge between the STM32's FSMC, a bus slave and a memory; slave and
+// memory stall, fail and hang.
 
 #include "VFsmcBridge.h"
 #include "traffic.h"
@@ -51,9 +51,9 @@ TEST_F(Bridge, ADoorbellMakesWritesVisibleAndReadsFresh) {
     EXPECT_EQ(fsmc_.read16(ddr + 0x100), 0xBE11);
 }
 
-// The read begins one HCLK after NWE's edge, sooner than the driver's BUSTURN allows. Where the
-// write's synchroniser is late and the read's is not (cdc.test_fsmc_pins), it still sees the
-// written value.
+// The read begins one HCLK after NWE's edge, sooner than the driver's BUSTURN allows. If the
+// write's synchroniser is late and the read's is not (cdc.test_fsmc_pins), the read still returns
+// the written value.
 TEST_F(Bridge, ARegisterReadRightBehindAWriteComesAfterIt) {
     Random random(testSeed());
     FSMC_setHclk(120000000);
@@ -71,7 +71,7 @@ TEST_F(Bridge, ARegisterReadRightBehindAWriteComesAfterIt) {
         fsmc_.idle(random.below(8));
         fsmc_.write32(at(word), value);
         EXPECT_EQ(fsmc_.read32(at(word)), value) << "SEED=" << testSeed() << " access " << i;
-        FSMC_streamWrite(place, &last, 1); // its end reads a register
+        FSMC_streamWrite(place, &last, 1); // FSMC_streamWrite reads a register at its end
         EXPECT_EQ(written(), last) << "SEED=" << testSeed() << " stream " << i;
     }
     EXPECT_EQ(b_.errors, 0u);
@@ -103,21 +103,22 @@ TEST_F(Bridge, AHungSlaveEndsInAnErrorAndTheBridgeGoesOn) {
     EXPECT_EQ(b_.errors, 1u);
 }
 
-// NWAIT off in NE2, against the rules: a write during a slow slave's earlier access is lost, and
-// reported.
+// NWAIT of NE2 is off, against the rules: a write during an earlier access to a slow slave is lost,
+// and reported.
 TEST_F(Bridge, ARegisterWrittenTooEarlyIsLostAndReported) {
     const uint32_t bcr2 = fsmc::registersAt + 8, bcr = fsmc_.read32(bcr2);
     b_.slave.words[41] = 0x99998888;
     for (bool behindWrite : {true, false}) {
         unsigned errors = b_.errors;
-        b_.slave.hung = true; // for less than the time-out
+        b_.slave.hung = true; // the slave hangs for less than the time-out
         fsmc_.write32(bcr2, bcr & ~fsmc::bcrAsyncWait);
-        // The current word would get the later data as its high half: here they are equal.
+        // The word in progress would get the later data as its high half; here both halves are
+        // equal.
         if (behindWrite)
             fsmc_.write32(at(40), 0x5A5A1234);
         else
             fsmc_.read16(at(40));
-        fsmc_.idle(30); // the slave has it
+        fsmc_.idle(30); // the slave has received the word
         EXPECT_EQ(b_.errors, errors);
         fsmc_.write16(at(41), 0x5A5A);
         fsmc_.idle(30);
@@ -144,8 +145,8 @@ TEST_F(Bridge, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
     EXPECT_EQ(fsmc_.read16(ddr + 0x80), 0);
 }
 
-// Writes that find no room are released like reads, with an error each; after the last entry they
-// are lost.
+// Writes that find no room are released like reads, with an error for each; after the last entry
+// they are lost.
 TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     b_.keepEvents();
     const uint32_t& event = b_.slave.words[b_.slave.clearWord];
@@ -153,7 +154,7 @@ TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     b_.memory.hold(true);
     unsigned done = 0;
     for (; b_.errors == 0 && done < 32; ++done)
-        fsmc_.write16(ddr + 8 * done, value(done)); // one address each
+        fsmc_.write16(ddr + 8 * done, value(done)); // one address for each write
     const unsigned before = done - 1;
     EXPECT_EQ(before, 14u) << "of 16 places two are kept";
     EXPECT_EQ(b_.errorAddr, 0x3FFu);
@@ -162,7 +163,7 @@ TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     for (; done < before + 4; ++done)
         fsmc_.write16(ddr + 8 * done, value(done));
     EXPECT_EQ(b_.errors, 4u);
-    fsmc_.idle(8); // the last one has been noted
+    fsmc_.idle(8); // the last error has been counted
     b_.memory.hold(false);
     for (unsigned i = 0; i < done; ++i)
         EXPECT_EQ(fsmc_.read16(ddr + 8 * i), i < before + 2 ? value(i) : 0) << "write " << i;
@@ -217,7 +218,8 @@ TEST_F(Bridge, AnAccessThatIsGivenUpLeavesNothingHalfDone) {
     EXPECT_EQ(b_.errors, 0u);
 }
 
-// The fastest timing, without NWAIT: correct if the memory keeps up, and detected if it does not.
+// The fastest timing, without NWAIT: the data is correct if the memory keeps up; otherwise the
+// bridge reports the loss.
 TEST_F(Bridge, StreamsAreRightHoweverSlowTheMemoryIs) {
     Random random(testSeed());
     FSMC_setHclk(120000000);
@@ -241,8 +243,8 @@ TEST_F(Bridge, StreamsAreRightHoweverSlowTheMemoryIs) {
     EXPECT_GT(repeated, 0u) << "a slow one does not, and that was seen";
 }
 
-// The edges of NWE are 33.3 ns apart at 120 MHz; other ratios place them at every phase of the
-// clock.
+// The edges of NWE are 33.3 ns apart at 120 MHz. Other ratios of the clocks place the edges at
+// every phase of the clock.
 TEST(BridgeRatios, WritesOfAStreamAreTakenAtEveryPhase) {
     Random random(testSeed());
     for (auto [hclk, clk] :

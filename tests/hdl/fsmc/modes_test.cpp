@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// modes_test: the bridge in each asynchronous mode of the FSMC, at several ratios of the two
+// modes_test: tests the bridge in each asynchronous mode of the FSMC, at several ratios of the two
 // clocks.
 
 #include "VFsmcBridge.h"
@@ -18,8 +18,8 @@ struct Mode {
     const char* name;
     FSMC_Bank bank;
 };
-// mode, of writes, PSRAM, muxed, wait, wait high, BUSTURN, {ADDSET, ADDHLD, DATAST} of reads,
-// writes
+// mode, mode of writes, PSRAM, muxed, wait, wait high, BUSTURN, {ADDSET, ADDHLD, DATAST} of reads,
+// of writes
 const Mode plainModes[] = {
     {"1", {FSMC_MODE_1, {}, 0, 0, 1, 0, 1, {2, 1, 4}, {}}},
     {"1 slow", {FSMC_MODE_1, {}, 0, 0, 1, 0, 15, {15, 1, 20}, {}}},
@@ -91,17 +91,17 @@ TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
     EXPECT_EQ(hclksOfAWord(4, false), hclksOfAWord(1, false));
 }
 
-// A doorbell right after a read drops data that is read ahead, on its way or even requested in that
-// clock, since it is old. At 168 MHz the pins are fast enough to have the doorbell's address
-// already (here the address of the block in its window) while the memory's side still sees the
-// read.
+// A doorbell right after a read drops data that is read ahead. The data may be in a buffer, on its
+// way, or even requested in that clock; all of it is old. At 168 MHz the pins are fast enough to
+// have the doorbell's address already (here it equals the address of the block in its window) while
+// the memory's side still sees the read.
 TEST(Modes, WhatADoorbellDropsOnItsWayIsNotTakenForFresh) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0.1, 168, 100);
     ASSERT_EQ(b.init(plainModes[0].bank), FSMC_OK);
     Random random(testSeed());
     for (int i = 0; i < 1000 && !HasFailure(); ++i) {
-        // Two misses fetch a block; when it is complete the next one is requested, near the end of
-        // the second read. With a slow memory, it arrives until after the doorbell.
+        // Two misses fetch a block. When it is complete, the next block is requested, near the end
+        // of the second read. With a slow memory, this block is still arriving at the doorbell.
         const bool slow = random.chance(0.5);
         b.memory.setStall(slow ? 0.7 : 0.1);
         const uint32_t block = 64 * random.below(60), next = block + 64;

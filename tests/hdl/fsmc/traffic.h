@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// traffic: random accesses through the bridge, against references.
+// traffic: makes random accesses through the bridge, and compares them with references.
 
 #pragma once
 
@@ -26,12 +26,14 @@ struct Written {
     }
 };
 
-// Accesses of all widths to both windows and to another chip's: to memory in runs with jumps
-// between them; to registers also without a pause, so that each write waits for the previous one.
+// Makes accesses of all widths to both windows and to another chip. Accesses to memory are runs
+// with jumps between them. Accesses to registers also follow one another without a pause, so that
+// each write waits for the previous one.
 template <class Bridge>
 void traffic(BridgeBench<Bridge>& b, uint64_t seed, int accesses, uint32_t page = 0) {
     FsmcMaster& m = b.master;
-    for (uint32_t reg : {0xA0000000u, 0xA0000004u, 0xA0000104u}) // NE3, another chip, as NE1
+    for (uint32_t reg : {0xA0000000u, 0xA0000004u, 0xA0000104u}) // NE3, another chip, with the
+                                                                 // timing of NE1
         m.write32(reg + 0x10, m.read32(reg));
     Random random(seed);
     Written memory;
@@ -81,7 +83,7 @@ void traffic(BridgeBench<Bridge>& b, uint64_t seed, int accesses, uint32_t page 
         if (random.chance(0.1))
             m.idle(random.below(20));
     }
-    m.read32(control); // after which all writes have reached the memory
+    m.read32(control); // after this read, all writes have reached the memory
     EXPECT_EQ(b.errors, 0u);
     for (auto [at, v] : memory.bytes)
         EXPECT_EQ(b.memory.byte(page | at), v) << std::hex << at;

@@ -4,10 +4,11 @@
 
 Usage: crossings.py TOP CLOCK SOURCE GENERATED WORK PARAMETERS [SYNCHRONOUS-INPUT...]
 
-Yosys flattens TOP but for the modules of hdl/cdc, with its commands PARAMETERS before. A register
+Yosys runs the commands PARAMETERS, then flattens TOP except for the modules of hdl/cdc. A register
 of CLOCK may see registers of CLOCK, the inputs named and outputs of hdl/cdc for that clock. A
-register clocked by a pin may see pins (they come with it) and its own kind. Asynchronous resets
-are not data. Exit status 1: a crossing bypasses hdl/cdc; each is listed.
+register clocked by a pin may see pins, which change together with this pin, and registers that are
+clocked by a pin. Asynchronous resets are not data. Exit status 1: a crossing bypasses hdl/cdc; each
+is listed.
 """
 
 import json
@@ -68,8 +69,8 @@ def names_of(module):
 
 
 class Nets:
-    """Sources of a module's nets. clock: clock of a net; comb: nets on which a net depends; sinks:
-    (name, clock, nets) of each register and each input of a module of hdl/cdc."""
+    """Sources of a module's nets. clock: the clock of each net; comb: the nets on which each net
+    depends; sinks: (name, clock, nets) of each register and each input of a module of hdl/cdc."""
 
     def __init__(self, module, main_clock, synchronous):
         self.names, self.clock, self.comb, self.sinks = names_of(module), {}, {}, []
@@ -113,8 +114,8 @@ class Nets:
                 self.clock[bit] = own
 
     def origins(self, bit):
-        """Returns the registers and pins that a net depends on: {clock: one of them}; each net is
-        visited once."""
+        """Returns the registers and pins on which a net depends, as {clock: one of them}; each net
+        is visited once."""
         seen, stack = self.seen, [bit]
         while stack:
             b = stack[-1]

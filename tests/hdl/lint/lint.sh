@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# lint: module source-folder generated-folder. Verilator -Wall, Icarus, Yosys check and latches. A
-# variant is a parameter and its value, or several separated by commas; variants in `refused` must
-# not elaborate.
+# lint: module source-folder generated-folder. Runs Verilator -Wall, Icarus, Yosys' check, and the
+# search for latches. A variant is a parameter and its value, or several of them separated by
+# commas; variants in `refused` must not elaborate.
 set -eu
 module=$1 source=$2 gen=$3
 folders=$source/bus
@@ -76,7 +76,7 @@ yosys -q -p "$read_file design -save read; $checks"
 for variant in $refused; do
     for tool in verilate elaborate; do
         said=$($tool "$variant" 2>&1) && { echo "$module: $tool takes $variant" >&2; exit 1; }
-        # the variant must be refused because of its own error message
+        # the variant must be refused by the module's own error message
         echo "$said" | grep -q "$module: [A-Z].*[0-9][.][.][0-9]" || {
             echo "$said" >&2
             exit 1

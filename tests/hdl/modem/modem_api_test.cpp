@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_api_test: the modem controller with API frames (parameter API), at 250,000 baud.
+// modem_api_test: tests the modem controller with API frames (parameter API), at 250,000 baud.
 
 #include "VModemApi.h"
 #include "modem_rig.h"
@@ -15,7 +15,7 @@ protected:
         configure(250000);
         ASSERT_EQ(takeEvents(), MODEM_EVENT_CONFIGURED_MASK);
     }
-    // Bytes of any size: the frame ends a packet, not its first byte.
+    // Returns bytes of any size: the frame ends a packet, and the first byte does not.
     static std::vector<uint8_t> packet(size_t size, uint8_t tag) {
         std::vector<uint8_t> bytes(size);
         for (size_t i = 0; i < size; ++i)
@@ -38,7 +38,8 @@ protected:
         head.insert(head.end(), rest.begin(), rest.end());
         return head;
     }
-    // The contents of frames: a packet to a target, a packet from modem 0.
+    // Returns the contents of a frame: `sent` a packet to a target, `received` a packet from modem
+    // 0.
     static std::vector<uint8_t> sent(const std::vector<uint8_t>& packet, uint16_t target = 0,
                                      uint8_t id = 0) {
         return join({0x01, id, static_cast<uint8_t>(target >> 8), static_cast<uint8_t>(target), 0},
@@ -47,7 +48,7 @@ protected:
     static std::vector<uint8_t> received(const std::vector<uint8_t>& packet) {
         return join({0x81, 0x00, 0x00, 40, 0x00}, packet);
     }
-    // Returns the oldest received packet, without the fields of its frame.
+    // Returns the oldest received packet, without the other fields of its frame.
     std::vector<uint8_t> takePacket() {
         auto contents = take();
         EXPECT_GT(contents.size(), 5u);
@@ -153,7 +154,8 @@ TEST_F(ModemApi, ASpoiltFrameIsDroppedAndTheNextIsWhole) {
     EXPECT_EQ(takePacket(), packet(30, 8));
 }
 
-// Frames follow without pauses, so that only the end of a frame leads the receiver to the next one.
+// Frames follow one another without pauses, so only the end of a frame leads the receiver to the
+// next one.
 TEST_F(ModemApi, FramesOfAllTypesAreTakenAndTooLongOnesPassedOver) {
     ready();
     Random random(testSeed());
@@ -165,13 +167,13 @@ TEST_F(ModemApi, FramesOfAllTypesAreTakenAndTooLongOnesPassedOver) {
         return body;
     };
     const std::vector<std::vector<uint8_t>> strangers = {
-        other(0x8A, 1 + random.below(2)),   // the modem's status, or less
+        other(0x8A, 1 + random.below(2)),   // a status of the modem, or a shorter frame
         other(0x88, 5),                     // a reply
         other(0x80, 12 + random.below(98)), // a packet from a 64-bit address
         other(0x80, 111),                   // the longest type
-        other(0x81, 112),                   // more than a modem sends
-        other(0x81, 255),                   // the longest with a one-byte length
-        other(0x81, 0x105),                 // its low byte alone would do
+        other(0x81, 112),                   // more data than a modem sends
+        other(0x81, 255),                   // the longest frame with a one-byte length
+        other(0x81, 0x105),                 // a length whose low byte alone would be valid
     };
     for (size_t i = 0; i < strangers.size(); ++i) {
         auto before = packet(1 + random.below(100), 1), after = packet(1 + random.below(100), 2);
@@ -193,8 +195,8 @@ TEST_F(ModemApi, FramesOfAllTypesAreTakenAndTooLongOnesPassedOver) {
 TEST_F(ModemApi, AModemThatLostItsPowerIsSetUpAgain) {
     ready();
     near_->power(false, now());
-    near_->power(true, now()); // it boots in transparent mode at 9600 baud: noise for the
-                               // controller
+    near_->power(true, now()); // the modem boots in transparent mode at 9600 baud, which is noise
+                               // for the controller
     plain_.send(packet(50, 1), now());
     runMs(100);
     while (!take().empty()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_rig: the modem controller, its memory, the modem at its pins, the air, and a modem far
-// away.
+// modem_rig: the modem controller, its memory, the modem at its pins, the air, and a second modem
+// far away.
 
 #pragma once
 
@@ -17,7 +17,7 @@
 template <class Module, uint64_t clkNs> class ModemRig : public ::testing::Test {
 protected:
     static constexpr uint32_t txRing = 0xAAAAA800,
-                              rxRing = 0x55555000; // every address line, both ways
+                              rxRing = 0x55555000; // uses every address line, with 0 and with 1
 
     void power(XBee::Options options) {
         air_.weather.perfect = true; // these tests are about the controller
@@ -40,12 +40,13 @@ protected:
         bus_.write(MODEM_NET, 0x3332u << MODEM_NET_PAN_LSB | 0x0C);
     }
 
-    // GT of the modem and of the controller are short, so that tests are.
+    // The guard times of modem and controller are short, so that the tests are short.
     void configure(unsigned bd = 7, unsigned guardMs = 20) {
         bus_.write(MODEM_BAUD, guardMs << MODEM_BAUD_GUARD_MS_LSB | bd);
         bus_.write(MODEM_CONTROL, MODEM_CONTROL_CONFIGURE_MASK);
         bench_.waitFor([&] { return bench_.top().irq_o; }, "the end of the set-up", 40'000'000);
-        // A command tried at a wrong rate may be sent as data, unless the modem still starts.
+        // A command that is tried at a wrong rate may be sent as data, unless the modem is still
+        // starting.
         plain_.received.clear();
         sizes_.clear();
         targets_.clear();
@@ -68,13 +69,13 @@ protected:
         memory_.store(txRing + 128 * buffer, packet);
         bus_.write(MODEM_TX_PUT, static_cast<uint32_t>(packet.size()));
     }
-    // Returns a packet like the link layer's: the first byte gives the length.
+    // Returns a packet like one of the link layer: the first byte gives the length.
     static std::vector<uint8_t> frame(unsigned size, uint8_t tag) {
         std::vector<uint8_t> bytes(size, tag);
         bytes[0] = static_cast<uint8_t>(size - 5);
         return bytes;
     }
-    // Returns the oldest packet in the ring, empty if none; take() also releases it.
+    // Returns the oldest packet in the ring; empty if there is none. take() also releases it.
     std::vector<uint8_t> oldest() {
         const uint32_t get = bus_.read(MODEM_RX_GET);
         const bool isValid = get & MODEM_RX_GET_VALID_MASK;
@@ -88,10 +89,11 @@ protected:
         return packet;
     }
 
-    // Returns the counted errors without the set-up's retries, since it may have to search for the
-    // rate.
+    // Returns the counted errors without the retries of the set-up, since the set-up may have to
+    // search for the rate.
     uint32_t errors() { return bus_.read(MODEM_ERRORS) & ~MODEM_ERRORS_RETRIES_MASK; }
-    // Drives the line from the modem's side bit by bit, which the model, silent then, cannot do.
+    // Drives the line bit by bit in place of the modem; the model, which is silent then, cannot do
+    // this.
     void bytesIn(const std::vector<uint8_t>& bytes, unsigned bitClocks) {
         for (uint8_t byte : bytes)
             for (unsigned bits = byte << 1 | 0x200; bits > 0; bits >>= 1) {
@@ -130,7 +132,7 @@ private:
         near_->advance(now());
         far_->advance(now());
     }
-    // Pins move in the second half of a clock, as any other clock's.
+    // Pins change in the second half of a clock, like pins of any other clock.
     void movePins() {
         if (bench_.top().clk_i)
             return;

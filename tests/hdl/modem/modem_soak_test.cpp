@@ -23,7 +23,7 @@ protected:
         return text && *text ? std::strtoull(text, nullptr, 10) : 30'000;
     }
     void hold(bool level, double clocks) {
-        noise_ = !level; // the modem itself is silent, so its line is high
+        noise_ = !level; // the modem is silent, so its line is high
         for (clock_ += clocks; static_cast<double>(bench_.cycles()) < clock_;)
             bench_.tick();
     }

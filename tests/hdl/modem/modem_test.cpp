@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_test: modem set-up, resets, rejected settings, and packets to and from the modem, pin by
-// pin. Coincidences in one clock are proven (formal.modem_*).
+// modem_test: tests modem set-up, resets, rejected settings, and packets to and from the modem, pin
+// by pin. Events that coincide in one clock are covered by proofs (formal.modem_*).
 
 #include "VModem.h"
 #include "modem_rig.h"
@@ -52,7 +52,7 @@ TEST_F(ModemTest, AWireNeedsNoSetUp) {
     near_->power(false, now());
     bus_.write(MODEM_BAUD, MODEM_BAUD_WIRE_MASK | 7);
     bus_.write(MODEM_CONTROL, MODEM_CONTROL_CONFIGURE_MASK);
-    unsigned lows = 0; // clocks in which the line is not idle
+    unsigned lows = 0; // number of clocks in which the line is not idle
     for (unsigned i = 0; i < 100'000; ++i, bench_.tick())
         lows += !bench_.top().modem_txd_o;
     EXPECT_EQ(lows, 0u) << "something was sent";
@@ -69,7 +69,7 @@ TEST_F(ModemTest, AWireNeedsNoSetUp) {
     const uint64_t begin = bench_.cycles();
     bench_.waitFor([&] { return bench_.top().modem_txd_o; }, "the first bit", 100);
     EXPECT_NEAR(static_cast<double>(bench_.cycles() - begin), bitClocks, 1);
-    memory_.hold(true); // both directions wait for it
+    memory_.hold(true); // both directions wait for the memory
     put(1, packet);
     bytesIn({packet[0]}, bitClocks);
     memory_.hold(false);
@@ -121,7 +121,7 @@ TEST_F(ModemTest, TheKeyIsSentOnlyWithEncryption) {
 
 TEST_F(ModemTest, WrongPutsAreRefused) {
     power(quick());
-    bus_.write(MODEM_TX_PUT, 10); // before the set-up
+    bus_.write(MODEM_TX_PUT, 10); // writes a packet before the set-up
     EXPECT_EQ(takeEvents(), MODEM_EVENT_TX_REFUSED_MASK);
     configure();
     takeEvents();
@@ -155,7 +155,7 @@ TEST_F(ModemTest, APacketThatASetUpInterruptsIsSentAgainWhole) {
     ready();
     put(0, frame(100, 1));
     runMs(4);
-    configure(); // within a packet
+    configure(); // begins the set-up within a packet
     EXPECT_TRUE(takeEvents() & MODEM_EVENT_CONFIGURED_MASK);
     runMs(40);
     ASSERT_GE(plain_.received.size(), 100u);
@@ -180,7 +180,8 @@ TEST_F(ModemTest, PacketsLeaveEachAsOneRfPacket) {
     EXPECT_EQ(bus_.read(MODEM_TX_STATE), 9u << 8 | 16u);
 }
 
-// A modem that encrypts sends a packet at 95 bytes: no pause is needed after such a packet.
+// A modem that encrypts sends a packet as soon as it has 95 bytes; no pause is needed after such a
+// packet.
 TEST_F(ModemTest, EncryptedPacketsOf95BytesFollowEachOther) {
     power(quick());
     bus_.write(MODEM_NET, 0x3332u << MODEM_NET_PAN_LSB | 1u << MODEM_NET_ENCRYPT_LSB | 0x0C);
@@ -253,7 +254,7 @@ TEST_F(ModemTest, ThreeCharactersOfSilenceEndAPacket) {
 
 TEST_F(ModemTest, AFullRingDropsWholePacketsAndNothingElse) {
     ready();
-    pinsIgnoreRts_ = true; // a modem that ignores RTS
+    pinsIgnoreRts_ = true; // the modem ignores RTS
     for (unsigned i = 0; i < 18; ++i) {
         plain_.send(frame(50, static_cast<uint8_t>(i + 1)), now());
         runMs(10);
@@ -284,7 +285,8 @@ TEST_F(ModemTest, RTSHoldsTheModemInMidPacketAndThePacketIsWhole) {
     plain_.send(both, now());
     for (uint64_t byte : {end, end + 1}) {
         bench_.waitFor([&] { return near_->counters().bytesToHost >= byte; }, "a byte", 100'000);
-        runMs(byte == end ? 0.02 : 0); // the previous byte is in memory, even if that was slow
+        runMs(byte == end ? 0.02 : 0); // the previous byte is in memory, even if the memory was
+                                       // slow
         memory_.hold(byte == end);
     }
     runMs(50);
@@ -301,7 +303,7 @@ TEST_F(ModemTest, AFramingErrorEndsThePacketAndIsCounted) {
     ready();
     plain_.send(frame(50, 7), now());
     runMs(5.5);
-    noise_ = true; // a break in the middle
+    noise_ = true; // a break in the middle of the byte
     runMs(0.3);
     noise_ = false;
     runMs(10);

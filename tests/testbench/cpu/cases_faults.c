@@ -9,7 +9,7 @@
 #define ACTLR_DISDEFWBUF 2UL
 #define CFSR_IMPRECISERR (1UL << 10)
 
-/* Continues after the failing instruction; the fault of a store arrives later by itself. */
+/* Returns after the failing instruction; the fault of a store arrives later by itself. */
 static void skip(void) {
     U16 first = *(U16*)Case_frame[6];
     value[0] = SCB_CFSR;
@@ -91,7 +91,7 @@ void __attribute__((naked)) Case_ackWait(void) {
 void Case_lateAck(void) {
     Case_priority(4, 0);
     Case_priority(5, 0);
-    REG(0x60000000UL) = 4; /* the test then raises the interrupt line with this number */
+    REG(0x60000000UL) = 4; /* the test raises the interrupt line whose number is written here */
     __asm__ volatile("dsb\n\tisb");
     REG(0x60000000UL) = 5;
     __asm__ volatile("dsb\n\tisb");
@@ -102,8 +102,8 @@ void Case_noMemory(void) {
     Case_action[5] = skip;
     REG(0x10000000UL) = 1;
     Case_say('.');
-    *(volatile U32*)((U32)selected & ~3UL) = 1; /* the address of its own code, because flash is not
-                                                 * written in this way */
+    *(volatile U32*)((U32)selected & ~3UL) = 1; /* writes to the code of this case; flash is not
+                                                 * written in this way, so the store fails */
     Case_say('.');
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * cases_order: order and time of exceptions: priorities, masks, PendSV, SVC, SysTick, WFI; stacks,
- * alignment, cycle counts, the reset request, and work that is interrupted anywhere.
+ * cases_order: tests the order and the time of exceptions: priorities, masks, PendSV, SVC, SysTick,
+ * WFI; stacks, alignment, cycle counts, the reset request, and work that is interrupted anywhere.
  */
 #include "cpu_cases.h"
 
@@ -55,7 +55,8 @@ static void primask(void) {
     __asm__ volatile("cpsid i");
     Case_pend(0);
     Case_say('1');
-    /* The handler sees r0 as it was when interrupts were enabled: not one instruction later. */
+    /* The handler sees the value that r0 has when interrupts are enabled; it runs before the next
+     * instruction. */
     __asm__ volatile("mov r0, #5\n\tcpsie i\n\tmov r0, #6\n\tmov r0, #7" ::: "r0");
     Case_say('2');
 }
@@ -166,8 +167,8 @@ void Case_process(void) {
     value[3] = value[7]; /* EXC_RETURN */
 }
 
-void Case_alignment(void) { /* a stack pointer that is only a multiple of 4 is aligned on entry and
-                             * restored on return */
+void Case_alignment(void) { /* If the stack pointer is only a multiple of 4, it is aligned on entry
+                             * and restored on return. */
     U32 before, after;
     Case_priority(0, 0x80);
     Case_action[16] = noteStacks;

@@ -44,7 +44,8 @@ void Case_unaligned(void) {
                      "mov r2, %0\n\tstmia r2!, {r0, r1}\n\t"
                      "ldmdb.w %0, {r0, r1}\n\t"
                      "ldrex r0, [%0]\n\t"
-                     "ldrexh r0, [%0]\n\tldr r0, [%0]\n\tldrh r0, [%0]" /* these may be unaligned */
+                     "ldrexh r0, [%0]\n\tldr r0, [%0]\n\tldrh r0, [%0]" /* these accesses may be
+                                                                         * unaligned */
                      :
                      : "r"(at)
                      : "r0", "r1", "r2", "memory");

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * cpu_cases: programs for the CPU model's tests. Each reports by letters: interrupt n enters as a
- * small letter and leaves as a capital ('a' is interrupt 0), other handlers have letters of their
- * own.
+ * cpu_cases: programs for the CPU model's tests. Each reports by letters: interrupt n prints a
+ * small letter at its entry and a capital at its end ('a' is interrupt 0). Other handlers have
+ * different letters.
  */
 #pragma once
 
@@ -11,13 +11,13 @@
 typedef void (*Action)(void);
 
 extern volatile Action selected; /* the case; written by the test */
-extern volatile U32 boots;       /* survives a reset */
-extern U32 value[8];             /* results of a case; [7]: EXC_RETURN of the last exception */
+extern volatile U32 boots;       /* number of starts; survives a reset */
+extern U32 value[8];             /* results of a case; [7] is EXC_RETURN of the last exception */
 extern Action Case_action[20];   /* action of each exception, called by its handler */
 extern U32* Case_frame;          /* frame of the current exception */
 
 void Case_say(char c);
-void Case_priority(U32 irq, U32 value8); /* also enables it */
+void Case_priority(U32 irq, U32 value8); /* Sets the priority of an interrupt, and enables it. */
 void Case_pend(U32 irq);
 void Reset_Handler(void);
 

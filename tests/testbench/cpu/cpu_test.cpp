@@ -25,7 +25,7 @@ protected:
     PlainCpu m3{CASES_ELF};
 };
 
-// A case, its output, and its results: value[n] by n.
+// name of a case, its output, and its results as {n, value[n]}
 struct Case {
     const char *name, *symbol, *said;
     std::map<unsigned, uint32_t> values = {};
@@ -48,7 +48,7 @@ const Case cases[] = {
     {"OneOfTheSamePriorityWaits", "Case_samePriority", "aAbB"},
     {"OfEqualOnesTheLowestNumberComesFirst", "Case_lowestNumberFirst", "aAbBcC"},
     {"SubPrioritiesOrderAndDoNotPreempt", "Case_subPriority", "aAcCbB"},
-    // R0 when the handler ran: no instruction after CPSIE has been executed.
+    // value of R0 when the handler ran: no instruction after CPSIE has been executed
     {"PrimaskHoldsBackAndUnmaskingIsExact", "Case_primaskExact", "1aA2", {{0, 5}}},
     {"BasepriHoldsBackItsPriorityAndBelow", "Case_basepri", "1bB2aA3"},
     {"FaultmaskHoldsBackAll", "Case_faultmask", "1aA2"},
@@ -59,8 +59,8 @@ const Case cases[] = {
      "Case_busFault",
      "u.",
      {{0, preciseBus | addressValid}, {1, 0x60000010}}},
-    // TRM r2p1, 3.5: the fault of a store arrives later, and has no address; value 4 counts the
-    // instructions executed between the store and the DSB.
+    // TRM r2p1, 3.5: the fault of a store arrives later, and has no address. Value 4 is the number
+    // of instructions executed between the store and the DSB.
     {"TheFaultOfAStoreIsImpreciseAndABarrierWaitsForIt",
      "Case_storeFault",
      "u.",
@@ -100,7 +100,7 @@ const Case cases[] = {
       {3, unaligned},
       {4, unaligned},
       {5, unaligned}}},
-    // The region with the highest number decides; subregions; the default map.
+    // The region with the highest number decides; subregions and the default map also apply.
     {"MemoryThatIsNotExecutedFaults",
      "Case_executeNever",
      "m12mm.",
@@ -217,7 +217,8 @@ TEST_F(Cpu, AResetRequestStartsAgainAndKeepsMemory) {
     EXPECT_EQ(m3.variable("boots"), 2u);
 }
 
-// The strongest test: two nested interrupts before each single instruction of a computation.
+// This test is the strongest: two nested interrupts occur before each single instruction of a
+// computation.
 TEST_F(Cpu, AnInterruptAtAnyInstructionDoesNotChangeAResult) {
     run("Case_work");
     const uint32_t expected = value(0);
@@ -251,7 +252,7 @@ TEST_F(Cpu, InterruptEntryTakesTwelveCyclesAndTailChainingSix) {
     EXPECT_EQ(run("Case_samePriority"), "aAbB");
     ASSERT_EQ(entered.size(), 2u);
     EXPECT_EQ(first - entered[0], 12u);
-    EXPECT_EQ(entered[1], left[0]); // and then it takes 6 cycles until the first instruction
+    EXPECT_EQ(entered[1], left[0]); // the first instruction follows 6 cycles later
 }
 
 TEST_F(Cpu, MaskedTimeIsMeasured) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// memory_models_test: tests the user port of the MCB model (order, flags, and what it refuses), and
-// compares the times of the memory device with sums of data-sheet figures that were worked out by
-// hand.
+// memory_models_test: tests the user port of the MCB model (order, flags, and refused commands),
+// and compares the times of the memory device with sums of data-sheet figures that were calculated
+// by hand.
 
 #include "ddr3_timing.h"
 #include "mcb_model.h"
@@ -77,8 +77,8 @@ TEST_F(Mcb, ReadsWhatWasWrittenWithItsMask) {
 
 TEST_F(Mcb, ReadLatencyIsTheSumOfItsParts) {
     command(read, 0, 1);
-    // 6 clocks into the controller; then, in memory clocks, tRCD 6, CL 6, burst 4: 16 memory clocks
-    // are 4 clocks; 5 clocks out
+    // 6 clocks into the controller; then in memory clocks tRCD 6, CL 6, burst 4: these 16 memory
+    // clocks are 4 clocks; 5 clocks out
     EXPECT_EQ(waitForWord() + 1, 6u + 4 + 5);
     pop();
     command(read, 0, 1);
@@ -100,12 +100,13 @@ TEST_F(Mcb, AWriteWaitsForTheDataOfTheReadBefore) {
     };
     (void)clocksUntilEmpty(true); // opens the row
     // Memory clocks since the first command of the read: the last of its four bursts has its
-    // command at 12, and its data ends at 12 + 6 + 4, so the write starts at 25. Without the read
-    // it would start at 4, one clock of the design later.
+    // command at 12, and its data ends at 12 + 6 + 4, so the write starts at 25. Without the read,
+    // the write would start at 4, one clock of the design later.
     EXPECT_EQ(clocksUntilEmpty(true), clocksUntilEmpty(false) + (25 - 4) / 4);
 }
 
-// AR36413, 3: only one command at a time; an activate waits for the data of the read before.
+// AR36413, 3: there is only one command at a time; an activate waits for the data of the read
+// before.
 TEST_F(Mcb, AnActivateWaitsForTheDataOfTheReadBefore) {
     constexpr uint32_t bank = 2048;
     command(read, 0, 2);
@@ -113,7 +114,8 @@ TEST_F(Mcb, AnActivateWaitsForTheDataOfTheReadBefore) {
     waitForWord();
     pop();
     pop();
-    // CL 6 and burst 4 of the first end with its words; tRCD 6, CL 6, burst 4 of the second
+    // CL 6 and burst 4 of the first read end with its words; then tRCD 6, CL 6, burst 4 of the
+    // second read
     EXPECT_EQ(waitForWord() + 2, 16u / 4);
 }
 
@@ -181,7 +183,7 @@ TEST_F(Mcb, Refusals) {
     refuses([&] { pop(); }, "read of an empty FIFO");
     EXPECT_TRUE(memory_.pins.rdError);
     push(1);
-    command(write, 0, 1); // its word is claimed
+    command(write, 0, 1); // takes the word of the previous command from the FIFO
     refuses([&] { command(write, 0, 1); }, "before its data");
 }
 

@@ -42,7 +42,7 @@ int connected(uint16_t port) {
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     to.sin_port = htons(port);
     const int fd = socket(AF_INET, SOCK_STREAM, 0);
-    // In a long run the machine may temporarily be out of ports: 500 connections per second.
+    // With 500 connections per second, a long run may use up the machine's ports for some time.
     while (connect(fd, reinterpret_cast<sockaddr*>(&to), sizeof to) != 0) {
         if (errno != EADDRNOTAVAIL) {
             perror("fuzz_gdb: cannot connect to the stub");
@@ -83,7 +83,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     shutdown(fd, SHUT_WR);
     bool isNew = true;
     stub.serve(target, [&] { return std::exchange(isNew, false); });
-    const linger reset{1, 0}; // no port is left behind
+    const linger reset{1, 0}; // closes without leaving the port in use
     setsockopt(fd, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
     close(fd);
     return 0;

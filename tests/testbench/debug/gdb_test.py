@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""gdb_test: the debugger's port of the simulator.
+"""gdb_test: tests the debugger's port of the simulator.
 
     debug      Debian's GDB on firmware and RTL: breakpoints, steps, registers, memory, the FPGA
-    reverse    the same runs a recorded flight backwards, a secure one
-    strangers  a peer that is not a debugger is disconnected; one that leaves or sends garbage makes
-               room for the next
+    reverse    GDB runs the recording of a secure flight backwards
+    strangers  a peer that is not a debugger is disconnected; a peer that leaves or sends garbage
+               makes room for the next one
 
 Usage: gdb_test.py icesoc-sim firmware.elf out-folder case
 """
@@ -26,7 +26,7 @@ FLIGHT = [sim, "--image", "/usr/share/xplanet/images/earth.jpg", "--size", "96x6
 
 @contextlib.contextmanager
 def simulator(*command):
-    """A simulator that waits for a debugger: the process, and the port."""
+    """Starts a simulator that waits for a debugger; yields the process and the port."""
     with subprocess.Popen([*command, "--gdb", "0"], stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True) as process:
         try:
@@ -100,7 +100,7 @@ def reverse():
     key.chmod(0o600)
     subprocess.run([*FLIGHT, "--duration", "0.3", "--key", key, "--out", f"{out}/flight",
                     "--quiet"], check=True)
-    # Continuing from a place must always lead to the same one.
+    # From a given place, continuing must always lead to the same next place.
     steps = (("reverse-stepi", "AT_BEGIN"), ("break UAV_start\ncontinue", "START"),
              ("delete\nstepi 20", "AHEAD"), ("reverse-stepi 20", "BACK"), ("stepi 20", "AGAIN"),
              ("continue", "END"),
@@ -119,11 +119,12 @@ def reverse():
                         ("START", "START_AGAIN")):
         assert at[name] == at[again], (name, at[name], again, at[again])
     assert at["TICK2"][0] < at["TICK1"][0] < at["END"][0], "ticks, the later one first"
-    # GDB 13 has the first wording, GDB 16 the second.
+    # The message of GDB 13, and the message of GDB 16.
     ends = re.findall("No more reverse-execution history|Reached end of recorded history", said)
     assert len(ends) == 2, "begin and end are not reported"
     assert not re.search("= 77$", said, re.M), "later data are visible earlier"
-    copies = ["pgrep", "-f", "--", f"--out {out} --gdb"]  # they are ended a moment after it
+    copies = ["pgrep", "-f", "--", f"--out {out} --gdb"]  # the frozen copies end a moment after the
+                                                          # simulator
     until = time.monotonic() + PATIENCE
     while subprocess.run(copies, stdout=subprocess.DEVNULL).returncode == 0:
         assert time.monotonic() < until, "a copy of the simulator was left behind"
@@ -144,7 +145,7 @@ def strangers():
 
 def check(port):
     def talk(*parts):
-        """Returns the answer to these bytes, or b"" if the connection is ended."""
+        """Sends bytes, and returns the answer; b"" if the connection was ended."""
         with socket.create_connection(("127.0.0.1", port), PATIENCE) as s:
             answer = b""
             try:
@@ -160,7 +161,7 @@ def check(port):
             return answer
 
     def leave(*parts):
-        """Sends this, and disconnects."""
+        """Sends bytes, and disconnects."""
         with socket.create_connection(("127.0.0.1", port), PATIENCE) as s:
             for part in parts:
                 s.sendall(part)
@@ -177,7 +178,7 @@ def check(port):
     leave(go)
     leave(packet(b"?") + b"$c")
     leave(go, packet(b"g") * 100)
-    leave(go, b"k" * 100000)  # while the processor runs
+    leave(go, b"k" * 100000)  # sends garbage while the processor runs
     leave(packet(b"?") + packet(b"s") * 50)
     leave(packet(b"D"))
     with socket.create_connection(("127.0.0.1", port), PATIENCE) as s:

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""gateway_page_test: the page of a gateway, whose calls do not pass the page's server: which pages
-may call, and by which certificate.
+"""gateway_page_test: tests the page of a gateway, whose calls do not pass the page's server: which
+pages may call, and by which certificate.
 
 Usage: gateway_page_test.py origins|certificate work-folder build-folder
 """
@@ -117,7 +117,7 @@ class Cases(Script):
             self.assertIn("for the radio", self.answer(calls, headers), headers)
 
     def certificates(self):
-        """Makes certificates, and a profile of the browser with the pilot's."""
+        """Makes certificates, and a profile of the browser with the pilot's certificate."""
         for name in "gateway", "pilot":
             self.ask(TREE / "icesoc", "key", self.work / f"{name}.pem", "--certificate")
         database = f"sql:{self.work}/home/.pki/nssdb"
@@ -171,7 +171,8 @@ class Cases(Script):
         context.check_hostname = False
         with urllib.request.urlopen(f"https://127.0.0.1:{page}", context=context) as served:
             self.assertIn("; Secure", served.headers["Set-Cookie"])
-        try:  # without a certificate: the gateway sends an alert, or has closed before it is read
+        try:  # without a certificate, the gateway sends an alert, or closes before the test reads
+              # it
             with context.wrap_socket(socket.create_connection(("127.0.0.1", calls))) as connection:
                 connection.sendall(b"GET / HTTP/1.1\r\n\r\n")
                 answer = connection.recv(1)
@@ -189,7 +190,7 @@ class Cases(Script):
         self.server_with_tls(trust, security)
 
     def server_with_tls(self, trust, security):
-        """A whole call: a server of stock Ice in the place of the gateway."""
+        """Makes a complete call: a server of stock Ice takes the place of the gateway."""
         port, page = self.start(
             ["/usr/bin/python3", TREE / "tests/cli/call_server.py",
              "--Ice.Plugin.IceSSL=IceSSL:createIceSSL", "--Trial.Endpoints=wss -h 127.0.0.1",

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""live_test: the page of a mission in headless Chromium, or its errors.
+"""live_test: tests the page of a mission in headless Chromium, or its errors.
 
 Usage: live_test.py mission|errors work-folder build-folder
 """
@@ -31,7 +31,7 @@ class Cases(Script):
 
     @contextlib.contextmanager
     def serving(self, *words, until, **environment):
-        """A process that serves its page: its port."""
+        """Starts a process that serves its page; yields its port."""
         with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               env={**os.environ, **environment}) as self.process:
             try:
@@ -51,14 +51,15 @@ class Cases(Script):
         self.fail(f"the process has ended: {said}")
 
     def test_mission(self):
-        """The page is opened with the flight, and keeps the vehicle until it is closed."""
+        """The page is opened with the flight, and the vehicle stays until the page is closed."""
         write("browser", f"#!/bin/sh\necho \"$1\" >{self.work}/opened\n")
         flight = ("run", "--built", "--build", BUILD, "--size", "96x64", "--guard", "20", "--cpu",
                   "m3", "--out", self.work, "--show", "yes")
         with self.serving(TREE / "icesoc", *flight, until="http://",
                           BROWSER=f"{self.work}/browser %s") as port:
             address = f"http://127.0.0.1:{port}/"
-            # No name is resolved: resources of other hosts would be missing, and reported.
+            # The browser resolves no names: resources of other hosts would be missing, and
+            # reported.
             with Browser("--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
                          width=1280, height=1500) as browser:
                 browser.open(address)
@@ -80,18 +81,18 @@ class Cases(Script):
             r"hwengine1.getResult\(\)", r"Station.vehicleState\(uptimeMs",
             '<td>THRESHOLD</td><td class="n">0x00000018</td>',
             ">WIDTH 96</span>.*>HEIGHT 64</span>",  # fields of the vision core's FRAME_SIZE
-            # An event of the vision core, to which the firmware wrote a one:
+            # An event of the vision core, which the firmware has cleared by writing 1:
             ">DONE cleared</span>",
             'y="[0-9]*">UAV_radioTask</text>',
             "the result equals the C[+][+] reference, bit by bit", "corners, the strongest",
             '<text x="0" y="[0-9]*">vision</text>',
             r"<title>hwengine1.getResult\(\): until [0-9.]* s</title>",
             'id="phase" role="status" class="good">the mission is over, [0-9]+ corners, the result')
-        self.lacks(">0.00 s</text>")  # opens at the calls, not at the modems' set-up
+        self.lacks(">0.00 s</text>")  # the view opens at the calls, not at the modems' set-up
         drawn = re.findall('data-features="([0-9]*)"', self.said)
         found = [len(call["features"]) for call in self.lines("calls") if "features" in call]
         self.assertEqual(drawn, [str(found[-1])])
-        # The flight as JSON Lines: all packets, and the end of the core as an event.
+        # The flight as JSON Lines contains all packets, and the end of the core's work as an event.
         events, whole = self.lines("events"), self.lines("flight")[-1]["end"]
         packets = [event for event in events if "packet" in event]
         self.assertEqual((len(packets), sum(event["lost"] for event in packets)),
@@ -146,7 +147,8 @@ class Cases(Script):
         browser.until("document.getElementById('found').innerText"
                       f".startsWith('{found} corners')")
         self.assertLess(int(found), 121)
-        # The registers of the core are next to its operations, and those that change marked.
+        # The registers of the core are next to its operations, and registers that change are
+        # marked.
         beside = "document.querySelector('#cards [data-block=vision]')"
         browser.until(f"/THRESHOLD\\s+0x0000003c/.test({beside}.innerText)")
         browser.until(f"!{beside}.querySelector('.changed')")
@@ -156,7 +158,7 @@ class Cases(Script):
         browser.until(f"{beside}.querySelector('.changed')?.innerText.includes('0x0000003d')")
 
     def narrow(self, state):
-        """At 420 pixels nothing is cut, or needs a scroll bar."""
+        """At a width of 420 pixels nothing is cut or needs a scroll bar."""
         for file in (*PAGE.iterdir(), *(TREE / "tools/icesoc/web").glob("common.*")):
             write(file.name, file.read_text())
         common = '<script src="common.js">'
@@ -175,7 +177,8 @@ setTimeout(() => top.document.body.append("cut: " + [...document.querySelectorAl
         return [json.loads(line) for line in Path(f"{name}.jsonl").read_text().splitlines()]
 
     def contrasts(self):
-        """Bars, marks and texts of the pages have enough contrast with both backgrounds."""
+        """Bars, marks and texts of the pages have enough contrast with the light and the dark
+        background."""
         def light(colour):
             digits = colour[1:] if len(colour) == 7 else "".join(2 * d for d in colour[1:])
             parts = [int(digits[i:i + 2], 16) / 255 for i in (0, 2, 4)]
@@ -205,12 +208,13 @@ setTimeout(() => top.document.body.append("cut: " + [...document.querySelectorAl
             self.ask(TREE / "icesoc", "run", "--built", "--build", BUILD, "--size", "96x64",
                      "--out", "unflown", "--port", str(port), status=1)
             self.has("is the port taken")
-            self.assertFalse(Path("unflown/status").exists())  # it does not fly without its page
+            self.assertFalse(Path("unflown/status").exists())  # the simulator does not fly without
+                                                               # its page
             self.requests(port)
         self.assertEqual(self.ended, 0)
 
     def requests(self, port):
-        """Nothing has run in this folder yet: the page still answers, and only on the loopback
+        """No flight has run in this folder yet: the page still answers, and only on the loopback
         interface."""
         base, ours = f"http://127.0.0.1:{port}/", f"127.0.0.1:{port}"
 
@@ -232,12 +236,13 @@ setTimeout(() => top.document.body.append("cut: " + [...document.querySelectorAl
 
         empty = state()
         self.assertEqual((empty["calls"], empty["slots"], bool(empty["frame"])), ([], [], False))
-        # Other names of this address, malformed rows, and clients that are slow, endless or silent.
+        # Sends other names of this address and malformed rows, and connects clients that are slow,
+        # endless or silent.
         self.assertEqual(status({}), 200)
         self.assertEqual(status({"Host": f"evil.example:{port}"}), 403)
         self.assertEqual(status({"Host": ours, "HOST": "evil.example"}), 403)
         ranges = ",".join(f"0-{i}" for i in range(400, 800))
-        self.assertEqual(status({"Range": f"bytes={ranges}"}), 200)  # the whole of it
+        self.assertEqual(status({"Range": f"bytes={ranges}"}), 200)  # the answer is the whole file
         self.assertIn(b"400 ", talk(b"EHLO\r\n\r\n"))
         self.assertIn(b" 501 ", talk(f"POST /state HTTP/1.1\r\nHost: {ours}\r\n\r\n".encode()))
         with connect() as endless, self.assertRaises(ConnectionError):

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""objects_test: the objects of a flight's page in Chromium, against a server of stock Ice in the
-place of a vehicle; who may call, and who may not.
+"""objects_test: tests the objects of a flight's page in Chromium, with a server of stock Ice in
+place of a vehicle; also who may call, and who may not.
 
 Usage: objects_test.py page|strangers work-folder build-folder
 """
@@ -24,7 +24,7 @@ from icesoc.util.browser import Browser
 
 BUILD = Path(sys.argv[3]).resolve()
 TRIAL = TREE / "tests/cli/call.ice"
-MANY = 200  # operations of an object
+MANY = 200  # number of operations of an object
 
 
 class Cases(Script):
@@ -64,7 +64,7 @@ class Cases(Script):
         self.page.stdout.close()
 
     def call(self, browser, operation, fields):
-        """Fills in a form, presses its button and returns what appears."""
+        """Fills in a form, presses its button, and returns the text that appears."""
         browser.run(f"""(() => {{
             window.form = [...document.querySelectorAll('#cards form')].find(each =>
                 each.querySelector('h4').innerText.split(' ')[0] === '{operation}');
@@ -129,7 +129,7 @@ class Cases(Script):
         self.other_vehicle()
 
     def other_vehicle(self):
-        """The same page for a gateway, without a flight."""
+        """The page serves a gateway in the same way, without a flight."""
         os.remove("live.json")
         with subprocess.Popen([TREE / "icesoc", "call", "--page", "--gateway", self.gateway,
                                "--build", self.work / "build"], stdout=subprocess.PIPE,
@@ -186,7 +186,8 @@ class Cases(Script):
         })()"""), [4, 2, 255, 255, 255, 255])
 
     def copies(self, browser):
-        """The texts to copy are the calls that the form makes; that for Python runs as it is."""
+        """The texts to copy are the calls that the form makes; the Python program runs
+        unchanged."""
         texts = browser.run("""(() => {
             const object = station.objects.find(o => o.identity === 'try');
             const operation = station.slice.operations(object.interface)
@@ -200,7 +201,7 @@ class Cases(Script):
         self.has("^23$")
 
     def keyboard(self, browser):
-        """A form is used without a pointer, and each of its fields has a name."""
+        """A form can be used without a pointer, and each of its fields has a name."""
         browser.run("document.getElementById('try.add.threshold').value = '16'; "
                     "document.getElementById('try.add.left').value = '40'; "
                     "document.getElementById('try.add.left').focus()")
@@ -260,7 +261,7 @@ class Cases(Script):
 
     @contextlib.contextmanager
     def other_page(self, token):
-        """A page of another origin, which even knows the token."""
+        """Serves a page of another origin that even knows the token."""
         text = f"""<body><script>
             const socket = new Promise(done => {{
                 const s = new WebSocket("ws://127.0.0.1:{self.port}/ice?token={token}",

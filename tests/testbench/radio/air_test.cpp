@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// air_test: the properties of the air: one direction at a time, processing time of the modem,
+// air_test: tests the properties of the air: one direction at a time, processing time of the modem,
 // retries by RR, fading, interference, recorded traces. Sources of the figures: docs/simulation.md.
 
 #include "pair.h"
@@ -18,7 +18,8 @@ protected:
         if (line.cts())
             line.send(Bytes(10, 'x'), now);
     }
-    // Bits per second at both hosts together while `a`, and `b` if `both`, send without a pause.
+    // Returns the bits per second at both hosts together, while `a` sends without a pause, and `b`
+    // also if `both`.
     double throughput(bool both) {
         const uint64_t begin = now, seconds = 4;
         lineA.received.clear();
@@ -78,7 +79,7 @@ TEST_F(Retries, WithRRTheTriesAreMadeAgainAfter200To248Milliseconds) {
     air.weather.tryLoss = 1;
     auto tries = [this] { return air.counters().airNs / RfChannel::airTimeNs(1); };
     send("x");
-    run(200 * ms); // the first four take 13 of them
+    run(200 * ms); // the first four tries take 13 of these ms
     EXPECT_EQ(tries(), 4u);
     run(100 * ms);
     EXPECT_EQ(tries(), 8u);
@@ -160,7 +161,7 @@ protected:
     }
 
 private:
-    // Two of these tests may run at once.
+    // Several of these tests may run at the same time.
     const std::string path_ = ::testing::TempDir() + "trace." + std::to_string(getpid()) + ".csv";
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// attacker: a foreign modem on the air. It receives every packet, stores all, and can send any
-// packet with any source.
+// attacker: a foreign modem on the air. It receives and stores every packet, and can send any
+// packet in the name of any modem.
 
 #pragma once
 
@@ -15,18 +15,19 @@ class Attacker {
 public:
     using Bytes = std::vector<uint8_t>;
 
-    // Starts listening: it is the channel's only listener.
+    // Starts listening; it must be the channel's only listener.
     Attacker(RfChannel& air, uint64_t seed)
         : air_(air), random_(seed), modem_(line_, air, modemOfNobody()) {
         air.onPacket([this](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
             toHinder_ += hinders_ && packet.bytes != lure_;
-            // Its own packets are delivered like the link's: the air does not distinguish them.
+            // The attacker also hears its own packets, because the air does not distinguish them
+            // from the link's.
             if (heard_.size() < 100'000)
                 heard_.push_back(packet);
         });
     }
 
-    // Sends bytes, cut to a packet, in the name of `from`.
+    // Sends bytes in the name of `from`, in packets that are cut to the longest size.
     void send(uint16_t from, uint16_t to, Bytes bytes, uint64_t now) {
         RfPacket packet;
         packet.from = from;
@@ -40,8 +41,8 @@ public:
         voices_.push_back(std::make_unique<Voice>(air_));
         voices_.back()->mac.send(std::move(packet), now);
     }
-    // Does one of the things that are possible without a key, drawn at random: mischief, in the
-    // name of a packet's sender, of its receiver or of another's.
+    // Does one thing that is possible without a key, drawn at random. It sends in the name of the
+    // sender or the receiver of a packet, or of another modem.
     void doMischief(uint64_t now) {
         if (heard_.empty())
             return;
@@ -53,7 +54,7 @@ public:
         const auto any = [this]() -> const Bytes& { return recalled().bytes; };
         send(as.from, as.to, mischief(random_, any), now);
     }
-    // Starts or stops adding a lure to each packet.
+    // Starts or stops sending a lure, bytes that look like a frame, after each packet.
     void hinder(bool isOn) { hinders_ = isOn; }
     void advance(uint64_t now) {
         modem_.advance(now);
@@ -88,7 +89,7 @@ private:
         options.set = {{"MY", 0x0BAD}, {"DL", uav}};
         return options;
     }
-    // One of the newest half of the time, else any.
+    // Returns one of the newest packets in half of the cases, otherwise any packet.
     const RfPacket& recalled() {
         const auto count = static_cast<uint32_t>(heard_.size());
         const uint32_t span = random_.below(2) ? count : std::min(count, 20u);
@@ -103,5 +104,5 @@ private:
     std::vector<RfPacket> heard_;
     uint64_t sent_ = 0;
     bool hinders_ = false;
-    unsigned toHinder_ = 0; // packets received, not hindered yet
+    unsigned toHinder_ = 0; // number of received packets after which no lure was sent yet
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// command_test: command mode and every command of the XBee model; its API frames, with and without
-// escapes: bytes after the manual's examples.
+// command_test: tests command mode and every command of the XBee model, and its API frames, with
+// and without escapes. The bytes follow the manual's examples.
 
 #include "pair.h"
 
@@ -15,7 +15,8 @@ protected:
     }
 };
 
-// A sequence: the bytes sent to `a`, each with the milliseconds until the next, and the result.
+// A sequence: the bytes sent to `a`, each with the milliseconds until the next bytes, and the
+// result.
 struct Sequence {
     const char* name;
     std::map<std::string, uint32_t> set;
@@ -39,7 +40,7 @@ const Sequence sequences[] = {
     {"OfFewerCharacters", {}, {{"", 11}, {"++", 30}}, false, "", "++"},
     {"OfAnotherCharacterThanCC", {{"CC", '-'}}, {{"", 11}, {"+++", 11}}, false, "", "+++"},
     {"OfCC", {{"CC", '-'}}, {{"", 11}, {"---", 11}}, true, "OK\r", ""},
-    // RO 0xFF: nothing would be sent by itself for 265 ms
+    // RO 0xFF: the modem would send nothing by itself for 265 ms
     {"ThatDoesNotCome", {{"RO", 0xFF}}, {{"", 11}, {"before", 11}}, false, "", ""},
     {"BehindData", {{"RO", 0xFF}}, {{"", 11}, {"before", 11}, {"+++", 20}}, true, "OK\r", "before"},
     {"ThenCN", {}, {{"", 11}, {"+++", 11}, {"ATCN\r", 1}, {"data", 20}}, false, "OK\rOK\r", "data"},
@@ -49,7 +50,7 @@ const Sequence sequences[] = {
      true,
      "OK\r1\r",
      ""},
-    {"BeyondCTByAWrongCommand", // which does not count
+    {"BeyondCTByAWrongCommand", // a wrong command does not restart the time
      {{"CT", 5}},
      {{"", 11}, {"+++", 411}, {"ATMY\r", 401}, {"ATXX\r", 106}},
      false,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// profile_test: differences between the modems that the model imitates: rates, ranges of
+// profile_test: tests the differences between the modems that the model imitates: rates, ranges of
 // parameters, flow control, and sizes of packets.
 
 #include "pair.h"
@@ -11,11 +11,11 @@ namespace {
 
 struct Modem {
     const char* name;
-    const char *bd7, *bd8, *bdA;      // replies to these values of BD
-    const char *rate250000, *rate300; // replies to these rates
-    const char *rn4, *c8;             // replies to ATRN4 and ATC8
+    const char *bd7, *bd8, *bdA;      // answers of the modem to these values of BD
+    const char *rate250000, *rate300; // answers of the modem to these rates
+    const char *rn4, *c8;             // answers of the modem to ATRN4 and ATC8
     double baud7;                     // rate of BD 7
-    size_t ctsOff;                    // bytes held when CTS goes off
+    size_t ctsOff;                    // number of bytes in the buffer when CTS is deasserted
     size_t packet, encrypted;         // most data in a packet
     friend void PrintTo(const Modem& modem, std::ostream* out) { *out << modem.name; }
 };
@@ -49,7 +49,8 @@ TEST_P(Profiles, HaveTheirOwnRangesOfParameters) {
 
 TEST_P(Profiles, DeassertCTSAtTheirThreshold) {
     perfect = false;
-    power({{"BD", 0x3D090}, {"RR", 6}}, {{"MY", 9}}); // a packet without a receiver is tried long
+    power({{"BD", 0x3D090}, {"RR", 6}}, {{"MY", 9}}); // the modem tries for a long time to send a
+                                                      // packet without a receiver
     send(std::string(GetParam().packet, 'x'), 10 * ms);
     ASSERT_EQ(a->counters().packetsSent, 1u);
     size_t held = 0;
@@ -68,7 +69,7 @@ TEST_P(Profiles, PutTheirMostIntoAPacket) {
     power({{"EE", 1}}, {{"EE", 1}});
     send(std::string(GetParam().encrypted + 10, 'x'), 400 * ms);
     ASSERT_EQ(packets.size(), 2u);
-    const size_t overhead = 5; // bytes that encryption adds on the air
+    const size_t overhead = 5; // number of bytes that encryption adds on the air
     EXPECT_EQ(packets[0].bytes.size(), GetParam().encrypted + overhead);
 }
 

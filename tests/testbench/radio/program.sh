@@ -1,9 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# program: icesoc-xbee as seen by its user, with stty and the shell as the serial programs: help,
-# wrong options, command mode, data across, statistics, a clean end by Ctrl-C. Usage: program.sh
-# icesoc-xbee
+# program: tests icesoc-xbee as its user sees it, with stty and the shell as the serial programs:
+# help, wrong options, command mode, data in both directions, statistics, a clean end by Ctrl-C.
+# Usage: program.sh icesoc-xbee
 set -eu
 program=$1
 work=$(mktemp -d)
@@ -25,7 +25,7 @@ done
 
 "$program" --a GT=14 --a BD=7 --b BD=7 --link-a "$work/a" --link-b "$work/b" -v >"$work/out" 2>&1 &
 pid=$!
-for _ in $(seq 500); do # until it exists
+for _ in $(seq 500); do # waits until it exists
     [ -e "$work/b" ] && break
     sleep 0.02
 done

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// radio_test: the modem's radio side and the air: addresses, time, tries, encryption, weather.
+// radio_test: tests the modem's radio side and the air: addresses, time, tries, encryption,
+// weather.
 
 #include "pair.h"
 #include <openssl/evp.h>
@@ -11,7 +12,7 @@ using Addresses = Pair;
 using Mac = Pair;
 class Encryption : public Pair {
 protected:
-    // One block, under the key 000102..0F.
+    // Encrypts one block with the key 000102..0F.
     static Bytes aes(const Bytes& block) {
         Bytes key, out(32);
         for (uint8_t i = 0; i < 16; ++i)
@@ -105,7 +106,7 @@ TEST_F(Mac, AResetEndsTheTries) {
     EXPECT_EQ(across("y", 30 * ms), "y");
 }
 
-// Tries without any acknowledgement, by RR and MM: RR needs the maker's header.
+// number of tries without any acknowledgement, by RR and MM: RR needs the maker's header
 struct Tries {
     uint32_t rr, mm;
     unsigned tries;
@@ -198,7 +199,8 @@ TEST_F(Encryption, OnTheAirItIsAesInCounterModeOf802154) {
         EXPECT_EQ(onAir[5 + i] ^ aes(block)[i % 16], static_cast<uint8_t>(plain[i]))
             << "byte " << i;
     }
-    // FIPS-197, appendix C.1: the same key, so its digits are in the right order.
+    // FIPS-197, appendix C.1: the same key gives the same block, so the digits of the key are in
+    // the right order.
     EXPECT_EQ(aes({0x00, 0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77, 0x88, 0x99, 0xAA, 0xBB, 0xCC,
                    0xDD, 0xEE, 0xFF}),
               (Bytes{0x69, 0xC4, 0xE0, 0xD8, 0x6A, 0x7B, 0x04, 0x30, 0xD8, 0xCD, 0xB7, 0x80, 0x70,
@@ -304,7 +306,7 @@ TEST_F(Air, CarrierSenseWaitsForTheOther) {
     power({{"RO", 0}, {"RN", 3}});
     air.weather.perfect = false;
     lineB.send(Bytes(30, 'y'), now);
-    run(3 * charNs() + ms); // well on the air
+    run(3 * charNs() + ms); // the packet is certainly on the air
     send("x", 50 * ms);
     EXPECT_EQ(air.counters().collisions, 0u);
     EXPECT_EQ(heard(), std::string(30, 'y'));
@@ -315,7 +317,7 @@ TEST_F(Air, AChannelThatIsNeverClearIsCountedInEC) {
     power({{"RO", 0}}, {{"RO", 0}});
     air.weather.perfect = false;
     air.weather.delayNs = 0;
-    // Others on the channel talk without a pause.
+    // Other modems on the channel send without a pause.
     HostLine third;
     XBee::Options options;
     options.set = {{"MY", 3}, {"DL", 9}, {"MM", 1}, {"RO", 0}};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// serial_test: the modem's serial side: baud rate and its tolerance, packetizing, buffers, flow
-// control, reset.
+// serial_test: tests the modem's serial side: baud rate and its tolerance, packetizing, buffers,
+// flow control, reset.
 
 #include "pair.h"
 
@@ -58,16 +58,16 @@ TEST_F(Buffers, OnePacketIsInFlightAtATime) {
 TEST_F(Buffers, CTSGoesOffWith17BytesLeftAndComesBackWith34Free) {
     power({{"BD", 7}});
     air.weather.delayNs = 100 * ms;
-    send(std::string(100, 'x')); // in flight, so the buffer is empty
+    send(std::string(100, 'x')); // these bytes are in flight, so the buffer is empty
     send(std::string(184, 'y')); // 18 bytes are free
     EXPECT_TRUE(lineA.cts());
     send("y");
     EXPECT_FALSE(lineA.cts());
-    // The first packet has arrived, the next 100 bytes leave the buffer, 85 bytes remain.
+    // The first packet has arrived, the next 100 bytes have left the buffer, and 85 bytes remain.
     run(110 * ms);
     EXPECT_TRUE(lineA.cts());
 
-    // The other edge: with 169 bytes in the buffer 33 are free, with 168 bytes 34.
+    // The other limit: with 169 bytes in the buffer 33 bytes are free, with 168 bytes 34.
     power({{"BD", 7}, {"EE", 1}});
     air.weather.delayNs = 100 * ms;
     send(std::string(95, 'x'));
@@ -154,8 +154,8 @@ protected:
     std::unique_ptr<XBee> modem_;
     bool level_ = true;
     std::vector<uint64_t> edges_;
-    std::string sent_; // the last packet
-    RfPacket crowd_;   // sent continuously, unless it is empty
+    std::string sent_; // last packet sent
+    RfPacket crowd_;   // packet that another modem sends continuously, unless it is empty
 };
 
 class BaudTolerance : public Wire, public ::testing::WithParamInterface<double> {};
@@ -183,10 +183,10 @@ TEST_F(Wire, RepliesHaveTheModemsRateAndBDChangesAfterTheOK) {
     step(now_ + 3'000'000);
     ASSERT_TRUE(modem_->inCommandMode());
     step(now_ + 2'000'000);
-    send("ATBD7\rATCN\r", 57600); // both OKs at the old rate
+    send("ATBD7\rATCN\r", 57600); // both answers OK have the old rate
     step(now_ + 3'000'000);
     EXPECT_NEAR(modem_->baud(), 111111, 1);
-    // 'K' and 'O' have edges one bit apart: the shortest distance is a bit time.
+    // 'K' and 'O' have edges one bit apart, so the shortest distance is the time of a bit.
     uint64_t shortest = ~uint64_t(0);
     for (size_t i = 1; i < edges_.size(); ++i)
         shortest = std::min(shortest, edges_[i] - edges_[i - 1]);
@@ -199,13 +199,13 @@ TEST_F(Wire, RepliesHaveTheModemsRateAndBDChangesAfterTheOK) {
 TEST_F(Wire, BDChangesAfterTheOKThoughMoreComesThanTheOldRateCarries) {
     connect({{"BD", 3}, {"GT", 2}});
     crowd_.header = true;
-    crowd_.bytes.assign(20, 'U'); // one edge per bit
+    crowd_.bytes.assign(20, 'U'); // 'U' has an edge after each bit
     step(now_ + 1'000'000);
     send("+++", 9600);
     step(now_ + 5'000'000);
     ASSERT_TRUE(modem_->inCommandMode());
     send("ATBD7\rATCN\r", 9600);
-    step(now_ + 250'000'000); // a full buffer takes 210 ms
+    step(now_ + 250'000'000); // sending a full buffer takes 210 ms
     edges_.clear();
     step(now_ + 2'000'000);
     ASSERT_GT(edges_.size(), 2u);

@@ -18,7 +18,8 @@ protected:
     static constexpr uint64_t ms = 1'000'000;
     static constexpr uint64_t afterFrame = 544'000 + 640'000; // acknowledgement, gap
 
-    // Settings differ from: quick guard times, addresses 1 and 2.
+    // Switches both modems on. Settings that differ from the factory's: short guard times,
+    // addresses 1 and 2.
     void power(Settings forA = {}, Settings forB = {}) {
         XBee::Options optionsA, optionsB;
         optionsA.profile = optionsB.profile = profile;
@@ -53,10 +54,11 @@ protected:
         lineA.send(bytes(data), now);
         run(ns);
     }
-    // Returns the bytes that `a` has sent to its host since the last call.
+    // Returns the bytes that modem `a` has passed to its host since the last call.
     std::string heard() { return text(std::exchange(lineA.received, {})); }
     std::string heardB() { return text(std::exchange(lineB.received, {})); }
-    // Returns the bytes that `b` has sent to its host by the given time after `data` went to `a`.
+    // Returns the bytes that modem `b` passes to its host within the given time after `data` went
+    // to `a`.
     std::string across(const std::string& data, uint64_t ns) {
         send(data, ns);
         return heardB();
@@ -77,11 +79,11 @@ protected:
         Bytes bytes;
         RfChannel::Outcome outcome;
     };
-    std::string profile = "s1"; // both modems', since power()
-    bool perfect = true;        // RfWeather's, since power()
+    std::string profile = "s1"; // profile of both modems at the next power()
+    bool perfect = true;        // RfWeather::perfect at the next power()
     uint64_t now = 0;
     RfChannel air{testSeed()};
     HostLine lineA, lineB;
     std::unique_ptr<XBee> a, b;
-    std::vector<Seen> packets; // packets, first arrival first
+    std::vector<Seen> packets; // packets on the air, in the order of arrival
 };

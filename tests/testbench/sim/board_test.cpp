@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// board_test: the firmware flies through the kit's generated pins, with each modem on sale; a
-// swapped pair, a wrong alternate function, a bank without supply or a wrong place in the
-// constraints makes a flight fail.
+// board_test: tests that the firmware flies through the kit's generated pins, with each modem on
+// sale, and that a flight fails with a swapped pair, a wrong alternate function, a bank without
+// supply or a wrong place in the constraints.
 
 #include "ground.h"
 #include "m3_machine.h"
@@ -18,14 +18,14 @@ std::string textOf(const std::string& file) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// Replaces one text by another, which must exist.
+// Replaces one text, which must exist, by another one.
 std::string with(std::string text, const std::string& old, const std::string& other) {
     const size_t at = text.find(old);
     EXPECT_NE(at, std::string::npos) << old;
     return at == std::string::npos ? text : text.replace(at, old.size(), other);
 }
 
-// Exchanges two words.
+// Exchanges two words of a text.
 std::string swapped(const std::string& text, const std::string& a, const std::string& b) {
     return with(with(with(text, a, "@"), b, a), "@", b);
 }
@@ -34,7 +34,7 @@ struct Board {
     std::string wires = textOf("board.wires"), ucf = textOf("board.ucf");
 };
 
-// Flies on a board until a call has been answered, the firmware has given up, or until this time.
+// Flies on a board until a call has been answered, the firmware has given up, or the time is over.
 // Returns whether the call was answered.
 bool answersACall(const Board& board, double seconds) {
     GroundAndChip flight;
@@ -54,7 +54,7 @@ bool answersACall(const Board& board, double seconds) {
     return isAnswered;
 }
 
-constexpr double enough = 3; // s; the good board answers after 1.3 s
+constexpr double enough = 3; // time limit, s; the good board answers after 1.3 s
 
 TEST(BoardWires, AreStraightWhenTheFirmwaresTableHasSwitchedThePins) {
     Board kit;
@@ -111,7 +111,7 @@ TEST(BoardFlight, TheKitAnswersACallThroughItsGeneratedPins) {
     EXPECT_TRUE(answersACall({}, enough));
 }
 
-// A board on which no call is answered: what is wrong with it.
+// name of a board on which no call is answered, and the fault that it gets
 struct WrongBoard {
     const char* name;
     void (*spoil)(Board& board);
@@ -145,8 +145,8 @@ TEST_P(BoardFlights, AnswerNoCall) {
     EXPECT_FALSE(answersACall(board, enough));
 }
 
-// The mission through the kit's pins with each modem: set-up by the controller's AT commands, a
-// parameter, the picture's result and telemetry.
+// Flies the mission through the kit's pins with each modem: set-up by the controller's AT commands,
+// a parameter, the picture's result and telemetry.
 class ModemFlights : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(With, ModemFlights, testing::Values("s1", "s2c", "xb3"),
                          [](const auto& each) { return std::string(each.param); });

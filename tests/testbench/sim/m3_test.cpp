@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// m3_test: the firmware's ARM binary on the RTL: the same mission as the host build's, bit by bit,
-// and its failures: watchdog, faults, a corrupt image.
+// m3_test: tests the firmware's ARM binary on the RTL: the same mission as the host build's, bit by
+// bit, and its failures: watchdog, faults, a corrupt image.
 
 #include "m3_machine.h"
 #include "to_all.h"
@@ -19,14 +19,14 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-// UAV_FIRMWARE names another build, of the real uC/OS-II (docs/firmware.md).
+// UAV_FIRMWARE names another binary, such as one with the real uC/OS-II (docs/firmware.md).
 M3Machine::Config firmwareAt(uint32_t hclkHz) {
     const char* other = std::getenv("UAV_FIRMWARE");
     return {other ? other : FIRMWARE_ELF, hclkHz, Ground::guardMs};
 }
 const M3Machine::Config firmware = firmwareAt(120'000'000);
 
-// One flight: the air, both modems, the chip, and a ground station that works through calls.
+// One flight: the air, both modems, the chip, and a ground station that makes a list of calls.
 struct Flight : GroundAndChip {
     Flight() {
         air.onPacket([this](uint64_t, const RfPacket& p, RfChannel::Outcome) {
@@ -113,7 +113,7 @@ TEST(CortexM3Firmware, LosesNothingInBadWeatherAndAtTheBoardsCycleRatio) {
     f.fly(f.mission(22), 90, firmwareAt(0));
     EXPECT_EQ(f.ground.replies.size(), 27u);
     for (auto& [id, status] : f.ground.replies)
-        EXPECT_EQ(status, id < 27 ? 0 : 2) << id; // the last one calls a missing object
+        EXPECT_EQ(status, id < 27 ? 0 : 2) << id; // the last call is for a missing object
     EXPECT_GT(f.air.counters().lost, 0u);
 }
 
@@ -132,8 +132,8 @@ TEST(CortexM3Firmware, CarriesACallToAllVehiclesOutOnce) {
     EXPECT_TRUE(w.isDone);
 }
 
-// One flight, several faults: a core that hangs, a processor that hangs, the FSMC switched off, a
-// stack overflow. Each is reported in the system slot, and the link recovers by itself.
+// One flight with several faults: a core that hangs, a processor that hangs, the FSMC switched off,
+// a stack overflow. Each is reported in the system slot, and the link recovers by itself.
 TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
     Flight f;
     uint64_t since = 0;
@@ -145,7 +145,8 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
             return Boot_Reason(); // the firmware has not switched the FSMC on yet
         }
     };
-    auto readNobodysRegister = [&] { // an event, an interrupt, and the flight continues
+    auto readNobodysRegister = [&] { // the access causes an event and an interrupt, and the flight
+                                     // continues
         EXPECT_EQ(f.variable("busErrors"), 0u);
         (void)f.soc.fsmc().read32(MAP_CONTROL_WINDOW + 64 * 33 + 4 * 5);
         since = f.soc.cycles();
@@ -154,11 +155,11 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
     auto hangProcessor = [&] {
         EXPECT_EQ(f.variable("busErrors"), 1u);
         EXPECT_EQ(f.variable("busErrorPlace"), 33u * 16 + 5);
-        f.ground.ping(100, "hwengine1");            // on its way when ...
-        f.m3->cpu().setReg(CortexM3::Faultmask, 1); // ... no interrupt reaches it any more
+        f.ground.ping(100, "hwengine1");            // the call is on its way when ...
+        f.m3->cpu().setReg(CortexM3::Faultmask, 1); // ... interrupts are disabled
         return true;
     };
-    auto groundIsTold = [&] { // the link comes up again
+    auto groundIsTold = [&] { // waits for the watchdog's reset, until the link is up again
         if (f.m3->stm32().resets().watchdog == 0 || f.ground.unknown == 0 || !f.ground.isUp())
             return false;
         EXPECT_EQ(f.ground.replies.count(100), 0u);
@@ -234,7 +235,8 @@ TEST(CortexM3Firmware, ACorruptImageIsRefusedWithItsReason) {
         Flight f;
         M3Machine machine(f.soc, firmware, [&] { return f.within(0.3); });
         const ElfImage& image = *machine.stm32().image();
-        // Anywhere after the reporting code: start, boot and FSMC driver come first in the image.
+        // Flips a bit anywhere after the reporting code; start, boot and FSMC driver come first in
+        // the image.
         uint32_t begin = image.symbol("telling_end"), end = image.symbol("image_end");
         uint32_t at = begin + random.below(end - begin);
         uint8_t byte = 0;

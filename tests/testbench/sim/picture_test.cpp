@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// picture_test: a photograph is upright and as bright as its file describes it.
+// picture_test: tests that a photograph is upright, and that its grey levels are right.
 
 #include "picture.h"
 
@@ -64,7 +64,7 @@ protected:
         add(number(2, 2)); // two entries
         for (const auto& [tag, value] : {std::pair{0x0103, 6}, {0x0112, orientation}}) {
             add(number(size_t(tag), 2));
-            add(number(3, 2)); // a short number
+            add(number(3, 2)); // an entry with a 16-bit number
             add(number(1, 4));
             add(number(size_t(value), 2));
             add({0, 0});
@@ -77,9 +77,9 @@ protected:
     std::string path_;
 };
 
-// Sides of the stored row 0 and column 0 in the upright picture by EXIF 2.3, tag 0x0112: 1 top
-// left, 2 top right, 3 bottom right, 4 bottom left, 5 left top, 6 right top, 7 right bottom, 8 left
-// bottom.
+// EXIF 2.3, tag 0x0112: the sides of the upright picture at which the stored row 0 and column 0
+// are. 1 top left, 2 top right, 3 bottom right, 4 bottom left, 5 left top, 6 right top, 7 right
+// bottom, 8 left bottom.
 TEST_F(Pictures, APhotographIsUprightInEachOfTheEightOrientations) {
     const int upright[][4] = {{20, 80, 140, 220}, {80, 20, 220, 140}, {220, 140, 80, 20},
                               {140, 220, 20, 80}, {20, 140, 80, 220}, {140, 20, 220, 80},

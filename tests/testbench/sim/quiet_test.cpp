@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// quiet_test: a flight in which quiet clocks are skipped and idle cores have no clock equals, clock
-// by clock, the one in which each is evaluated and each core clocked. COMPARE_MS=1000 compares a
-// second of it. In a second flight every core works, and the camera pins change.
+// quiet_test: tests that a flight in which quiet clocks are skipped and idle cores have no clock
+// equals, clock by clock, a flight in which each clock is evaluated and each core is clocked.
+// COMPARE_MS=1000 compares one second of the flight. In a second flight every core works, and the
+// camera pins change.
 
 #include "VSoc___024root.h"
 #include "core_pins.h"
@@ -44,14 +45,14 @@ struct Plan {
                             // never
 };
 
-// Returns how much of a flight is compared (ns).
+// Returns the time of a flight that is compared, ns.
 uint64_t comparedNs() {
     const char* text = std::getenv("COMPARE_MS");
     return static_cast<uint64_t>(1e6 * (text ? std::atof(text) : 40));
 }
 
-// Makes the camera's sensor send frames: at first, each millisecond, and one while a call waits for
-// it.
+// Makes the camera's sensor send frames: at first one each millisecond, then one while a call waits
+// for it.
 void sendFrames(GroundAndChip& world, size_t framedAfter, std::function<void(uint32_t)> note) {
     Frame frame{16, 8, {}};
     for (int i = 0; i < 16 * 8; ++i)
@@ -67,7 +68,7 @@ void sendFrames(GroundAndChip& world, size_t framedAfter, std::function<void(uin
     connectSensor(world.soc, frame, sends, std::move(note));
 }
 
-// Flies until each call has been answered, and for the time that is compared.
+// Flies until each call has been answered, and until the compared time is over.
 Flight fly(const Plan& plan, bool slow) {
     Flight f;
     GroundAndChip world;
@@ -78,7 +79,7 @@ Flight fly(const Plan& plan, bool slow) {
         f.events.push_back({soc.cycles(), what, value});
     };
     soc.onTime([&](uint64_t now) {
-        note(2, 0); // the modems and the air have something to do
+        note(2, 0); // call that gives modems and air something to do
         return ground.advance(now);
     });
     soc.onIrq([&](bool high) { note(0, high); });
@@ -122,7 +123,7 @@ Flight fly(const Plan& plan, bool slow) {
     return f;
 }
 
-// Returns the quick and the slow flight, after having compared them.
+// Compares the quick flight with the slow flight, and returns both.
 std::pair<Flight, Flight> expectSame(const Plan& plan) {
     Flight quick = fly(plan, false), slow = fly(plan, true);
     EXPECT_EQ(quick.clocks, slow.clocks);
@@ -155,7 +156,7 @@ TEST(Quiet, AFlightIsTheSameWithQuietClocksPassedAtOnce) {
 }
 
 #if defined(MAP_SLOT_FIR) && defined(MAP_SLOT_ASCON)
-// A core that reports idle while it is not would stop only in the quick flight.
+// A core that reports idle although it is not would stop only in the quick flight.
 TEST(Quiet, EachCoreWorksAsIfItsClockNeverStopped) {
     std::vector<uint8_t> samples = {24}, key = {16}, message = {40};
     for (uint8_t i = 0; i < 48; ++i)
@@ -177,7 +178,8 @@ TEST(Quiet, EachCoreWorksAsIfItsClockNeverStopped) {
 }
 #endif
 
-// Random values read by an index beyond its range, and the scratch variable of such a write.
+// Verilator reads a random value at an index beyond the range, and writes to a scratch variable
+// there.
 TEST(Quiet, VerilatorsScratchIsNoStateOfTheChip) {
     SocState::Image zeros(sizeof(VSoc___024root), 0), ones(sizeof(VSoc___024root), 255);
     auto paths = SocState::differences(zeros, ones);
@@ -237,7 +239,7 @@ TEST(Quiet, TheMemoryIsReadyInItsClock) {
     EXPECT_TRUE(isMemoryReady(McbModel::startClocks));
 }
 
-// Two chips that do the same; one of them evaluates each clock.
+// Two chips with the same input; one of them evaluates each clock.
 struct Pair {
     Pair() {
         slow.evaluateAll(true);
@@ -257,7 +259,8 @@ struct Pair {
     SocModel quick{air, Ground::uavModem()}, slow{air, Ground::uavModem()};
 };
 
-// A platform that waits for the memory to be ready is static, and moves as soon as it is.
+// A platform that waits for the memory to be ready does not change, and continues as soon as the
+// memory is ready.
 TEST(Quiet, WhatWaitsForTheMemoryGoesWhenItIsReady) {
     Pair pair;
     for (SocModel* soc : {&pair.quick, &pair.slow}) {
@@ -288,7 +291,7 @@ TEST(Quiet, AMemoryThatHungGoesOnInItsClock) {
     EXPECT_EQ(pair.quick.memory().wordsWritten, 1u);
 }
 
-// Modem and air act in the clock in which they are due, whenever one looks.
+// Modem and air act in the clock in which they are due, regardless of when the test looks.
 TEST(Quiet, NothingOutsideOfTheChipIsLate) {
     GroundAndChip world;
     auto& [air, ground, soc] = world;

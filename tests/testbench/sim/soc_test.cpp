@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// soc_test: the whole chip through its FSMC pins: registers, memory, errors.
+// soc_test: tests the whole chip through its FSMC pins: registers, memory, errors.
 
 #include "driver_port.h"
 #include "map_regs.h"
@@ -67,20 +67,20 @@ TEST_F(Soc, ThePageRegisterReachesTheUpperHalf) {
     write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, 1);
     fsmc_.write16(ddr + 0x40, 0x5A5A);
     write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, 0);
-    EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_PAGE), 0u); // waits for the posted write
+    EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_PAGE), 0u); // the read waits for the posted write
     EXPECT_EQ(soc_.memory().data()[0x04000040], 0x5A);
     EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0);
 }
 
-// Each address line alone, each data line both ways: detects a line that is cut or crossed. The
-// memory has 128 MiB.
+// Sets each address line alone, and each data line to both levels; this detects a line that is cut
+// or crossed. The memory has 128 MiB.
 TEST_F(Soc, EveryLineToTheMemoryIsConnected) {
     uint32_t page = 0;
     auto place = [&](uint32_t address) {
         if (address >> 26 != page) {
             page = address >> 26;
             write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, page);
-            read(MAP_SLOT_SYSTEM, SYSTEM_PAGE); // register writes are posted
+            read(MAP_SLOT_SYSTEM, SYSTEM_PAGE); // waits, because register writes are posted
         }
         return ddr + (address & 0x03FFFFFF);
     };
@@ -101,22 +101,23 @@ TEST_F(Soc, EveryLineToTheMemoryIsConnected) {
     }
 }
 
-// Registers of all slots that can be written: walking bits over the bus and back.
+// Walks bits through the writable registers of all slots, over the bus and back.
 TEST_F(Soc, EveryLineToTheSlotsIsConnected) {
     for (unsigned bit = 0; bit < 32; ++bit) {
         write(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH, 1u << bit);
         EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH), 1u << bit);
         uint32_t address =
-            1u << bit & 0xFFFFF800; // a ring of the modem's lies at a multiple of 2048
+            1u << bit & 0xFFFFF800; // a ring of the modem begins at a multiple of 2048
         write(MAP_SLOT_MODEM, MODEM_TX_BASE, address);
         EXPECT_EQ(read(MAP_SLOT_MODEM, MODEM_TX_BASE), address);
     }
-    for (unsigned slot = 0; slot < 64; ++slot) // an empty slot answers with an error, none hangs
+    for (unsigned slot = 0; slot < 64; ++slot) // every slot answers; an empty slot answers with an
+                                               // error
         read(slot, 0);
 }
 
-// As on a board with a processor that starts before the DDR3: nothing hangs, early accesses are
-// reported, and posted writes are kept.
+// The processor starts before the DDR3, as on a board: nothing hangs, early accesses are reported,
+// and posted writes are kept.
 TEST_F(Soc, AnAccessWhileTheMemoryStartsIsToldAndLaterOnesAreRight) {
     soc_.reset(true);
     fsmc_.write16(ddr + 0x100, 0x1234);
@@ -131,7 +132,7 @@ TEST_F(Soc, AnAccessWhileTheMemoryStartsIsToldAndLaterOnesAreRight) {
     EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_EVENT), 0u);
 }
 
-// The chip, or its netlist, at the end of real wires: registers and memory in each corner of their
+// The chip, or its netlist, with real wires: registers and memory in each corner of the wires'
 // delays.
 TEST(SocCorners, NoAccessIsLostInAnyOfThem) {
     for (unsigned index = 0; index < std::size(fsmcCorners); ++index)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// standstill_test: a computation without end is reported with its functions, once; one in which
-// simulated time passes is not.
+// standstill_test: tests that a computation without end is reported once, with its functions, and
+// that a computation in which simulated time passes is not reported.
 
 #include "standstill.h"
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ extern "C" __attribute__((noinline)) void servantWithoutEnd(const Standstill& wa
                                                             unsigned reports) {
     while (watch.reports() == reports) {
     }
-    asm volatile(""); // no tail call
+    asm volatile(""); // prevents a tail call
 }
 
 TEST(Standstill, IsReportedOnceWithTheFunctionThatDoesNotEnd) {

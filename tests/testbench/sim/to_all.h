@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// to_all: a vehicle that hears calls to all vehicles. The host build and the ARM binary fly the
-// same.
+// to_all: a vehicle that receives calls to all vehicles. The host build and the ARM binary make the
+// same flight.
 
 #pragma once
 
@@ -13,7 +13,7 @@ extern "C" {
 }
 
 // A vehicle that the pilot calls, and a modem that sends calls to all vehicles. A threshold of 10
-// finds some of the picture's corners, one of 200 none.
+// finds some of the picture's corners, and a threshold of 200 finds none.
 class ToAll : public GroundAndChip {
 public:
     using Key = std::vector<uint8_t>;
@@ -34,7 +34,8 @@ public:
         });
         provide(64, 64, [](uint32_t i) { return i % 8 < 3 && i / 64 % 8 < 3 ? 150 : 100; });
     }
-    // Begins a flight; a machine continues while the function returns true.
+    // Begins a flight with these steps, and returns a function; a machine continues while the
+    // function returns true.
     std::function<bool()> flight(std::vector<Script> steps) {
         soc.reset(true);
         ground.start();
@@ -62,7 +63,7 @@ public:
             return at++ == packets.size();
         };
     }
-    // The pilot's calls; the first byte of the last one's result is 0 or not.
+    // Makes calls of the pilot; `some` states whether the first byte of the last result is not 0.
     Script calls(std::vector<Call> these, bool some = false, const char* what = "") {
         const int last = static_cast<int>(these.size());
         return inOrder({[this] { return ground.replies.clear(), true; },

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// uav_test: RTL, modems, radio and firmware together, deterministic: the ground is the same link
-// layer in this process, and requests are written byte by byte. A third modem on the air does its
-// worst: with a key nothing comes of it; in the clear a session ends.
+// uav_test: RTL, modems, radio and firmware together, deterministic. The ground station is the same
+// link layer in this process, and requests are written byte by byte. A third modem on the air
+// attacks: with a key it achieves nothing; in the clear it ends a session.
 
 #include "attacker.h"
 #include "to_all.h"
@@ -30,7 +30,7 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
     auto script =
         inOrder({ground.pinging(3),
                  [&] {
-                     ground.ping(100, "hwengine1"); // while this is on its way ...
+                     ground.ping(100, "hwengine1"); // while this call is on its way ...
                      since = soc.now();
                      return true;
                  },
@@ -40,8 +40,8 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
                      soc.modem().resetPin(false, soc.now() + 1000);
                      return hurry(10);
                  },
-                 // The link is dropped after 9 s of silence, the modem set up again 15 s later, in
-                 // its time scale.
+                 // The link is dropped after 9 s of silence, and the modem is set up again 15 s
+                 // later, in the vehicle's time scale.
                  [&] { return soc.now() - since > 2'350'000'000; },
                  [&] {
                      EXPECT_NE(Link_state(&uav_link), LINK_STATE_UP) << "the UAV has not noticed";
@@ -74,8 +74,8 @@ public:
         });
         soc.reset(true);
     }
-    // Both call at once; the observer vanishes during a call, and returns with the pilot's key,
-    // then with its key.
+    // Both ground stations call at the same time. The observer vanishes during a call, and returns
+    // first with the pilot's key, then with its own key.
     Script flight() {
         const auto vanish = [this] {
             since_ = soc.now();
@@ -152,7 +152,7 @@ TEST(Fellow, OneThatIsAwayCostsLittleOfTheAirAndTheVehicleServesItsGroundMeanwhi
     world.ground.start();
     world.soc.reset(true);
     world.provide(48, 32, [](uint32_t i) { return static_cast<uint8_t>(i * 37); });
-    // After a frame the vehicle asks the other one.
+    // After a frame, the vehicle calls the other one.
     const std::vector<Ground::Call> frame = {{"hwengine1", "startProcessing"},
                                              {"hwengine1", "getResult"}};
     std::vector<Ground::Call> calls(20, {"hwengine1", "ice_ping", 2});
@@ -276,7 +276,8 @@ protected:
     uint64_t period_ = 0, nextMischief_ = 0, boots_ = 0;
 };
 
-// Eight of them, one per epoch, ended an unencrypted session, 60 times of 60.
+// Returns resets for all epochs. Eight of them, one per epoch, ended an unencrypted session in each
+// of 60 attempts.
 Bytes blindResets() {
     Bytes all;
     for (U32 epoch = 0; epoch < 8; ++epoch) {
@@ -303,8 +304,8 @@ TEST_F(Attack, InTheClearEightBlindResetsEndASession) {
         20);
 }
 
-// Everything that is possible without the key, and twenty bytes added to each packet, while the
-// ground station and then the vehicle restart; then earlier packets are repeated.
+// Does everything that is possible without the key, and adds twenty bytes to each packet, while the
+// ground station and then the vehicle restart. Then earlier packets are repeated.
 TEST_F(Attack, WithAKeyNothingComesOfAnyMischief) {
     start(vehicleKey);
     attacker_.hinder(true);

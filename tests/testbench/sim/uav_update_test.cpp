@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// uav_update_test: new firmware over the air to the firmware's host build, with this process's
-// memory as its flash.
+// uav_update_test: sends new firmware over the air to the firmware's host build, which uses this
+// process's memory as its flash.
 
 #include "ground.h"
 #include "keys.h"
@@ -19,7 +19,7 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 constexpr uint32_t product = 77, imageBytes = 1024, half = imageBytes / 2;
-bool restarted; // the firmware has requested it
+bool restarted; // the firmware has requested a restart
 
 struct Flash {
     static uint8_t* at(void* context, U32 offset) {
@@ -54,7 +54,7 @@ protected:
         Slots_set(&flash.port, 0, SLOTS_CONFIRMED);
         flash.bytes[Slots_at(&slots_firmware, 1) + 3] = 0; // the slot must be erased
         for (size_t i = 0; i < imageBytes; ++i)
-            image[i] = static_cast<uint8_t>(i * i / 64); // its halves are alike
+            image[i] = static_cast<uint8_t>(i * i / 64); // both halves have the same contents
         std::copy_n(image.begin(), half - 16, image.begin() + half);
         uav_update[UAV_FIRMWARE] = {&flash.port, 0, product};
         uav_restart = [] { restarted = true; };
@@ -83,7 +83,7 @@ protected:
         bytes.insert(bytes.end(), data.begin(), data.end());
         return bytes;
     }
-    // The second half of the image, packed by the first.
+    // Returns the second half of the image, compressed with the first half as dictionary.
     Bytes packedHalf() {
         LZ4_stream_t stream;
         LZ4_initStream(&stream, sizeof stream);
@@ -95,7 +95,7 @@ protected:
         return packed;
     }
     // A call, and the first byte of its expected reply; 0xFF: any. Calls of getStatus are repeated
-    // until it arrives.
+    // until this byte arrives.
     struct Step {
         const char* operation;
         Bytes parameters;
@@ -132,7 +132,7 @@ protected:
     Bytes image = Bytes(imageBytes);
 };
 
-// Numbers of Update.ice.
+// error numbers of Update.ice
 enum : uint8_t { None, Foreign, Old, WrongSignature, Misplaced = 8 };
 enum : uint8_t { Idle, Receiving = 3, Ready = 5 };
 
@@ -142,7 +142,8 @@ TEST_F(UavUpdate, AnImageComesInPiecesPackedOrNotAndIsStarted) {
     fly({{"getStatus", {}, Idle},
          {"begin", encoded(headerOf(6, 1)), None},
          {"getStatus", {}, Receiving},
-         {"write", piece(half, half, packed), Misplaced}, // before the bytes that it refers to
+         {"write", piece(half, half, packed), Misplaced}, // sent before the bytes to which it
+                                                          // refers
          {"write", piece(0, half, first), None},
          {"write", piece(half, half + 4, packed), Misplaced},
          {"write", piece(half, half, packed), None},
@@ -160,7 +161,7 @@ TEST_F(UavUpdate, WhatIsRefusedChangesNothing) {
     ++changed.bytes, changed.bytes += 3;
     fly({{"begin", encoded(headerOf(5, 1)), Old},
          {"begin", encoded(headerOf(6, 0)), Foreign},
-         {"begin", {3, 1, 2, 3}, Foreign}, // not a header
+         {"begin", {3, 1, 2, 3}, Foreign}, // these bytes are not a header
          {"begin", encoded(changed), None},
          {"getStatus", {}, Idle}},
         [] { return true; });

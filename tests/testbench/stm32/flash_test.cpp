@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// flash_test: the model of the STM32F2's flash memory against PM0059.
+// flash_test: compares the model of the STM32F2's flash memory with PM0059.
 
 #include "stm32_flash.h"
 #include <algorithm>

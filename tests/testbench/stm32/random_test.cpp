@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// random_test: the registers of the random number generator, by RM0033, 20.
+// random_test: tests the registers of the random number generator against RM0033, 20.
 
 #include "random_block.h"
 #include <gtest/gtest.h>

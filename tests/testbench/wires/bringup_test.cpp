@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// bringup_test: the self-test of a new board (sw/bringup) names the wire of every planted fault.
+// bringup_test: tests that the self-test of a new board (sw/bringup) names the wire of every
+// planted fault.
 
 #include "chip_kit.h"
 #include "line_kit.h"
@@ -20,7 +21,7 @@ struct Limits { // Bringup_Limits
     uint32_t steps, modemBootMs = 2, guardMs = 20, patternKib = 1, retentionMs = 1;
 };
 
-// Runs the self-test with line_tester and one fault. A board without faults: "".
+// Runs the self-test with line_tester and one fault; "" is a board without faults.
 std::string report(const std::string& fault, uint32_t steps, const char* elf = BRINGUP_FLASH_ELF) {
     LineKit::Options options;
     if (!fault.empty())
@@ -59,7 +60,7 @@ std::vector<std::string> wiredLines() {
     return names;
 }
 
-// The report of a board with this fault has this failure, and no other one.
+// Expects that the report of a board with this fault names this failure and no other one.
 void expectNamed(uint32_t steps, const std::string& fault, const std::string& expected) {
     const std::string text = report(fault, steps);
     EXPECT_NE(text.find("\nEND "), std::string::npos) << fault << ": the self-test hangs";
@@ -153,7 +154,7 @@ TEST(Bringup, NamesALateStrobe) {
         expectNamedWithChip(memory | timing, line + ":late=20ns", line + " late");
 }
 
-// Some of the data and address lines: a chip takes half a second.
+// Tests only some of the data and address lines, because a chip takes half a second.
 TEST(Bringup, NamesLinesOfTheMemory) {
     for (unsigned line : {0, 7, 8, 15}) {
         const std::string name = "DDR_DQ" + std::to_string(line);

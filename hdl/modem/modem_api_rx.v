@@ -17,16 +17,17 @@ module modem_api_rx (
     input  wire       silent_i, // the line has been idle for three characters
     // contents out
     output wire       valid_o,  // data_i is a byte of the contents
-    output reg        end_o,    // one cycle: the contents are complete
+    output reg        end_o,    // one cycle: the contents are complete and valid
     output reg        bad_o     // one cycle: discard the bytes so far
 );
     localparam [2:0] DELIMITER = 3'd0, HIGH = 3'd1, LOW = 3'd2, DATA = 3'd3, CHECKSUM = 3'd4;
 
     reg [2:0] state;
-    reg [6:0] left; // bytes left before the checksum
+    reg [6:0] left; // bytes left before the checksum arrives
     reg [7:0] sum;
 
-    wire fits  = data_i != 8'd0 && !data_i[7] && data_i[6:4] != 3'd7; // valid as a length
+    // the byte is a valid low byte of the length
+    wire fits  = data_i != 8'd0 && !data_i[7] && data_i[6:4] != 3'd7;
     wire right = sum + data_i == 8'hFF;
 
     assign valid_o = valid_i && state == DATA;
@@ -60,11 +61,12 @@ module modem_api_rx (
     end
 
 `ifdef FORMAL
-    // The contents end once, complete or bad, and have as many bytes as the frame's length field.
+    // Proves that the contents end once, complete or bad, and have as many bytes as the frame's
+    // length field states.
     reg past = 1'b0;
     initial assume (rst_i);
-    reg       open = 1'b0;  // a frame's contents have begun and not ended
-    reg [6:0] given = 7'd0; // bytes of the contents delivered
+    reg       open = 1'b0;  // the contents of a frame have begun and have not ended
+    reg [6:0] given = 7'd0; // bytes of the contents that were delivered
     reg [6:0] length = 7'd0;
     always @(posedge clk_i) begin
         past <= 1'b1;

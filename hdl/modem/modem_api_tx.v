@@ -9,8 +9,9 @@
 module modem_api_tx (
     input  wire       clk_i,
     input  wire       rst_i,
-    input  wire       api_i,   // 0: pass through; may change only during reset
-    // packet in; valid only while the modem accepts bytes
+    input  wire       api_i,   // 1: API frames; 0: the packet passes unchanged. May change only
+                               // during reset
+    // packet to send; valid only while the modem accepts bytes
     input  wire       valid_i,
     input  wire [7:0] data_i,
     input  wire       last_i,
@@ -24,7 +25,7 @@ module modem_api_tx (
 );
     localparam [2:0] DATA = 3'd3, CHECKSUM = 3'd4;
 
-    reg [2:0] place; // current byte of the frame: 0..2 head, DATA, CHECKSUM
+    reg [2:0] place; // position in the frame: 0..2 head, DATA, CHECKSUM
     reg [7:0] sum;
 
     wire taken = valid_o && ready_i;
@@ -55,7 +56,8 @@ module modem_api_tx (
     end
 
 `ifdef FORMAL
-    // Every frame carries its length and its checksum; without frames the packet alone goes out.
+    // Proves that every frame carries its length and its checksum. Without frames, only the packet
+    // is sent.
     reg past = 1'b0;
     initial assume (rst_i);
     reg [7:0] total = 8'd0; // sum of all bytes after the length, including the checksum
@@ -73,7 +75,7 @@ module modem_api_tx (
                                        place == CHECKSUM ? 3'd0 : place + 3'd1));
             else if (!rst_i)
                 assert (place == DATA && (!taken || (valid_i && data_o == data_i)));
-            // The bytes of the packet are taken in state DATA only.
+            // The bytes of the packet are taken only in state DATA.
             assert (!ready_o || place == DATA);
             // The sum of the bytes after the length is 0xFF.
             if ($past(taken) && $past(place) == CHECKSUM)

@@ -6,9 +6,9 @@
 // Steps (STATUS.STEP): 1 +++  2 MY  3 DH  4 DL  5 CH  6 ID  7 EE  8 KY (only with EE)  9 RN  10 RO
 // 11 D6  12 D7  13 AP  14 BD  15 CN  0 the modem changes its rate. modem_at_rows contains the
 // actions of each step; this block executes them. Step 1 is tried at the target rate, at 9600 (the
-// factory setting), then at all rates from BD 7 down and at 250,000; the time waited for an answer
-// is also the guard time of the next attempt. Any other command is repeated twice if it is rejected
-// or not answered.
+// factory setting), then at all rates from BD 7 down and at 250,000. The wait for an answer at one
+// rate is also the guard time before the next attempt. Any other command is repeated twice if it is
+// rejected or not answered.
 
 `default_nettype none
 `include "shift_order.vh"
@@ -18,12 +18,12 @@ module modem_at #(
 ) (
     input  wire        clk_i,
     input  wire        rst_i,
-    // time waited, in units of a millisecond and a sixteenth
+    // time since clear_o, in units of 17/16 ms
     output wire        clear_o,
     input  wire [11:0] time_i,
     // control
     input  wire        start_i,    // allowed only while not busy
-    // with start_i: no modem is connected, the target rate is used at once
+    // with start_i: no modem is connected; the target rate is used at once
     input  wire        wire_i,
     output reg         busy_o,
     output reg         done_o,     // one cycle
@@ -31,7 +31,7 @@ module modem_at #(
     output reg         retried_o,  // one cycle
     output reg  [3:0]  step_o,
     output reg  [3:0]  bd_o,       // baud rate in use
-    // settings: the word with index word_o, as soon as it is available
+    // settings: word_i is the word with index word_o, valid as soon as it is available
     output wire [4:0]  word_o,
     input  wire [31:0] word_i,
     input  wire        word_valid_i,
@@ -47,18 +47,18 @@ module modem_at #(
     localparam [3:0] SETTLES = 4'd0, ENTER = 4'd1;
     localparam [3:0] FACTORY_BD = 4'd3, HIGHEST_BD = 4'd7;
 
-    reg [5:0] place;    // table row in the current step
+    reg [5:0] place;    // row of the table in the current step
     `SHIFT_ORDER(after, 6)
-    reg       fresh;    // the line is not idle yet, so the time does not advance
-    reg       steady;   // the character to send is there
+    reg       fresh;    // the line was not idle yet, so the time does not advance
+    reg       steady;   // the character to send is available
     reg [3:0] value;    // last digit
-    // a command has failed once / twice; in step 1: the next rate is the factory's / the next lower
-    // one
+    // tried: a command has failed once; walks: it has failed twice. In step 1, tried: the next rate
+    // is 9600; walks: the next rate is the next lower one
     reg       tried, walks;
-    reg       heard_o, heard_k; // the reply ends with "O" / with "OK"
-    reg       ok, refused;      // one cycle: the reply is complete
-    reg [3:0] same;             // three bits each of time and guard time
-    reg       counts;           // the digits are complete: compare time and guard time
+    reg       heard_o, heard_k; // heard_o: the reply ends with "O"; heard_k: it ends with "OK"
+    reg       ok, refused;      // one cycle: a complete reply was "OK"; was something else
+    reg [3:0] same;             // bit i: bits 3i+2..3i of the time equal those of the guard time
+    reg       counts;           // the time runs and the guard time is available, so `same` is valid
 
     wire       send, digit, rate, guard, hear, limit, refuse, skip, settle;
     wire [7:0] data;
@@ -79,7 +79,7 @@ module modem_at #(
         .limit_o(limit), .refuse_o(refuse), .skip_o(skip), .settle_o(settle), .data_o(data)
     );
 
-    // The next lower rate; the one after the lowest is 250,000.
+    // the next lower rate; the rate after the lowest one is 250,000
     wire [3:0] lower =
         {bd_o[2:0] == 3'd0, bd_o[2] ^ (bd_o[1:0] == 2'd0), bd_o[1] ~^ bd_o[0], ~bd_o[0]};
 
@@ -145,7 +145,7 @@ module modem_at #(
         if (missed && enters)
             bd_o <= walks ? lower : tried ? HIGHEST_BD : FACTORY_BD;
         if (rate && word_valid_i)
-            bd_o <= {word_i[4], word_i[2:0]}; // 0..7, 8 for 0x3D090
+            bd_o <= {word_i[4], word_i[2:0]}; // codes 0..7; 8 is 0x3D090
 
         if (start) begin
             step_o <= wire_i ? SETTLES : ENTER;
@@ -165,11 +165,11 @@ module modem_at #(
     end
 
 `ifdef FORMAL
-    // Each step needs an OK from the modem; then the set-up ends.
+    // Proves that each step needs an OK from the modem, and that the set-up then ends.
     localparam [3:0] EE = 4'd7, RN = 4'd9;
     reg past = 1'b0;
     initial assume (rst_i);
-    reg [23:0] heard = 24'd0; // the last three characters since the command
+    reg [23:0] heard = 24'd0; // last three characters received since the command
     always @(posedge clk_i) begin
         past <= 1'b1;
         if (send)

@@ -13,19 +13,19 @@ module modem_at_rows #(
     parameter API = 1
 ) (
     input  wire       clk_i,
-    input  wire       clear_i, // the next row is 0
+    input  wire       clear_i, // the next row is row 0 of the step
     input  wire [3:0] step_i,
-    input  wire [5:0] place_i, // counted in the order of a shift register
-    // the row, a cycle later
-    output wire       send_o,   // send a character
+    input  wire [5:0] place_i, // row in the step, counted in the order of a shift register
+    // flags of the row, one cycle later
+    output wire       send_o,   // the row sends a character
     output wire       digit_o,  // the character is the hex digit of a nibble
-    output wire       rate_o,   // switch to the target rate
-    output wire       guard_o,  // wait for the guard time
-    output wire       hear_o,   // OK ends the step
+    output wire       rate_o,   // switches to the target rate
+    output wire       guard_o,  // waits for the guard time
+    output wire       hear_o,   // "OK" ends the step
     output wire       limit_o,  // half a second without an answer is a failure
     output wire       refuse_o, // any other answer is also a failure
-    output wire       skip_o,   // skip the next step if the last digit was even
-    output wire       settle_o, // wait until the modem has changed its rate, and end
+    output wire       skip_o,   // skips the next step if the last digit was even
+    output wire       settle_o, // waits until the modem has changed its rate, and ends the set-up
     output wire [7:0] data_o
 );
     `include "modem_regs.vh"
@@ -33,7 +33,7 @@ module modem_at_rows #(
     localparam [8:0] SEND = 9'd1,  DIGIT = 9'd2,  RATE   = 9'd4,  GUARD = 9'd8,
                      HEAR = 9'd16, LIMIT = 9'd32, REFUSE = 9'd64, SKIP  = 9'd128, SETTLE = 9'd256;
     localparam KEY = 8, RATE_OF = 14, LEAVE = 15; // steps; step 0 follows LEAVE
-    localparam [7:0] SETTINGS = {1'b0, MODEM_BAUD, 3'd0}; // rate and guard time
+    localparam [7:0] SETTINGS = {1'b0, MODEM_BAUD, 3'd0}; // setting word with rate and guard time
 
     // The letters after "AT" of a command: two or, with a constant value, three.
     function [23:0] letters(input integer step);
@@ -57,8 +57,8 @@ module modem_at_rows #(
     function integer letter_count(input integer step);
         letter_count = letters(step) < 24'h10000 ? 2 : 3;
     endfunction
-    function [7:0] letter(input [23:0] text, input integer left); // the character with `left`
-                                                                  // others after it
+    function [7:0] letter(input [23:0] text, input integer left); // Returns the character that has
+                                                                  // `left` characters after it.
         case (left)
             0:       letter = text[7:0];
             1:       letter = text[15:8];
@@ -79,7 +79,7 @@ module modem_at_rows #(
             default: digit_count = 0;
         endcase
     endfunction
-    // {word, nibble} with `left` others after it
+    // Returns {word, nibble} of the digit that has `left` digits after it.
     function [7:0] digit(input integer step, input [4:0] left);
         case (step)
             2:       digit = {1'b0, MODEM_ADDR, left[2:0]};
@@ -102,7 +102,7 @@ module modem_at_rows #(
     initial begin
         for (i = 0; i < 1024; i = i + 1)
             rows[i] = 17'd0;
-        // +++ between two guard times
+        // "+++" between two guard times
         rows[64] = {GUARD | RATE, SETTINGS};
         at = after(6'd0);
         for (k = 0; k < 3; k = k + 1) begin
@@ -112,7 +112,7 @@ module modem_at_rows #(
         rows[{4'd1, at}] = {GUARD | HEAR, SETTINGS};
         at = after(at);
         rows[{4'd1, at}] = {HEAR | LIMIT, 8'd0};
-        // "AT", letters, digits, return; then the answer
+        // "AT", letters, digits, carriage return; then the wait for the answer
         for (i = 2; i <= LEAVE; i = i + 1) begin
             rows[64*i] = {SEND, "A"};
             rows[64*i + 1] = {SEND, "T"};

@@ -33,7 +33,7 @@ module modem_baud #(
     reg  [4:0]       count; // ticks of 38400 baud
 
     // The step is selected by a chain of conditions, because Yosys turns a case into a ROM with
-    // registers in front. It is negative: only in a difference is the phase certain to be the
+    // registers in front. The step is negative: only in a difference is `phase` certain to be the
     // operand that enters the carry chain without a LUT.
     localparam [WIDTH:0] FULL = 0;
     wire [WIDTH:0] minus = bd_i[3] ? FULL - BD8[WIDTH:0] : bd_i == 4'd7 ? FULL - BD7[WIDTH:0]
@@ -53,7 +53,7 @@ module modem_baud #(
     end
 
 `ifdef FORMAL
-    // n clocks equal one step of n, which the simulator adds at once
+    // Proves that n clocks equal one step of n, which the simulator adds at once
     // (testbench/sim/quiet_span.cpp). A span may begin in any clock in which no carry and no tick
     // is in progress.
     (* anyseq *) reg begins;
@@ -65,7 +65,7 @@ module modem_baud #(
     reg [27:0] product; // n times the step
     wire [18:0] step   = FULL - minus;
     wire [27:0] sum    = {10'd0, phase_then} + product;
-    wire [27:0] before = sum - {10'd0, step[17:0]}; // a clock ago
+    wire [27:0] before = sum - {10'd0, step[17:0]}; // the sum one clock ago
     wire [27:0] older  = before - {10'd0, step[17:0]};
     initial assume (rst_i);
     always @(posedge clk_i) begin
@@ -99,10 +99,12 @@ module modem_baud #(
         end
         cover (past && spans && bd_i == rate && tick_o);
     end
-    // So many carries a second as eight ticks a bit time have, within 0.1 %; each tick is of so
-    // many.
+    // The number of carries per second equals eight ticks per bit time times the carries per tick,
+    // within 0.1 %.
     localparam [63:0] SECOND = CLK_HZ;
-    function near(input [31:0] phase_step, input [63:0] wanted); // carries a second, times 2**WIDTH
+    function near(input [31:0] phase_step, input [63:0] wanted); // Returns whether a step gives the
+                                                                 // wanted number of carries per
+                                                                 // second, times 2**WIDTH.
         near = {32'd0, phase_step} * SECOND * 64'd1000 >= wanted * 64'd999 &&
             {32'd0, phase_step} * SECOND * 64'd1000 <= wanted * 64'd1001;
     endfunction

@@ -15,17 +15,17 @@ module modem_npi (
     // valid in that clock
     input  wire [31:11] base_i,
     input  wire        base_valid_i,
-    // write a byte: {buffer, word in it}, place in the word
+    // writes a byte: {buffer, word in the buffer}, place in the word
     input  wire        wr_valid_i,
     input  wire [10:3] wr_addr_i,
     input  wire [7:0]  wr_be_i,
     input  wire [7:0]  wr_data_i,
     output wire        wr_ready_o,   // accepted
     output wire        wr_busy_o,    // an accepted write is not acknowledged yet
-    // read a byte; a read that is withdrawn for a cycle never completes
+    // reads a byte; a read that is withdrawn for a cycle never completes
     input  wire        rd_valid_i,
     input  wire [10:0] rd_addr_i,
-    output wire        rd_done_o,    // one cycle, with the data
+    output wire        rd_done_o,    // one cycle: the data is valid
     output reg  [7:0]  rd_data_o,
     // memory port
     output wire [31:0] npi_addr_o,
@@ -76,7 +76,7 @@ module modem_npi (
         wanted <= rd_valid_i && (wanted || state == IDLE);
         case (state)
             IDLE: begin
-                // not `start`, which arrives late
+                // wr_valid_i instead of `start`, because `start` arrives late
                 addr <= {base_i, wr_valid_i ? wr_addr_i[10:3] : rd_addr_i[10:3]};
                 if (start && wr_valid_i)
                     state <= WRITE;
@@ -95,11 +95,11 @@ module modem_npi (
     end
 
 `ifdef FORMAL
-    // Words and acknowledgements keep the rules of a memory port.
+    // Proves that words and acknowledgements keep the rules of a memory port.
     reg past = 1'b0;
     initial assume (rst_i);
-    reg [4:0] words = 5'd0; // words pushed and not acknowledged
-    reg       owed  = 1'b0; // a word was requested and has not arrived
+    reg [4:0] words = 5'd0; // words pushed and not yet acknowledged
+    reg       owed  = 1'b0; // a word was requested and has not yet arrived
     always @(posedge clk_i) begin
         past <= 1'b1;
         // The memory acknowledges only requests, and returns a word only for an acknowledged read.
@@ -115,19 +115,19 @@ module modem_npi (
             owed  <= 1'b0;
         end
         if (past && !rst_i && !$past(rst_i)) begin
-            // A request and its address are stable until it is acknowledged.
+            // A request and its address are stable until the request is acknowledged.
             if ($past(npi_addr_req_o) && !$past(npi_addr_ack_i))
                 assert (npi_addr_req_o && $stable(npi_addr_o) && $stable(npi_rnw_o));
-            // Exactly one word of data before each write.
+            // Before each write, exactly one word of data is pushed.
             assert (words == (state == WRITE));
             assert (owed == (state == WAIT_WORD));
             assert (!(npi_rd_pop_o && npi_rd_empty_i));
-            // A read that was withdrawn is never done, a write that was taken is requested.
+            // A withdrawn read is never done, and an accepted write is requested.
             if (rd_done_o)
                 assert ($past(rd_valid_i) && rd_valid_i && $past(wanted));
             if ($past(wr_ready_o))
                 assert (wr_busy_o);
-            // Each request goes to its word of the ring, with the byte enable of its byte.
+            // Each request is for the right word of the ring, and enables only the addressed byte.
             if (npi_addr_req_o && !$past(npi_addr_req_o))
                 assert (npi_addr_o ==
                         {$past(base_i), $past(wr_ready_o ? wr_addr_i : rd_addr_i[10:3]), 3'd0});
@@ -137,7 +137,8 @@ module modem_npi (
         end
         cover (past && !rst_i && wr_busy_o && npi_addr_ack_i);
         cover (past && !rst_i && rd_done_o);
-        cover (past && start && wr_valid_i && rd_valid_i); // the write goes first
+        cover (past && start && wr_valid_i && rd_valid_i); // reaches a write that is served before
+                                                           // a read
         cover (past && !rst_i && npi_rd_pop_o && !rd_done_o);
     end
 `endif

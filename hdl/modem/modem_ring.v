@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_ring: bookkeeping of a ring of sixteen buffers: which are in use, and how many bytes each
-// contains.
+// modem_ring: bookkeeping of a ring of sixteen buffers: which buffers are in use, and how many
+// bytes each contains.
 //
 // Pushing while full and popping while empty are errors of the user; modem.v excludes them.
 
@@ -9,18 +9,18 @@
 
 module modem_ring (
     input  wire       clk_i,
-    input  wire       rst_i,   // also empties the ring
+    input  wire       rst_i,   // reset, which also empties the ring
     input  wire       push_i,  // buffer next_o contains bytes_i bytes
     input  wire [6:0] bytes_i,
     input  wire       pop_i,   // frees the oldest buffer
     output wire [3:0] next_o,
     output wire [3:0] oldest_o,
-    output wire [6:0] bytes_o, // bytes in the oldest buffer
+    output wire [6:0] bytes_o, // number of bytes in the oldest buffer
     output wire [4:0] free_o   // number of free buffers, 0..16
 );
     reg [6:0] bytes [0:15];
-    reg [4:0] head; // oldest buffer, plus sixteen
-    reg [4:0] tail; // next buffer to fill
+    reg [4:0] head; // number of the oldest buffer, with one more bit
+    reg [4:0] tail; // number of the next buffer to fill, with one more bit
 
     assign next_o   = tail[3:0];
     assign oldest_o = head[3:0];
@@ -39,10 +39,10 @@ module modem_ring (
     end
 
 `ifdef FORMAL
-    // A length leaves unchanged, and the count of free buffers is correct.
+    // Proves that a length leaves unchanged, and that the count of free buffers is correct.
     reg past = 1'b0;
     initial assume (rst_i);
-    // The length of any one buffer in any one turn leaves unchanged, in its position.
+    // The length of any buffer, in any turn of the ring, leaves unchanged, in its position.
     (* anyconst *) reg [4:0] place;
     reg [6:0] length;
     reg       inside = 1'b0;

@@ -3,8 +3,8 @@
 // modem_rx: writes bytes from the modem into the receive ring, one packet per buffer.
 //
 // A packet ends after the length given by its first byte ((byte & 127) + 5, if at most 100), at 100
-// bytes, after 3.2 characters of silence, or at a framing error; in API mode a packet is the
-// contents of a frame, and ends with them. A packet is in memory before it is published. If no
+// bytes, after 3.2 characters of silence, or at a framing error. In API mode, a packet is the
+// contents of a frame, and ends with the frame. A packet is in memory before it is published. If no
 // buffer is free, the whole packet is dropped. If the memory is more than a byte time late, the
 // current packet and the bytes that follow without a pause are lost; earlier packets are kept.
 
@@ -12,13 +12,14 @@
 
 module modem_rx (
     input  wire       clk_i,
-    input  wire       rst_i,      // also drops the current packet
-    input  wire       tick_i,     // eight a bit time
-    input  wire       api_i,      // packets end as in modem_api_rx, at rx_end_i or rx_bad_i
+    input  wire       rst_i,      // reset, which also drops the current packet
+    input  wire       tick_i,     // eight ticks per bit time
+    input  wire       api_i,      // API mode: packets end as in modem_api_rx, at rx_end_i or
+                                  // rx_bad_i
     // bytes in
     input  wire       rx_valid_i,
     input  wire [7:0] rx_data_i,
-    input  wire       rx_error_i, // the current packet ends here
+    input  wire       rx_error_i, // framing error: the current packet ends here
     input  wire       rx_end_i,   // the packet is complete (API)
     input  wire       rx_bad_i,   // the packet must be dropped (API)
     output wire       silent_o,   // 3.2 characters without a byte
@@ -26,20 +27,21 @@ module modem_rx (
     // memory
     output wire       wr_valid_o,
     output reg  [7:0] wr_data_o,
-    output reg  [6:0] wr_index_o, // byte of the packet
-    output reg  [7:0] wr_be_o,    // one bit: its position in a word of eight bytes
+    output reg  [6:0] wr_index_o, // index of the byte in the packet
+    output reg  [7:0] wr_be_o,    // byte enable, one bit: the byte's position in a word of eight
+                                  // bytes
     input  wire       wr_ready_i,
     input  wire       wr_busy_i,
     // ring
     input  wire       full_i,
     output wire       push_o,     // the packet is complete: wr_index_o bytes
-    output reg        overrun_o   // one cycle: dropped
+    output reg        overrun_o   // one cycle: a packet or bytes were dropped
 );
-    reg [6:0] length;   // announced number of bytes minus 5; ignored above 95
+    reg [6:0] length;   // announced number of bytes minus 5; ignored if above 95
     reg       near;     // wr_index_o / 4 is length / 4 + 1
     reg [8:0] silence;  // ticks; 256 are 3.2 characters
     reg       pending;  // wr_data_o waits
-    reg       ending;   // the last byte is in wr_data_o or written
+    reg       ending;   // the last byte is in wr_data_o or has been written
     reg       dropping; // no buffer was free for this packet, or a byte of it was lost
     reg       deaf;     // bytes were lost: the input is ignored until there is silence
 
@@ -103,7 +105,8 @@ module modem_rx (
         if (silent)
             deaf <= 1'b0;
         if (late) begin
-            // The earlier byte still waits and is lost, with its packet if that is not complete.
+            // The earlier byte has not been taken and is overwritten. If its packet is incomplete,
+            // the packet is lost as well.
             deaf    <= 1'b1;
             pending <= 1'b0;
             if (!ending) begin
@@ -124,16 +127,16 @@ module modem_rx (
     end
 
 `ifdef FORMAL
-    // A packet is published once, after all its bytes are in memory.
+    // Proves that a packet is published once, after all its bytes are in memory.
     wire [6:0] most = api_i ? 7'd113 : 7'd100;
     reg past = 1'b0;
     initial assume (rst_i);
     (* anyseq *) reg acknowledge;
-    reg       owed  = 1'b0; // a write was taken and is not acknowledged
-    reg [6:0] wrote = 7'd0; // bytes of this packet in memory or on the way
-    reg [8:0] ticks = 9'd0; // 80 a character, since the latest byte
-    reg       lost  = 1'b0; // a byte of this packet was replaced before it was taken
-    reg [7:0] latest = 8'd0; // the latest byte
+    reg       owed  = 1'b0; // a write was taken and is not yet acknowledged
+    reg [6:0] wrote = 7'd0; // number of bytes of this packet that are in memory or on their way
+    reg [8:0] ticks = 9'd0; // ticks since the latest byte; 80 per character
+    reg       lost  = 1'b0; // a byte of this packet was overwritten before it was taken
+    reg [7:0] latest = 8'd0; // latest byte from the UART
     reg [6:0] announced;     // length given by the first byte written
     wire      write = wr_valid_o && wr_ready_i;
     always @(posedge clk_i) begin
@@ -144,7 +147,7 @@ module modem_rx (
         assume (!wr_ready_i || (wr_valid_o && !owed));
         assume (wr_busy_i == owed);
         owed <= write || (owed && !acknowledge);
-        // In modem.v only a packet fills the ring, and that is known a clock later.
+        // In modem.v, only a packet fills the ring, and the block sees a full ring one clock later.
         if (past)
             assume (!full_i || $past(full_i) || $past(push_o));
         wrote <= wrote + write;
@@ -177,8 +180,8 @@ module modem_rx (
             assert (!overrun_o || $past(late || dropping));
             assert (!(overrun_o && $past(push_o && !late)));
             assert (!lost || (ending && dropping));
-            assert (silence == ticks); // 256 are 3.2 characters
-            // After a loss, input is ignored until there is silence: the tail of a packet is not
+            assert (silence == ticks); // both counts reach 256 after 3.2 characters
+            // After a loss, input is ignored until there is silence, so the tail of a packet is not
             // taken for a packet.
             assert (deaf || !$past(deaf) || $past(silence[8]));
             // The packet has the length given by its first byte.

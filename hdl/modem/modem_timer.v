@@ -15,8 +15,8 @@ module modem_timer #(
     output reg  [11:0] time_o  // units since clear_i
 );
     localparam [31:0] CLOCKS = CLK_HZ / 16000 * 17;
-    localparam [16:0] FIRST  = 17'd1 - CLOCKS[16:0]; // two clocks before the tick the counter is
-                                                     // 2**17 - 1
+    localparam [16:0] FIRST  = 17'd1 - CLOCKS[16:0]; // first value; two clocks before the tick the
+                                                     // counter is 2**17 - 1
 
     reg [16:0] clocks;
 
@@ -35,8 +35,8 @@ module modem_timer #(
     end
 
 `ifdef FORMAL
-    // time_o counts the ticks since clear_i. Up to the tick, n clocks equal one step of n, which
-    // the simulator adds at once.
+    // Proves that time_o counts the ticks since clear_i. Up to the tick, n clocks equal one step of
+    // n, which the simulator adds at once.
     (* anyseq *) reg begins; // a span
     reg        past = 1'b0, spans = 1'b0;
     reg [16:0] then, n;
@@ -62,12 +62,12 @@ module modem_timer #(
             assert (time_o ==
                     ($past(rst_i || clear_i) ? 12'd0 : $past(time_o) + {11'd0, $past(tick_o)}));
             assert (!tick_o || !$past(clear_i));
-            // States the registers, so that the prover need not find them.
+            // States the values of the registers, so that the prover need not find them.
             assert (passed <= LAST + 17'd1 && (tick_o || passed != LAST + 17'd1));
             if (spans) begin
                 assert (n != 17'd0 && sum <= {1'b0, LAST} + 18'd1);
                 assert ({1'b0, passed} == sum && time_o == time_then);
-                // exactly in this clock
+                // the tick occurs exactly in this clock
                 assert (tick_o == (sum == {1'b0, LAST} + 18'd1));
             end
         end

@@ -10,14 +10,14 @@
 
 module modem_tx (
     input  wire       clk_i,
-    input  wire       rst_i,        // also drops the current packet
+    input  wire       rst_i,        // reset, which also drops the current packet
     input  wire       enable_i,     // the modem is configured
     input  wire       encrypt_i,    // the modem encrypts
     input  wire       api_i,        // API mode: no pause after a frame
     // oldest packet of the ring
     input  wire       packet_valid_i,
     input  wire [6:0] packet_bytes_i,
-    output reg        sent_o,       // one cycle: the packet is sent and its buffer is free
+    output reg        sent_o,       // one cycle: the packet has been sent, and its buffer is free
     // memory
     output wire       rd_valid_o,
     output wire [6:0] rd_index_o,   // index of the byte in the packet
@@ -27,19 +27,21 @@ module modem_tx (
     output wire       tx_valid_o,
     output reg  [7:0] tx_data_o,    // 0 while not enabled
     input  wire       tx_ready_i,   // one cycle per tick (eight per bit) while the line is idle
-    output wire       tx_last_o,    // the last byte of the packet
+    output wire       tx_last_o,    // this is the last byte of the packet
     input  wire       cts_i         // 1: the modem accepts bytes
 );
     localparam [1:0] FETCH = 2'd0, SEND = 2'd1, REST = 2'd2;
     wire [6:0] longest = encrypt_i ? 7'd95 : 7'd100;
 
     reg [1:0] state;
-    reg [8:0] count; // bytes read; in REST ticks of silence
+    reg [8:0] count; // number of bytes read; in state REST, ticks of silence
     // in REST: the modem sends this packet without a pause; a register, to shorten the path
     reg       whole;
 
-    wire last   = rd_index_o == packet_bytes_i;                // all its bytes are out
-    wire rested = (count[8] && count[6]) || whole || api_i; // after 320 ticks
+    wire last   = rd_index_o == packet_bytes_i;                // all bytes of the packet have been
+                                                               // read
+    wire rested = (count[8] && count[6]) || whole || api_i; // 320 ticks have passed, or no pause is
+                                                            // needed
 
     wire leaves = tx_valid_o && tx_ready_i;
     wire ends   = state == REST && (tx_ready_i || api_i) && rested;
@@ -69,7 +71,7 @@ module modem_tx (
                 state  <= FETCH;
             end
         endcase
-        if (rd_done_i || (state == REST && tx_ready_i)) // rd_done_i only in FETCH
+        if (rd_done_i || (state == REST && tx_ready_i)) // rd_done_i occurs only in state FETCH
             count <= count + 9'd1;
         if (begin_anew || ends || (leaves && last))
             count <= 9'd0;
@@ -81,18 +83,19 @@ module modem_tx (
     end
 
 `ifdef FORMAL
-    // The bytes of a packet leave once, in order, and its buffer is freed after the last.
+    // Proves that the bytes of a packet leave once, in order, and that its buffer is freed after
+    // the last byte.
     reg past = 1'b0;
     initial assume (rst_i);
-    reg [6:0] out  = 7'd0; // bytes of this packet that have left
-    reg [7:0] read = 8'd0; // the latest byte read
+    reg [6:0] out  = 7'd0; // number of bytes of this packet that have left
+    reg [7:0] read = 8'd0; // latest byte read
     reg [8:0] rest;        // ticks since the last byte left
-    reg       full;        // the modem sends the packet at once because of its length
+    reg       full;        // the modem sends the packet without a pause because of its length
     always @(posedge clk_i) begin
         past <= 1'b1;
         if (past)
             assume ($stable(api_i));
-        // The ring keeps its oldest packet, of 1..105 bytes (modem.v), until it is sent.
+        // The ring keeps its oldest packet, of 1..105 bytes (modem.v), until the packet is sent.
         if (past && $past(packet_valid_i) && !$past(sent_o) && !$past(rst_i))
             assume (packet_valid_i && $stable(packet_bytes_i));
         assume (packet_bytes_i >= 7'd1 && packet_bytes_i <= 7'd105);
@@ -121,7 +124,7 @@ module modem_tx (
                 assert (ends == (api_i || full || rest >= 9'd320));
             assert (state != REST || (count == rest && whole == full));
         end
-        if (past) // each state is at a known byte; the induction rests on this
+        if (past) // Each state is at a known byte; the induction needs this.
             case (state)
                 FETCH:   assert (sent_o ? packet_valid_i && rd_index_o == 7'd0 &&
                                  out == packet_bytes_i :

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_uart_rx: receives bytes, 8N1, eight ticks a bit; samples each bit within an eighth before
-// its middle.
+// modem_uart_rx: receives bytes, 8N1, eight ticks per bit; samples each bit within an eighth of a
+// bit before its middle.
 
 `default_nettype none
 
 module modem_uart_rx (
     input  wire       clk_i,
     input  wire       rst_i,
-    input  wire       tick_i, // eight a bit time
+    input  wire       tick_i, // eight ticks per bit time
     // pin, asynchronous
     input  wire       rxd_i,
-    // bytes out: one cycle each
+    // received bytes: one cycle each
     output reg        valid_o,
     output wire [7:0] data_o,          // valid for at least one bit time
     output reg        framing_error_o, // the stop bit was low: the byte is dropped
@@ -20,8 +20,9 @@ module modem_uart_rx (
     wire      rxd_sync;
     cdc_bit #(.INITIAL(1'b1)) u_rxd (.clk_i(clk_i), .bit_async_i(rxd_i), .bit_sync_o(rxd_sync));
     reg [2:0] ticks;
-    reg [8:0] bits;    // enter at the top, above a 1 that reaches the bottom with the eighth
-    reg       idle;    // no start bit was seen
+    reg [8:0] bits;    // bits received; they enter at the top, above a 1 that reaches the bottom
+                       // with the eighth bit
+    reg       idle;    // no start bit was seen since the last byte
     reg       started; // the start bit was still low in its middle
     reg       armed;   // the line has been high since the last byte
 
@@ -45,7 +46,7 @@ module modem_uart_rx (
             started <= 1'b1;
             if (!started) begin
                 bits <= 9'h100;
-                idle <= line; // a glitch, no start bit
+                idle <= line; // a glitch is not a start bit
             end else if (!bits[0]) begin
                 bits <= {line, bits[8:1]};
             end else begin
@@ -65,20 +66,20 @@ module modem_uart_rx (
     end
 
 `ifdef FORMAL
-    // A byte from a sender of the same rate is received once, in its stop bit; a tick without a
-    // sample changes nothing else. With `sender` the sender advances one tick per clock. Otherwise
-    // ticks and line are free, and only changes are checked.
+    // Proves that a byte from a sender of the same rate is received once, in its stop bit, and that
+    // a tick without a sample changes nothing else. With `sender`, the sender advances one tick per
+    // clock. Otherwise ticks and line are free, and only changes are checked.
     (* anyconst *) reg sender;
     reg past = 1'b0;
     wire busy = !idle;
     initial assume (rst_i);
     (* anyconst *) reg [7:0] sent;
     (* hierconn, init = 1'b1 *) wire \u_rxd.bit_meta ;
-    reg [6:0] age = 7'd127; // ticks since the start bit's edge reached the first flip-flop; 127:
-                            // not yet
+    reg [6:0] age = 7'd127; // ticks since the edge of the start bit reached the first flip-flop;
+                            // 127: no start bit yet
     wire [9:0] frame = {1'b1, sent, 1'b0};
     wire [6:0] before = age - 7'd1;
-    wire [3:0] got = (age - 7'd6) >> 3; // data bits sampled
+    wire [3:0] got = (age - 7'd6) >> 3; // number of data bits sampled
     always @(posedge clk_i) begin
         past <= 1'b1;
         assume (tick_i || !sender);
@@ -95,7 +96,8 @@ module modem_uart_rx (
             assert (valid_o == (age == 7'd78));
             if (valid_o)
                 assert (data_o == sent);
-            // States the registers in each clock of a frame, so that the prover need not find them.
+            // States the values of the registers in each clock of a frame, so that the prover need
+            // not find them.
             assert (age <= 7'd90 || age == 7'd127);
             assert (line == (age >= 7'd1 && age <= 7'd80 ? frame[before[6:3]] : 1'b1));
             assert (busy == (age >= 7'd2 && age <= 7'd77));

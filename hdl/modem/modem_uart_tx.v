@@ -7,7 +7,7 @@
 module modem_uart_tx (
     input  wire       clk_i,
     input  wire       rst_i,
-    input  wire       tick_i,  // eight per bit
+    input  wire       tick_i,  // eight ticks per bit
     // bytes in
     input  wire       valid_i,
     input  wire [7:0] data_i,
@@ -21,7 +21,7 @@ module modem_uart_tx (
     reg       line;
     reg       busy;
 
-    // Bytes follow each other without a gap; one more tick a byte would cost 1.2 % of the line.
+    // Bytes follow each other without a gap; one more tick per byte would cost 1.2 % of the line.
     wire ends = busy && ticks == 3'd7 && bits == 9'd0;
     assign ready_o = tick_i && (!busy || ends);
     assign txd_o   = line;
@@ -49,12 +49,12 @@ module modem_uart_tx (
     end
 
 `ifdef FORMAL
-    // A byte that was taken is on the line as start bit, eight bits and stop bit.
+    // Proves that a byte that was taken is on the line as start bit, eight bits and stop bit.
     // `sent` is any byte that was taken; each of its ten bits lasts eight ticks.
     reg past = 1'b0;
     initial assume (rst_i);
     reg [7:0] sent;
-    reg [6:0] age = 7'd80; // ticks since the byte was taken; 80: it is finished
+    reg [6:0] age = 7'd80; // ticks since the byte was taken; 80: the byte is finished
     wire [9:0] frame = {1'b1, sent, 1'b0};
     always @(posedge clk_i) begin
         past <= 1'b1;
@@ -69,7 +69,7 @@ module modem_uart_tx (
         if (past) begin
             assert (ready_o == (tick_i && age >= 7'd79));
             assert (txd_o == (age == 7'd80 ? 1'b1 : frame[age[6:3]]));
-            // A tick within a bit moves `ticks` alone: the simulator skips it.
+            // A tick within a bit changes only `ticks`: the simulator skips it.
             if (!$past(rst_i) && $past(busy && ticks != 3'd7))
                 assert ({busy, bits, line} == $past({busy, bits, line}) &&
                         ticks == $past(ticks) + {2'd0, $past(tick_i)});
@@ -78,7 +78,7 @@ module modem_uart_tx (
                 assert ({busy, bits, line, ticks} == $past({busy, bits, line, ticks}));
         end
         cover (past && age == 7'd80 && $past(age) == 7'd79 && sent == 8'hA5);
-        cover (past && age == 7'd0 && $past(age) == 7'd79); // the next byte follows at once
+        cover (past && age == 7'd0 && $past(age) == 7'd79); // reaches a byte that follows at once
     end
 `endif
 `ifdef COVER_POINTS

@@ -122,6 +122,68 @@ class Rdl(unittest.TestCase):
                          ('ends in "quotes"', "a\\", 'say "hi"', "reg"))
         self.refused(["'signal' is a keyword"], "reg { field {} A; } signal @ 0;")
 
+    def test_enumerators_with_properties_are_skipped(self):
+        made = register('enum mode { IDLE = 0 { name = "Idle"; desc = "a } brace"; }; RUN = 1; '
+                        'HALT; }; reg { field { encode = mode; } M[2]; } R @ 0;')
+        self.assertEqual(made["fields"][0]["width"], 2)
+
+    def test_a_default_holds_for_what_comes_after_it(self):
+        made = read("addrmap a { reg { field {} A; } R; default sw = r; reg { field {} B; } S; "
+                    "reg { default sw = rw; field {} C; default hw = w; field {} D; } T; };")[0]
+        self.assertEqual([r["access"] for r in made["registers"]], ["rw", "ro", "rw"])
+
+    def test_what_is_given_twice(self):
+        for text in ("reg { field { sw = r; sw = rw; } A; } R;",
+                     "default sw = r; default sw = rw; reg { field {} A; } R;",
+                     "field f { sw = r; }; field f {}; reg { f A; } R;",
+                     "property p { component = reg; type = string; }; "
+                     "property p { component = reg; type = string; }; reg { field {} A; } R;"):
+            self.refused(["already"], text)
+        self.refused(["'counter' already exists"], "property counter { component = field; type = "
+                     "number; }; reg { field { counter; } A; } R;")
+        self.refused(["R: duplicate name, first on line 2"],
+                     "reg { field {} A; } R;\nreg { field {} A; } R;")
+        self.refused(["S has the address of R"],
+                     "reg { field {} A; } R @ 4; reg { field {} A; } S @ 4;")
+
+    def test_texts_and_comments_end(self):
+        self.refused(["no closing quote"], 'desc = "open; reg { field {} A; } R;')
+        self.refused(["comment has no end"], "reg { field {} A; } R; /* open")
+        for text in ("5", '"a" "b"', "name"):
+            self.refused(["expected one text in quotes"],
+                         "reg { desc = %s; field {} A; } R;" % text)
+        self.refused(["without */"], 'reg { desc = "a */ b"; field {} A; } R;')
+
+    def test_numbers_fit_their_width(self):
+        self.refused(["expected a value of 2 bits, got 7"], "reg { field {} A[7:0] = 2'h7; } R;")
+        self.refused(["reset: 1'd2"], "reg { field { reset = 1'd2; } A[7:0]; } R;")
+        made = register("reg { field {} A[15:0] = 1_000; } R;")
+        self.assertEqual(made["fields"][0]["reset"], "0x3E8")
+        self.refused(["accesswidth: expected at most 8"], "reg { regwidth = 8; accesswidth = 32; "
+                     "field {} A[8]; } R;")
+        for bits in ("[8]", "= 1"):
+            self.refused(["single pulse"], "reg { field { singlepulse; } A %s; } R;" % bits)
+
+    def test_common_registers_are_those_of_a_slot(self):
+        common = ("reg { field {} VERSION[16]; field {} TYPE[16]; } ID @ %d; reg { field {} GO; } "
+                  "EVENT @ 4; reg { field {} %s; } MASK @ 8;")
+        self.assertEqual(read("addrmap a {%s};" % common % (0, "GO"))[0]["events"][0]["name"], "GO")
+        self.refused(["expected words 0, 1 and 2"], common % (12, "GO"))
+        self.refused(["the same fields"], common % (0, "STOP"))
+        self.refused(["the same fields"], common.replace("GO", "GO[2]") % (0, "GO[2]"))
+        self.refused(["expected the fields VERSION"], common.replace("TYPE", "KIND") % (0, "GO"))
+
+    def test_messages_name_what_is_wrong(self):
+        for words, text in (("type 'missing' is not defined", "missing R;"),
+                            ("Perl", "<% print 1; %> reg { field {} A; } R;"),
+                            ("expected a component or a property, got ';'", ";"),
+                            ("sw: expected a value", "reg { field { sw = ; } A; } R;"),
+                            ("'A__B': expected a name", "reg { field {} A__B; } R;"),
+                            ("'R_': expected a name", "reg { field {} A; } R_;")):
+            self.refused([words], text)
+        with self.assertRaisesRegex(Wrong, "1: error: 'sw': a property belongs"):
+            read("sw = r; addrmap a { reg { field {} A; } R; };")
+
     def test_what_is_not_part_of_the_subset(self):
         for text in ("signal { } s;", "alias R reg { field {} A; } S;", "R->desc = \"x\";",
                      "R.A->reset = 1;", "`include \"x.rdl\"", "reg { field {} A; } R[4];",

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """rdl: makes register descriptions (*.regs.json) from SystemRDL 2.0.
 
-    ./icesoc from-rdl --rdl spi.rdl --out FOLDER
+    ./icesoc contract from-rdl spi.rdl --out FOLDER
 
 Reads a flat subset: addrmap, reg and field. Register n of an addrmap gets word FIRST + n, after the
 three words that every slot has; an addrmap that begins with ID, EVENT and MASK, as in
@@ -31,15 +31,16 @@ def number_of(component, name, otherwise):
         return otherwise
     try:
         return number(text)
-    except (ValueError, IndexError):
-        fail(component.lines.get(name, component.line),
-             f"{name}: expected a number, got {text[:40]}; the flat subset has no expressions and "
-             "references")
+    except ValueError as error:
+        fail(component.lines.get(name, component.line), f"{name}: {error}")
 
 
 def text_of(component):
-    text = component.get("desc") or component.get("name") or ""
-    return unquoted(text) if text.startswith('"') else ""
+    text = unquoted(component.get("desc") or component.get("name") or '""')
+    if "*/" in text:
+        fail(component.lines.get("desc", component.line),
+             f"expected a text without */, which would end a comment, got \"{text[:60]}\"")
+    return text
 
 
 def present(instances):
@@ -101,6 +102,7 @@ class Fields:
 
     def add(self, instance, name, lsb, width):
         field, line = instance.component, instance.line
+        check_name(instance.name, line)
         access = access_of(field, name, line)
         bits = (1 << width) - 1 << lsb
         if self.used & bits:
@@ -114,6 +116,8 @@ class Fields:
             self.strobes |= {"read"} if field.is_set("swacc") else set()
         made = {"name": instance.name, "lsb": lsb, "width": width, "doc": text_of(field)}
         reset = instance.reset if instance.reset is not None else number_of(field, "reset", None)
+        if field.is_set("singlepulse") and (width > 1 or reset):
+            fail(line, f"{name}: expected one bit with reset 0, because it is a single pulse")
         if reset:
             if reset >> width:
                 fail(line, f"{name}: reset {reset} does not fit {width} bits")
@@ -129,8 +133,14 @@ class Fields:
         self.fields.append(made)
 
 
+def check_name(name, line):
+    if not re.fullmatch("[A-Za-z][A-Za-z0-9]*(_[A-Za-z0-9]+)*", name):
+        fail(line, f"'{name[:60]}': expected a name of letters, digits and single _ between them")
+
+
 def register_of(instance, word):
     name, register = instance.name, instance.component
+    check_name(name, instance.line)
     found = Fields(register, name)
     if not found.fields:
         fail(instance.line, f"{name} has no field")
@@ -176,6 +186,9 @@ def addresses_of(component):
             fail(instance.line, f"expected a reg in an addrmap, got {register.kind}")
         size = number_of(register, "regwidth", 32) // 8
         step = size
+        if number_of(register, "accesswidth", 8 * size) > 8 * size:
+            fail(register.lines.get("accesswidth", register.line),
+                 f"accesswidth: expected at most {8 * size}, the width of {instance.name}")
         if component.get("addressing") == "compact":
             step = min(size, number_of(register, "accesswidth", 8 * size) // 8)
         step = max(step, alignment)
@@ -201,7 +214,20 @@ def unit_of(placed, component):
     return sizes.pop()
 
 
+def check_common(found, line):
+    """Checks the registers ID, EVENT and MASK, which each slot has in words 0, 1 and 2."""
+    if [r["word"] for r in found] != [0, 1, 2]:
+        fail(line, "ID, EVENT and MASK: expected words 0, 1 and 2")
+    ident, events, masks = ([(f["name"], f["lsb"], f["width"]) for f in r.get("fields", [])]
+                            for r in found)
+    if ident and ident != [("VERSION", 0, 16), ("TYPE", 16, 16)]:
+        fail(line, "ID: expected the fields VERSION[15:0] and TYPE[31:16]")
+    if events != masks or any(width != 1 for *_, width in events):
+        fail(line, "EVENT and MASK: expected the same fields of one bit in both")
+
+
 def block_of(name, component, first):
+    check_name(name, component.line)
     placed = addresses_of(component)
     unit = unit_of(placed, component) if placed else 4
     registers = [register_of(instance, address // unit) for instance, address, _ in placed]
@@ -213,6 +239,7 @@ def block_of(name, component, first):
     block.update(type=f"0x{int.from_bytes(letters.encode(), 'big'):04X}", version="0x0100")
     events = []
     if [r["name"] for r in registers[:3]] == ["ID", "EVENT", "MASK"]:
+        check_common(registers[:3], lines["ID"])
         resets = {f["name"]: f.get("reset") for f in registers[0].get("fields", [])}
         for key, field in (("type", "TYPE"), ("version", "VERSION")):
             if resets.get(field):
@@ -227,6 +254,10 @@ def block_of(name, component, first):
         if register["word"] > 15:
             fail(lines[register["name"]], f"{register['name']}: expected a word from 0 to 15, got "
                  f"{register['word']}; a slot has 16 words")
+        other = next(r["name"] for r in registers if r["word"] == register["word"])
+        if other != register["name"]:
+            fail(lines[register["name"]],
+                 f"{register['name']} has the address of {other}: give it another")
     return dict(block, registers=registers, **({"events": events} if events else {}))
 
 
@@ -276,8 +307,6 @@ def main():
     parser.add_argument("--first", type=int, default=3,
                         help="word of the first register (default 3)")
     args = parser.parse_args()
-    if not args.file or not args.folder:
-        sys.exit("usage: make from-rdl RDL=spi.rdl OUT=ip/spi")
     try:
         files = {os.path.join(args.folder, block["block"] + ".regs.json"): block
                  for block in blocks_of(args.file, args.first)}
@@ -289,7 +318,9 @@ def main():
         sys.exit(f"{args.file}:1: error: its components are nested too deep")
     except UnicodeDecodeError:
         sys.exit(f"{args.file}:1: error: expected text in UTF-8")
-    except (Wrong, OSError) as e:
+    except OSError as e:
+        sys.exit(f"{e.filename or args.file}: error: {e.strerror}")
+    except Wrong as e:
         text = str(e)
         sys.exit(f"{args.file}:{'' if text[0].isdigit() else ' error: '}{text}")
     print("\n".join(files))

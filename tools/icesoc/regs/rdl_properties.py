@@ -48,12 +48,17 @@ VALUES = {"sw": SW, "hw": HW, "regwidth": BITS, "accesswidth": BITS, "onwrite": 
 FLAGS = {"ispresent", "woclr", "woset", "singlepulse", "hwclr", "hwset", "swmod", "swacc"}
 
 
+def is_standard(name):
+    """Returns whether a word is a property of SystemRDL 2.0, or modifies one (`posedge intr`)."""
+    return name in (TAKEN | WITHOUT_EFFECT | set(OFF)) - {"memory_bytes"}
+
+
 def problem_of(kind, name, value, declared):
     """Returns why a property of a component cannot be taken, or "". `kind`: addrmap, reg, field;
     root and defaults may have any. `declared`: names of the properties declared in the file."""
     if name in declared:
         return ""
-    if name not in TAKEN | WITHOUT_EFFECT | set(OFF):
+    if not is_standard(name) and name not in TAKEN:
         return f"'{name}' is not a property of SystemRDL 2.0"
     if name not in OF_COMPONENT[kind]:
         return f"'{name}' is not a property of {kind}"

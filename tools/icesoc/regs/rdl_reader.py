@@ -8,22 +8,32 @@ import re
 from dataclasses import dataclass, field
 
 from icesoc.regs import rdl_properties
-from icesoc.regs.model import Wrong, check
+from icesoc.regs.model import Wrong
 
 TOKEN = re.compile(
-    r'(?P<string>"(?:[^"\\]|\\.)*")|(?P<number>\d+\'[hbdoHBDO][\da-fA-F_]+|0[xX][\da-fA-F_]+|\d+)'
+    r'(?P<string>"(?:[^"\\]|\\.)*")'
+    r'|(?P<number>\d+\'[hbdoHBDO][\da-fA-F_]+|0[xX][\da-fA-F_]+|\d[\d_]*)'
     r'|(?P<name>\\?[A-Za-z_]\w*)|(?P<sign>->|[+%]=|[^\s])', re.A | re.S)
 OTHERS = {"regfile", "mem", "signal", "struct", "constraint", "alias", "abstract"}
 BASES = {"h": 16, "b": 2, "d": 10, "o": 8}
 
 
 def number(text):
-    check(len(text) <= 80, f"a number of {len(text)} digits")
-    text = text.replace("_", "").lower()
-    if "'" in text:
-        digits = text.split("'")[1]
-        return int(digits[1:], BASES[digits[0]])
-    return int(text, 16 if text.startswith("0x") else 10)
+    """Returns the value of a number; raises ValueError with the reason."""
+    expected = (f"expected a number, got {text[:40]}; the flat subset has no expressions and "
+                "references")
+    if len(text) > 80:
+        raise ValueError(expected)
+    digits = text.replace("_", "").lower()
+    sized = re.fullmatch(r"(\d+)'([hbdo])([\da-f]+)", digits, re.A)
+    try:
+        value = (int(sized[3], BASES[sized[2]]) if sized
+                 else int(digits, 16 if digits.startswith("0x") else 10))
+    except ValueError:
+        raise ValueError(expected) from None
+    if sized and value >> int(sized[1]):
+        raise ValueError(f"{text}: expected a value of {sized[1]} bits, got {value}")
+    return value
 
 
 def unquoted(text):
@@ -41,22 +51,22 @@ class Component:
     lines: dict = field(default_factory=dict)  # line numbers of properties
     types: dict = field(default_factory=dict)
     children: list = field(default_factory=list)
+    # defaults that were set before this component, in the components around it
+    inherited: dict = field(default_factory=dict)
+
+    def __post_init__(self):
+        if self.parent:
+            self.inherited = {**self.parent.inherited, **self.parent.defaults}
 
     def find_type(self, name):
         return self.types.get(name) or (self.parent and self.parent.find_type(name))
-
-    def default(self, name):
-        if name in self.defaults:
-            return self.defaults[name]
-        return self.parent and self.parent.default(name)
 
     def get(self, name, otherwise=None):
         """Returns the text of a property: "true" if it has no value, or its default if it is not
         set."""
         if name in self.properties:
             return self.properties[name]
-        value = self.parent and self.parent.default(name)
-        return otherwise if value is None else value
+        return self.inherited.get(name, otherwise)
 
     def is_set(self, name):
         return self.get(name, "false") == "true"
@@ -86,6 +96,11 @@ class Reader:
                        for m in TOKEN.finditer(text)]
         self.at, self.last = 0, text.count("\n") + 1
         self.declared = set()  # properties that the file declares
+        for n, (_, token, line) in enumerate(self.tokens):
+            if token == '"':
+                self.fail("this text has no closing quote", line)
+            if token == "/" and self.peek(n + 1) == "*":
+                self.fail("this comment has no end", line)
 
     @property
     def line(self):
@@ -114,13 +129,11 @@ class Reader:
 
     def take_number(self):
         try:
-            is_number = self.at < len(self.tokens) and self.tokens[self.at][0] == "number"
-            value = number(self.peek()) if is_number else 1 << 64
-        except ValueError:  # 2'b3
-            value = 1 << 64
+            value = number(self.peek())
+        except ValueError as error:
+            self.fail(str(error))
         if value >= 1 << 64:
-            self.fail(f"'{self.peek()[:80]}' is not a number; expressions and parameters are not "
-                      "part of the flat subset")
+            self.fail(f"expected a number below 2^64, got {self.peek()}")
         self.take()
         return value
 
@@ -137,7 +150,10 @@ class Reader:
             elif word == "enum":
                 self.skip()
             elif word == "property":
-                self.declared.add(self.take_name())
+                name = self.take_name()
+                if name in self.declared or rdl_properties.is_standard(name):
+                    self.fail(f"property '{name}' already exists", line)
+                self.declared.add(name)
                 self.skip()
             elif word == "default":
                 self.property(parent, parent.defaults, self.take())
@@ -152,18 +168,34 @@ class Reader:
                           "the flat subset: set the property where the component is", line)
             elif parent.find_type(word.lstrip("\\")) and self.peek() not in ("=", ";"):
                 self.instances(parent, parent.find_type(word.lstrip("\\")))
+            elif word == "<":
+                self.fail("the Perl preprocessor is not part of the flat subset", line)
+            elif not re.match(r"[A-Za-z_\\]", word):
+                self.fail(f"expected a component or a property, got '{word}'", line)
+            elif re.match(r"[A-Za-z_\\]", self.peek()) and not rdl_properties.is_standard(word):
+                self.fail(f"type '{word}' is not defined", line)
+            elif parent.kind == "root":
+                self.fail(f"'{word}': a property belongs into a component, or after 'default'",
+                          line)
             else:
                 self.property(parent, parent.properties, word, line)
             self.take(";")
 
     def skip(self):
-        while self.take() != "}":
+        """Skips a declaration up to the brace that closes it; enumerators may have braces."""
+        while self.take() != "{":
             pass
+        depth = 1
+        while depth:
+            depth += {"{": 1, "}": -1}.get(self.take(), 0)
 
     def component(self, made):
         parent = made.parent
         if self.peek() != "{":
-            parent.types[self.take_name()] = made
+            line, name = self.line, self.take_name()
+            if name in parent.types:
+                self.fail(f"type '{name}' already exists, on line {parent.types[name].line}", line)
+            parent.types[name] = made
         if self.peek() == "#":
             self.fail("parameters are not part of the flat subset")
         self.take("{")
@@ -188,10 +220,16 @@ class Reader:
             while self.peek() not in (";", ""):
                 parts.append(self.take())
             value = " ".join(parts)
+            if not parts:
+                self.fail(f"{name}: expected a value")
+            if name in ("name", "desc") and (len(parts) > 1 or value[0] != '"'):
+                self.fail(f"{name}: expected one text in quotes, got {value[:60]}", line)
         kind = component.kind if where is component.properties else "root"
         problem = rdl_properties.problem_of(kind, name, value, self.declared)
         if problem:
             self.fail(problem, line)
+        if name in where:
+            self.fail(f"property '{name}' is already set in this component", line)
         where[name] = value
         component.lines[name] = line
 
@@ -218,6 +256,8 @@ class Reader:
             if self.peek() in ("+=", "%="):
                 self.fail("strides are not part of the flat subset: give each register its address")
             made.line = line
+            if other := next((c for c in parent.children if c.name == made.name), None):
+                self.fail(f"{made.name}: duplicate name, first on line {other.line}", line)
             parent.children.append(made)
             if self.peek() != ",":
                 return

@@ -202,8 +202,8 @@ def contract_diff(values):
                                Option("out", FOLDER, "output folder", "")],
          make="from-rdl", brief="contract from-rdl build/main/gen/icesoc.rdl --out build/brief/rdl",
          examples=[
-             "contract from-rdl spi.rdl",
              "contract from-rdl spi.rdl --out ip/spi",
+             "contract from-rdl ../regs/uart.rdl --out ip/uart",
              "contract from-rdl build/main/gen/icesoc.rdl --out /tmp/regs"])
 def from_rdl(values):
     """convert SystemRDL into register descriptions (*.regs.json)
@@ -211,4 +211,7 @@ def from_rdl(values):
     Reads a flat subset of SystemRDL 2.0: addrmap, reg, field and their properties, without
     parameters and expressions. Error messages contain file and line.
     """
+    if not values.rdl or not values.out:
+        raise Stop("from-rdl: expected a SystemRDL file and an output folder: ./icesoc contract "
+                   "from-rdl spi.rdl --out ip/spi", 2)
     return run([*tool("regs.rdl"), values.rdl, values.out], check=False)

@@ -6,9 +6,10 @@
 // For words 3..15, one mask per kind selects the words of that kind. A word has at most one kind; a
 // word without a kind answers with an error. WIDTHS has 6 bits per word: bits above a word's width
 // read as 0 and have no storage.
-//   RW   value_o holds what was written; reset to 0
+//   RW   value_o holds the written value; reset to 0
 //   RO   reads value_i
-//   W1C  bits set by value_i stay until 1 is written to them; one set while it is cleared stays set
+//   W1C  bits set by value_i stay until 1 is written to them; a bit that is set while it is cleared
+//        stays set
 //   WS   a write acts through strobe_o and wdata_o; reads give 0, nothing is stored
 // strobe_o marks each write to a word in the cycle of the write, when wdata_o is valid and value_o
 // still has the old value. Word w is at bit 32*(w-3) of the vectors, and at bit w-3 of strobe_o.

@@ -84,8 +84,8 @@ module bus_to_wishbone #(
         assert (!(wb_stb_o && outstanding));      // at most one transfer at a time
         assume (wb_ack_i + wb_err_i + wb_rty_i <= 1); // 3.45: at most one of ACK, ERR and RTY is
                                                       // high
-        // 3.55: outside a cycle the slave may keep its answer signals high, so nothing is assumed
-        // about them then.
+        // 3.55: outside a cycle the slave may keep its answer signals high, so no assumption is
+        // made about these signals then.
         if (PIPELINED != 0 && wb_cyc_o && !outstanding && !taken)
             assume (!answer);                   // 3.35: the slave answers only after it has taken
                                                 // the strobe

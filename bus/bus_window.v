@@ -5,8 +5,8 @@
 //
 //   0..2  ID, EVENT, MASK (bus_wrapper); EVENT bit 0: the core's interrupt line was high,
 //         bit 1: TIMEOUT, the core did not answer
-//   3     PAGE rw: byte address in the core of word 8, a multiple of 32; 0 if the core has
-//         eight words or less, which then repeat
+//   3     PAGE rw: byte address in the core of word 8, a multiple of 32. If the core has eight
+//         words or fewer, PAGE is 0 and the words repeat
 //   8..15 words of the core at PAGE + 0, 4, .. 28
 //
 // If the core does not answer within TIMEOUT clocks, or answers with an error, the access ends with

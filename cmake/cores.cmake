@@ -24,10 +24,10 @@ foreach(line IN LISTS lines)
   endif()
 endforeach()
 list(REMOVE_DUPLICATES CHIP_CORES)
-# Number of servants in the object adapter: the vehicle's and those of all cores, but at least 8,
-# the default (sw/icec/ice_config.h). It is set for the library icec on the host and, in
-# ARM_DEFINES, for the firmware. Connections: four each for a ground station, a second one and
-# another vehicle.
+# Number of servants in the object adapter: the servants of the vehicle and of all cores, but at
+# least 8, the default (sw/icec/ice_config.h). The host's library icec gets it, and the firmware by
+# ARM_DEFINES. Number of connections: four for a ground station, four for a second ground station,
+# and four for another vehicle.
 set(ARM_DEFINES ICE_CONNECTIONS=12)
 set(header ${CMAKE_SOURCE_DIR}/sw/vehicle/uav_tasks.h)
 set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})

@@ -2,11 +2,11 @@
 # SPDX-License-Identifier: MIT
 #
 # setup: installs the Debian packages that `make run` needs and the machine lacks; on a terminal it
-# asks before it calls sudo. It is shell because an empty Debian has no Python.
+# asks before it calls sudo. It is a shell script because an empty Debian has no Python.
 # Usage: cmake/setup.sh [--packages] [--tests] [--check]
-# --packages: also those that make and check Debian packages
-# --tests: also those for tests, reports and debuggers, and for packages
-# --check: only lists missing ones (exit status 1 if there are any)
+# --packages: also packages that make and check Debian packages
+# --tests: also packages for tests, reports and debuggers, and the packages of --packages
+# --check: only lists missing packages (exit status 1 if a package is missing)
 
 set -eu
 tests='' packaging='' check=''

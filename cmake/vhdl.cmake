@@ -11,8 +11,9 @@ add_custom_target(ghdl DEPENDS ${GHDL})
 
 # icesoc_vhdl(NAME entity SOURCES file... [REGS block...] [LIBRARY name] [LIBRARIES name=file...]
 #             [GENERICS name=value...] [FOREIGN]): ${GEN_DIR}/<entity>.v, target <entity>_verilog.
-# LIBRARY is the library of SOURCES. The files may be in any order. GHDL names them as it gets them:
-# relative to the tree, so that copies of it elsewhere get the same Verilog.
+# LIBRARY is the library of SOURCES. The files may be in any order. GHDL writes the names of the
+# files into the Verilog as it gets them. They are relative to the tree, so that copies of the tree
+# give the same Verilog.
 function(icesoc_vhdl)
   cmake_parse_arguments(A "FOREIGN" "NAME;LIBRARY" "SOURCES;REGS;GENERICS;LIBRARIES" ${ARGN})
   list(TRANSFORM A_LIBRARIES REPLACE "(.+)" "--in;\\1" OUTPUT_VARIABLE members)

@@ -5,10 +5,10 @@
 # Usage: vhdl_to_verilog.sh [--foreign] [--library NAME] [--in NAME=file.vhd]...
 #                           [--generic NAME=value]... GHDL work-folder entity output.v file.vhd...
 # The files may be in any order.
-#   --foreign   third-party sources, which may use Synopsys' packages and what other tools allow;
-#               their assertions are for their own simulations
+#   --foreign   third-party sources: they may use Synopsys' packages, and constructs that other
+#               tools allow; their assertions are removed
 #   --library   VHDL library of the files, if they refer to themselves by its name (default: work)
-#   --in        name of a further library, and a file of it
+#   --in        name of a further library, and a file of this library
 #   --generic   value of a generic of the entity
 
 set -eu

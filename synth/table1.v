@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // table1: the content of the paper's Table I: FSMC bridge, memory controller with two NPI ports,
-// radio IP. With MODEM_API = 1 the modem is the one that flies (hdl/soc.v).
+// radio IP. With MODEM_API = 1, the modem controller is the one of the flying chip (hdl/soc.v).
 //
-// The table does not contain the system slot (page register, errors). Its signals are ports here,
-// and slot 0 answers as an empty slot does.
+// The table does not contain the system slot (page register, errors). The signals of the system
+// slot are ports here, and slot 0 answers like an empty slot.
 
 `default_nettype none
 

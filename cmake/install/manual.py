@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""manual: writes a program's manual page from what its --help prints.
+"""manual: writes a program's manual page from the output of its --help.
 
     manual.py PAGE.1.gz --name NAME --purpose TEXT --version VERSION -- COMMAND --help
 

@@ -13,7 +13,7 @@ module system_slot #(
     parameter [32*SLOTS-1:0] CONTRACTS = {SLOTS{32'd0}} // hashes of the register maps, slot 0 first
 ) (
     `include "slot_ports.vh"
-    // interrupt lines of slots SLOTS-1..1, and the one to the processor
+    // interrupt lines of slots SLOTS-1..1, and the interrupt line to the processor
     input  wire [SLOTS-1:1] slot_irq_i,
     output wire             irq_o,
     // FSMC bridge
@@ -51,7 +51,8 @@ module system_slot #(
 
     assign irq_o = |lines;
 
-    // hash is looked up when the slot number is written, so that a read comes from a register
+    // hash of the slot, looked up when the slot number is written, so that a read comes from a
+    // register
     reg [31:0] asked;
     integer    s;
     always @* begin

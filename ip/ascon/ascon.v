@@ -110,8 +110,8 @@ module ascon (
                            // after a start or a word, when it would be wrong
     wire [23:0] words = in_tag ? 24'd2 : {3'd0, left[23:3]} + {23'd0, |left[2:0]};
 
-    // Enabled bytes of this word: all eight, or the remaining ones. The padding adds a 1 bit after
-    // them.
+    // Byte enables of this word: all eight bytes, or only the remaining ones. The padding adds a 1
+    // bit after them.
     wire        last = in_word && few;
     wire [7:0]  be   = last ? ~(8'hFF << left[2:0]) : 8'hFF;
     wire [63:0] pad  = last ? 64'd1 << {left[2:0], 3'd0} : 64'd0;

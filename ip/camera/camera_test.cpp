@@ -18,8 +18,8 @@ constexpr int width = 40, height = 12;
 class CameraTest : public ::testing::Test {
 protected:
     CameraTest() {
-        // Time advances in half periods of the fabric clock. Edges of the pixel clock are 1 to 3 of
-        // them apart and fall before or after the fabric clock's edges.
+        // Time advances in half periods of the fabric clock. The edges of the pixel clock are 1 to
+        // 3 half periods apart, and fall before or after the fabric clock's edges.
         bench_.addModel([this] { edge(); }, [this] { edge(); });
         bench_.reset();
         bus_.write(CAMERA_MASK, 0x7F);
@@ -204,7 +204,7 @@ TEST_F(CameraTest, AMemoryThatIsTooSlowIsToldAndTheNextFrameIsRight) {
     uint32_t events = drain();
     EXPECT_EQ(bus_.read(CAMERA_FRAMES), 0u) << events;
     auto pixels = picture();
-    sensor_.addFrame(picture(), width, height); // this frame ends the one that the lost lines left
+    sensor_.addFrame(picture(), width, height); // ends the frame that the lost lines left
                                                 // incomplete
     sensor_.addFrame(pixels, width, height);
     events |= drain();
@@ -238,8 +238,8 @@ TEST_F(CameraTest, TheFrameThatAnotherCoreHasIsNotOverwritten) {
     }
 }
 
-// One of the clocks tried is the clock in which the next frame is kept. The taken frame must be
-// complete, and stay complete until the next one is taken.
+// In one of the clocks that are tried, the next frame is delivered. The taken frame must be
+// complete, and must stay complete until the next frame is taken.
 TEST_F(CameraTest, AnotherCoreTakesAFrameInAnyClock) {
     constexpr int w = 8, h = 1;
     slowest_ = 1;

@@ -114,7 +114,7 @@ TEST_F(FirCore, WhatIsGivenUpLeavesTheMemoryPortInOrder) {
     Random random(testSeed());
     auto list = random.items<Ice_Short>(256);
     for (int clocks = 1; clocks < 190; clocks += 7) {
-        // Does what the servant does after a time-out: start, then reset of the core.
+        // Acts like the servant after a time-out: start, then reset of the core.
         filter(list);
         core_.bus_.write(FIR_CONTROL, 1u << 3);
         for (int i = 0; i < clocks; ++i)
@@ -136,7 +136,7 @@ TEST_F(FirCore, ACountWrittenBehindTheStartDoesNotChangeTheCall) {
         core_.bus_.write(FIR_CONTROL, 1u << 3);
         for (int i = 0; i < clocks; ++i)
             core_.tick();
-        // The next call waits until the words requested by this one have arrived.
+        // The next call waits until the words requested by this call have arrived.
         core_.bus_.write(FIR_CONTROL, 1u << 31);
         core_.bus_.write(FIR_CONTROL, 1u << 3);
         core_.bus_.write(FIR_FILTER_IN0, 8);

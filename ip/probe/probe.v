@@ -98,8 +98,8 @@ module probe #(
         end
         if (hit) begin
             triggered <= 1'b1;
-            trigger   <= next; // index of this clock's entry or, if that entry is lost, of the next
-                               // one
+            trigger   <= next; // index of the entry of this clock or, if that entry is lost, of the
+                               // next entry
             left      <= after[LOG2_RING-1:0];
         end
         if (running && (ended || stop)) begin

@@ -85,15 +85,15 @@ architecture rtl of vision is
   signal go            : std_logic; -- one clock after `accept`; the settings are loaded until then
   signal first_pixel, memory_base : std_logic_vector(31 downto 0);
 
-  -- stream: x is the column of the pixel being taken, lines_left the number of lines including this
-  -- one; score_x, score_y and kept_x, kept_y are the positions of the score and of the output of
-  -- vision_suppress
+  -- stream: x is the column of the pixel being taken, and lines_left the number of lines including
+  -- the current one. score_x, score_y and kept_x, kept_y are the positions of the score that enters
+  -- vision_suppress and of the score that leaves it
   signal x             : unsigned(9 downto 0);
   signal lines_left    : unsigned(15 downto 0);
   signal score_x, kept_x : unsigned(9 downto 0);
   signal score_y, kept_y : unsigned(16 downto 0);
-  signal fill          : unsigned(3 downto 0); -- steps since the start, up to those that the first
-                                               -- kept score needs
+  signal fill          : unsigned(3 downto 0); -- number of steps since the start; counts only up to
+                                               -- the first kept score
   signal take, real_pixel, pixel_valid, pixel_take, last : std_logic;
   signal streaming     : std_logic; -- state = STREAM and not stop
   -- `step` is `take` one clock later. Everything after the window advances with this register,
@@ -151,8 +151,8 @@ begin
   done    <= quiet when state = DRAIN else '0';
   refused <= ((start and idle) or offered) and not size_ok;
 
-  -- The next frame starts only after the results of the last one have been read, which is when DONE
-  -- has been cleared.
+  -- The next frame starts only after the results of the last frame have been read. Software shows
+  -- this by clearing DONE.
   offered <= follow and frame_valid_i and not written and not done_pending
              and idle;
   idle   <= '1' when state = WAIT_FOR_START and go = '0' else '0';

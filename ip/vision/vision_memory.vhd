@@ -15,8 +15,8 @@ entity vision_memory is
     rst_i          : in  std_logic;
     -- frame control is idle; the addresses are loaded in each clock until start
     idle_i         : in  std_logic;
-    start_i        : in  std_logic;                     -- high for one clock, the first one without
-                                                        -- idle_i
+    start_i        : in  std_logic;                     -- high for one clock: the first clock in
+                                                        -- which idle_i is low
     stop_i         : in  std_logic;                     -- no further reads; words that arrive later
                                                         -- are dropped
     frame_base_i   : in  std_logic_vector(31 downto 0);

@@ -160,8 +160,8 @@ TEST_F(VisionTest, FollowsAnotherCoresFramesAndWaitsForItsReader) {
         bench_.tick();
         EXPECT_FALSE(top.frame_take_o) << "taken once";
         bench_.waitFor([&] { return top.irq_o; }, "the core's interrupt", 100000);
-        for (int i = 0; i < 50; ++i) { // the next frame is offered, but the results of this one
-                                       // have not been read
+        for (int i = 0; i < 50; ++i) { // the next frame is offered, but the results of the current
+                                       // frame have not been read
             EXPECT_FALSE(top.frame_take_o);
             bench_.tick();
         }

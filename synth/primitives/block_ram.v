@@ -3,11 +3,11 @@
 // block_ram: models of RAMB16BWER and RAMB8BWER (Xilinx UG383, Spartan-6 Block RAM): two ports on
 // one array, each with its width. For simulation of netlists.
 //
-// A port reads and writes at its clock edge while EN is high. Data that one port reads at the
-// address that the other writes at the same edge is invalid (UG383, "Conflict Avoidance"), unless
-// the writer is READ_FIRST: the model returns half of the bits different from the old ones, half
-// different from the new ones. Output registers (DO_REG) are not modelled, nor are collisions of
-// ports with different clocks.
+// A port reads and writes at its clock edge while EN is high. If one port reads the address that
+// the other port writes at the same edge, the read data is invalid (UG383, "Conflict Avoidance"),
+// unless the writer is READ_FIRST: in the model, half of the bits then differ from the old data,
+// and half from the new data. Output registers (DO_REG) and collisions of ports with different
+// clocks are not modelled.
 `default_nettype none
 
 module block_ram #(

@@ -114,8 +114,8 @@ double limitOf(const std::string& what, const RfWeather& weather, bool isEncrypt
     return most;
 }
 
-// Returns the smallest share of the limit that the link must reach in API mode; in both directions
-// it is 5 points lower than in one.
+// Returns the smallest share of the limit that the link must reach in API mode; for both directions
+// it is 5 points lower than for one direction.
 double wantedShare(const std::string& what, bool both, double share) {
     static double oneWay;
     if (both)

@@ -96,7 +96,7 @@ class Counter(Ice.Blobject):
 
 
 def storm(ic, folder, subscribers, events):
-    """Publishes events of the size that vehicles send, and counts those that arrive at the
+    """Publishes events of the size that vehicles send, and counts the events that arrive at the
     subscribers."""
     adapter, counters = ic.createObjectAdapterWithEndpoints("", HERE), []
     adapter.activate()

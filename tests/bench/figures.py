@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """figures: writes docs/figures.md, a table for each JSON file that `./icesoc bench`, `size` and
-`firmware` have left; benches in Python make theirs with `figure` and `leave`.
+`firmware` have left; benches in Python make their files with `figure` and `leave`.
 
     figures.py OUTPUT.md FILE.json...
 
-A file is a list of entries, or an object with the list in "entries": name, value, unit, and where
-there is one limit and share (measured by limit; gross, by a limit with more), or peer and ratio.
+A file is a list of entries, or an object with the list in "entries". An entry has name, value and
+unit. It may have limit and share (value / limit; gross: value / a limit that counts more), or peer
+and ratio.
 """
 import datetime
 import json

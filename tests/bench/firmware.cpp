@@ -54,8 +54,8 @@ public:
         ground.replies.clear();
         until(ground.calling(calls), seconds, "the calls");
     }
-    // Cycles on the board while the processor was awake, and the part of them in which it waited
-    // for the FSMC.
+    // Cycles on the board in which the processor was awake, and the share of these cycles in which
+    // it waited for the FSMC.
     double awake() { return own() + waiting(); }
     double waiting() { return static_cast<double>(cpu().busCycles()) / warp; }
     double own() {

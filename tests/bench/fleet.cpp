@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// fleet: measures calls per second on one channel. Vehicles are called one after the other or all
-// at once, by one ground station, by one ground station each, or by two that share them. Links,
-// modems in API mode and air as in air.cpp; a ground station shares its modem as the engine does.
+// fleet: measures calls per second on one channel. The vehicles are called one after the other or
+// all at once, by one ground station, by one ground station for each vehicle, or by two ground
+// stations that share them. Links, modems in API mode and air are as in air.cpp; a ground station
+// shares its modem as the engine does.
 
 #include "figures.h"
 #include "modem_pair.h"
@@ -14,8 +15,8 @@ Figures figures("Calls a second of several vehicles on one channel.");
 
 constexpr U32 callBytes = 3; // size of setParameterA(short) with a compressed head
 
-// A ground station makes a new call on each of its links as soon as the previous one is answered; a
-// vehicle replies with the request's bytes.
+// A ground station makes a new call on each of its links as soon as the previous call is answered;
+// a vehicle replies with the request's bytes.
 class Station : public ModemEnd {
 public:
     Station(RfChannel& air, int address, bool isGround, bool isKeyed,

@@ -102,7 +102,7 @@ void single(unsigned hclk, uint64_t seed, int count) {
     Chip chip(hclk, seed);
     Random random(seed);
     FsmcMaster& master = chip.soc.fsmc();
-    double hclks = 100.0 / hclk; // clocks of the fabric in one HCLK
+    double hclks = 100.0 / hclk; // number of fabric clocks in one HCLK
     auto show = [&](const char* what, double least, const std::function<void()>& access) {
         double sum = chip.clocks([&] {
             for (int i = 0; i < count; ++i)

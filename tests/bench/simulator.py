@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""simulator: simulated clocks a second, the best of three runs in turn: the UAV alone, with quiet
-clocks passed at once and with each one evaluated; and the mission, flown again from its recording,
-on the host and on the Cortex-M3.
+"""simulator: measures simulated clocks per second, the best of three alternating runs: of the UAV
+alone, with quiet clocks skipped and with each clock evaluated; and of the replayed mission, on the
+host and on the Cortex-M3.
 
     simulator.py SOURCE-FOLDER BUILD-FOLDER OUTPUT.json [--brief]
 """

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""slice: slice2c and slice2cpp on the five largest files of Debian's zeroc-ice-slice: processor
-time, the files alternating; the best of the rounds counts, since everything else on the machine
-only makes them slower.
+"""slice: measures the processor time of slice2c and slice2cpp on the five largest files of Debian's
+zeroc-ice-slice. The two alternate on each file, and the best of several rounds counts, because
+everything else on the machine only makes them slower.
 
     slice.py SLICE2C OUTPUT.json [--brief]
 """

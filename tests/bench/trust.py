@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""trust: results of attacks and losses of power on the link and on updates, and the cost of a key
-on the air, as the tests have counted them.
+"""trust: reports the results of attacks on the link and of power losses during updates, and the
+cost of a key in bytes on the air, as the tests have counted them.
 
     trust.py TEST_UPDATE TEST_LINK OUTPUT.json [--brief]
 """

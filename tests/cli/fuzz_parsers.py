@@ -4,11 +4,11 @@
 
     fuzz_parsers.py PARSER BUILD INPUTS [FILE...]
 
-A file must be read, or refused with a message in our own words and an exit status that is not 0,
-without a file written. Anything else is a finding, and so is more than 5 s of CPU time. Inputs that
-reach a new line of the parser are mutated further. FUZZ=600 runs for 600 s instead of INPUTS
-inputs, starting from those that earlier runs stored (~/.cache/icesoc/fuzz). SEED (default 1)
-selects the mutations. FILE: only these files are read, unchanged.
+A file must be read, or refused with a proper message and an exit status that is not 0, and a
+refused file must not cause any output file. Everything else is a finding, including more than 5 s
+of CPU time. Inputs that reach a new line of the parser are mutated further. FUZZ=600 runs for 600 s
+instead of INPUTS inputs, starting with the inputs that earlier runs stored (~/.cache/icesoc/fuzz).
+SEED (default 1) selects the mutations. FILE: only these files are read, unchanged.
 """
 import contextlib
 import dataclasses

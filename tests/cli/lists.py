@@ -92,7 +92,7 @@ class Lists(unittest.TestCase):
             self.assertEqual((status, said.count("OK")), (0, 2), said)
             subject = ask("openssl", "x509", "-noout", "-subject", "-in", f"{work}/pilot.pem")[1]
             self.assertRegex(subject, "subject=CN ?= ?pilot")
-            # The certificate cannot sign others.
+            # The certificate is not allowed to sign other certificates.
             self.assertIn("CA:FALSE", ask("openssl", "x509", "-noout", "-text", "-in",
                                           f"{work}/pilot.pem")[1])
             self.assertEqual(Path(work, "pilot.pem").stat().st_mode & 0o777, 0o600)

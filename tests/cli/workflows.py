@@ -59,7 +59,8 @@ def entries(tree):
 
 class Cases(Script):
     def test_repository_in_chip(self):
-        """A build folder keeps the cores of a repository, and its list, until it gets others."""
+        """A build folder remembers the cores of a repository, and the repository's list, until
+        another command names other cores."""
         work = fresh(WORK)
         mine, list_ = work / "mine", work / "mine/cores.list"
         for name in "first", "second":

@@ -125,9 +125,9 @@ class Cases(Script):
                   status=status)
 
     def test_drawn(self):
-        """A module whose proof covers half of it: mutants that the proof misses survive at their
-        line, and mutants that are not bugs are excluded. A test with a model that contains all
-        survivors finds them."""
+        """The proof of this module covers only half of it. Mutants that the proof misses are
+        reported with their line, and mutants that are not bugs are excluded. A test with a model
+        that contains all survivors detects them."""
         pair = "hdl/small/pair.v"
         write(pair, PAIR)
         write("bus/none.v", "")

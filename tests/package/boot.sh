@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 #
 # boot: boots the systemd of a folder with a Debian system, in separate namespaces, and runs a shell
-# command there as root. Prints what the command prints, and ends with its exit status. The machine
-# shares this one's network. It cannot change the kernel's settings.
+# command there as root. Prints the output of the command, and ends with its exit status. The booted
+# system uses this machine's network. It cannot change the kernel's settings.
 # Needs root and cgroup2. Usage: boot.sh ROOT FOLDER COMMAND
 set -eu
 if [ "$1" != --inside ]; then

@@ -135,8 +135,8 @@ class Cases(Script):
         self.has("vehicle 'uav9': expected one of uav1")
 
     def test_page(self):
-        """The gateway's page: its files, and a call as its browser makes it. The files of the page
-        do not come from the tree."""
+        """Checks the gateway's page: its files, and a call like the one the browser makes. The
+        files of the page do not come from the tree."""
         self.install("icesoc-ground", "icesoc-sim", "icesoc-slice2c")
         port, page = free_port(), free_port()
         write("page.sh", "#!/bin/bash\nset -e\n"

@@ -271,8 +271,8 @@ add_custom_target(test_w)
                  file="build/regress/report.html")
 
     def test_vhdl(self):
-        """A test by GHDL: only files that it compiles are listed, and the instance of the first one
-        is the first in the waveform."""
+        """In the report of a GHDL test, only files that it compiles are listed, and the instance of
+        the first file is the first one in the waveform."""
         join = "testbench/common/join_waves.sh"
         write(join, (TREE / join).read_text())
         write("cmake/vhdl_test.sh", '#!/bin/sh\n[ ! -e wrong ] && exit\n'

@@ -10,8 +10,8 @@ cp "$kept" "$work/a/tools/icesoc/regress"
 cd "$work/a"
 export XDG_CACHE_HOME="$work/cache" PATH="$work/bin:$PATH"
 unset FRESH
-# The test looks for b.vh in two folders as compilers do, counts the names in one, calls a tool, and
-# waits on request.
+# The test looks for b.vh in two folders like a compiler, counts the files of one folder, calls a
+# tool, and waits on request.
 cat >tests/t.sh <<'END'
 #!/bin/sh
 own=$1
@@ -67,7 +67,7 @@ for _ in 1 2; do
     run
     { [ $status -eq 3 ] && ! grep -q '^kept:' "$work/said"; } || fail "a failure: status $status"
 done
-# Nor does one that is killed, or one with a file that changes while it runs.
+# A killed test stores no result either, nor does a test with a file that changes while it runs.
 begun() { # earlier output
     rm -rf own
     $kept "$PWD/own" tests/t.sh "$PWD/own" >"$work/said" 2>&1 &
@@ -83,7 +83,7 @@ begun 'a file that changes' && echo go >own/gate
 wait $! || fail "the third"
 same 'one that came to its end' '^b 5$'
 rm wait
-# Two at once; one without strace.
+# Two runs at the same time; one run without strace.
 echo 'b 6' >second/b.vh && sleep 0.1
 for n in 1 2; do $kept "" tests/t.sh "$PWD/own$n" >"$work/said$n" 2>&1 & done
 wait

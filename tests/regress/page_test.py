@@ -230,8 +230,7 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
         self.lights(coverage="green")
         measure(LAZY="1")  # the stimulus is missing, but the test passes
         self.lights(coverage=below, tests="green")
-        # All lines and all toggles are covered, but one situation that the design names never
-        # occurs.
+        # All lines and all toggles are covered, but one named situation never occurs.
         said = measure(SHY="1")
         self.lights(coverage=below)
         self.assertRegex(said, r"toggles 100.0 \(gate 95\), points 0.0 \(gate 100\); "

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ends: the vehicles and ground stations of the soak, and the messages between them, whose content
-// allows to check them.
+// ends: the vehicles and ground stations of the soak test, and the messages between them. The
+// content of a message allows the receiver to check it.
 
 #pragma once
 
@@ -26,8 +26,8 @@ struct Totals {
     uint64_t babbles = 0, rivals = 0;
 };
 
-// Messages from one end to another. They are numbered, and take the channels in turn, so each
-// channel carries every fourth one.
+// Messages from one end to another. They are numbered, and use the four channels in turn, so each
+// channel carries every fourth message.
 class Mail {
 public:
     Mail(int from, int to, Totals& totals) : from_(from), to_(to), totals_(totals) {}
@@ -126,8 +126,8 @@ public:
     }
     static constexpr int rival = 0x10000; // address in this test of the rival, which uses address 0
                                           // of the first ground station
-    // `hasKeys`: there is one key per pair of vehicle and ground station, which depends on the
-    // number of changes.
+    // Restarts the program. `hasKeys`: each pair of vehicle and ground station has a key, which
+    // depends on the number of changes.
     void boot(uint64_t now, bool hasKeys) {
         now_ = now;
         begin();

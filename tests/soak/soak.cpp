@@ -203,8 +203,9 @@ private:
     const bool attacked_;
     Attacker attacker_;
     std::map<std::pair<int, int>, Mail> mail_;
-    // The vehicles, the ground stations, and guests: one with a vehicle's address and none of its
-    // keys and, in a fleet, one with the first station's address and keys.
+    // The vehicles, the ground stations, and guests: a vehicle with the address of another one but
+    // none of its keys and, in a fleet, a ground station with the address and the keys of the first
+    // one.
     std::vector<std::unique_ptr<End>> ends_;
     size_t vehicles_, grounds_;
     bool isFleet_ = false;

@@ -8,7 +8,7 @@ from icesoc.synth.netlist import Netlist
 
 
 class Files(unittest.TestCase):
-    """Which files a module needs, and where a signal is declared in them."""
+    """Tests which files a module needs, and in which line of them a signal is declared."""
 
     def setUp(self):
         self.work = tempfile.TemporaryDirectory()

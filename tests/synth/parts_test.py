@@ -75,7 +75,7 @@ class Timing(unittest.TestCase):
         self.assertEqual(t["ends"], [0] * bins + [1])  # no path ends at the first register
 
     def test_through_a_memory_only_the_address_of_that_output_leads(self):
-        # ADDRD belongs to the write port: the path ends there, another begins at the memory.
+        # ADDRD belongs to the write port: a path ends there, and another one begins at the memory.
         for address, levels in (("ADDRA", 1), ("ADDRD", 0), ("ADDRB", 0)):
             p = longest(chain([1, 1], "D", cell("RAM32M", {address: 10}, {"DOA": 11})))
             self.assertEqual(p["levels"], levels, address)

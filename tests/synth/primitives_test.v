@@ -23,7 +23,7 @@ module primitives_test;
         end
     endtask
 
-    // DSP48A1 without a register except P's, and with all of them.
+    // A DSP48A1 whose only register is P, and a DSP48A1 with all registers.
     reg signed  [17:0] a = 0, b = 0, d = 0;
     reg signed  [47:0] c = 0, pcin = 0;
     reg  [7:0]  opmode = 0;
@@ -82,8 +82,9 @@ module primitives_test;
         end
     endtask
 
-    // UG389: A and B pass two registers, then M and P; D one before B1, M, P; C, OPMODE and the
-    // carry one before P; PCIN P alone. Each register has an enable; a reset goes before it.
+    // UG389: A and B pass two registers, then M and P. D passes one register before B1, M and P. C,
+    // OPMODE and the carry pass one register before P. PCIN passes only P. Each register has an
+    // enable; a reset has priority over it.
     reg [47:0] held;
     task latency(input integer port, input integer clocks);
         begin
@@ -150,9 +151,9 @@ module primitives_test;
         end
     endtask
 
-    // UG384: distributed RAM is written at the edge while WE is high, at the address of port D
-    // (RAM32M) or A (RAM32X1D), and read without a clock. A shift register moves while CE is high;
-    // Q is the bit at A, 0 the last one.
+    // UG384: distributed RAM is written at the clock edge while WE is high, at the address of port
+    // D (RAM32M) or A (RAM32X1D), and is read without a clock. A shift register moves while CE is
+    // high; Q is the bit at address A, and address 0 is the last bit that entered.
     reg         we = 0;
     reg  [4:0]  at = 0, from = 0;
     reg  [7:0]  word = 0;

@@ -175,7 +175,7 @@ class Cases(Script):
         self.run_program()
 
     def test_partial(self):
-        """A report of one design while others have changed; limits also apply to accepted
+        """Reports one design while other designs have changed; limits also apply to accepted
         figures."""
         self.run_program()
         edit(BLOCKS / "pair.v", "    wire [5:0] word;",
@@ -355,7 +355,8 @@ class Cases(Script):
         proof, = Path("out/cache").glob("whole.xc6s.*.proof")
         file = proof.with_name(proof.name.rsplit(".", 2)[0] + ".json")
         good = file.read_text()
-        # An unchanged netlist for a simulator is kept, and so are the files made from it.
+        # If a netlist for a simulator is unchanged, the netlist and the files made from it are
+        # kept.
         for age in 100, None:
             self.run_program("--netlist", "whole", "--to", "out/sim/whole.v")
             if age:

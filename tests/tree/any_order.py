@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""any_order: `make run` on a machine without the packages of tests, then `make test`, which brings
-them, has the tests of a machine that has had all of them from the start. What CMake needs and does
-not find is named with its package.
+"""any_order: tests that `make run` on a machine without the packages of tests, followed by `make
+test`, which installs them, finds the same tests as a machine that had all packages from the start.
+If CMake needs something and does not find it, CMake's message names the package.
 
-The machine without them is a folder of links to all other programs, in which alone CMake looks.
+The machine without the packages is a folder of links to all other programs, and CMake looks only
+there.
 Usage: any_order.py source-folder work-folder
 """
 
@@ -95,7 +96,8 @@ def main():
     said = configure(source, work / "grown", work, links(work / "bin", hidden))
     if said.returncode:
         fail(f"make run needs the packages of tests:\n{said.stdout}")
-    # A new configuration removes generated files of cores that have left the list, and no others.
+    # A new configuration removes generated files of cores that are no longer in the list, and no
+    # other files.
     generated = work / "grown/gen"
     names = {path.name.split(".")[0] for room in ("hdl", "ip")
              for path in source.glob(f"{room}/*/*.regs.json")}

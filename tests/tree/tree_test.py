@@ -28,8 +28,9 @@ set_tests_properties(by_script by_gtest PROPERTIES SKIP_RETURN_CODE 77
 
 class Cases(Script):
     def test_setup(self):
-        """On a terminal set-up lists what it would install and asks before it calls sudo; elsewhere
-        it continues. The machine has one package, and knows of another; the user is not root."""
+        """On a terminal, set-up lists the packages that it would install and asks before it calls
+        sudo; elsewhere it continues. The machine of this test has one package and knows another
+        one; the user is not root."""
         work, setup = fresh(WORK), TREE / "cmake/setup.sh"
         for name, does in (("dpkg-query", "echo ';installed cmake;;not-installed verilator;'"),
                            ("id", "echo 1000"),
@@ -98,8 +99,8 @@ class Cases(Script):
             self.assertEqual(list(figures.differences(copy)), [])
 
     def test_files(self):
-        """The list of a model's Verilog files is enough to elaborate its top, and the list of C
-        and C++ compilations is there."""
+        """The list of a model's Verilog files is enough to elaborate its top module, and the list
+        of C and C++ compilations exists."""
         lists = list(BUILD.glob("files/*.f"))
         self.assertTrue(lists, "no model is built")
         for files in lists:

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# changelog: writes a package's changelog in Debian's format. The date is that of the last commit
-# that changed CHANGELOG.md; without git it is SOURCE_DATE_EPOCH, or now.
+# changelog: writes a package's changelog in Debian's format. Its date is the date of the last
+# commit that changed CHANGELOG.md; without git it is SOURCE_DATE_EPOCH, or the current date.
 # Usage: changelog.sh PACKAGE VERSION FILE.gz
 set -eu
 date=$(git log -1 --format=%ct -- CHANGELOG.md 2>/dev/null || true)

@@ -90,7 +90,8 @@ event='//peripheral[name="SYSTEM"]/registers/register[name="EVENT"]'
     fail 'EVENT is not cleared by writing 1 in the SVD file'
 [ "$(xmllint --xpath 'count(//peripheral)' "$out/icesoc.svd")" = 6 ] ||
     fail 'the SVD file has not six peripherals'
-# Words behind PAGE have separate maps in SystemRDL, which converts them back, and in IP-XACT.
+# In SystemRDL and IP-XACT, words that are reached through PAGE have separate maps; SystemRDL is
+# converted back.
 "$source/tools/python" -m icesoc.regs.rdl "$out/icesoc.rdl" "$work/back" >"$work/rdl" 2>&1 ||
     { cat "$work/rdl" && fail 'SystemRDL with pages'; }
 for f in "$data/led.regs.json" "$work/back/led.regs.json"; do

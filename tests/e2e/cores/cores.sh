@@ -76,7 +76,7 @@ logged "$simulator" --pins "$work/pins" --size 96x64 --image /usr/share/xplanet/
     "$here/servo/servo.ice" "$here/crc32/crc32.ice" "$samples/sample_vhdl/sample_vhdl.ice" \
     "$source/sw/hw/registers/Registers.ice" "$source/ip/probe/Probe.ice"
 # Checks that pulses last 1.5 ms and are 20 ms apart, at any clock frequency. The fault pin has
-# ended at most one of them, and has moved the later ones.
+# ended at most one pulse, and has delayed the pulses after it.
 awk '$2 != "servo.pwm_o" { next }
      $3 == 4 { frames += up && $1 - last > 19.999 && $1 - last < 20.001; last = up = $1 }
      $3 == 0 && up { n += $1 - up > 1.499 && $1 - up < 1.501; all++ }

@@ -73,7 +73,7 @@ class Mission:
         return [self.run.pid] + descendants(self.run.pid)
 
     def find(self, name):
-        """Returns the process of that name as soon as it exists; None if the mission ended
+        """Returns the process with this name as soon as it exists; None if the mission ended
         first."""
         while name != "run" and self.run.poll() is None:
             for pid in descendants(self.run.pid):
@@ -275,9 +275,9 @@ def loss(start, name, moment, deaths):
 
 
 def fleet(start, name, moment, deaths):
-    """No reply may be lost, duplicated, or from another vehicle, and programs that a fault does not
-    concern must not notice it. A ground station with the address and key of the first one takes
-    over all vehicles until it ends; then the first one has them again."""
+    """No reply may be lost, duplicated, or come from another vehicle, and a fault must not affect
+    programs that it does not concern. A ground station with the address and key of the first one
+    takes over all vehicles until it ends; then the first ground station has them again."""
     trouble, least, most = TROUBLE[name]
     begin = 7 + moment  # by then all vehicles have sessions, also with the second ground station
     end = begin + least + (most - least) * moment / LAST

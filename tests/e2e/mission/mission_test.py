@@ -247,8 +247,8 @@ class Cases(Script):
         self.update(FIRMWARE, "not signed with this vehicle's keys", status=None)
 
     def big_and_broken(self, flash):
-        """Sends 256 KiB, which fill three sectors, within 30 s of air time; then firmware that
-        crashes at its start, after which the vehicle returns to the previous firmware by itself."""
+        """Sends 256 KiB, which fill three sectors, within 30 s of air time. Then sends firmware
+        that crashes at its start; the vehicle returns to the previous firmware by itself."""
         self.ask(TREE / "tests/e2e/mission/big_firmware.sh", BUILD, self.out / "big.elf", "262144")
         self.pack(*VEHICLE, self.keys / "update.key", flash)
         with open(flash, "r+b") as file:
@@ -262,8 +262,8 @@ class Cases(Script):
                     "2 software, 0 watchdog", status=None)
 
     def bitstreams(self, stored):
-        """The FPGA's flash has no bitstream, one that the FPGA refuses, one that is never
-        confirmed, and one of full size."""
+        """In the FPGA's flash there is no bitstream; a bitstream that the FPGA refuses; one that is
+        never confirmed; and one of full size."""
         self.update(BUILD / "firmware/uav.bin", "has a sync word, AA 99 55 66", status=None)
         self.ask(STAND_IN, "new.bin", "2", "10000")
         damaged = bytearray(Path("new.bin").read_bytes())
@@ -352,9 +352,9 @@ class Cases(Script):
         self.refused("without modems and air: leave out --loss", "--wire", "--loss", "0.1")
 
     def test_fleet(self):
-        """Four vehicles at one modem, the first with the host build of the firmware; then the
-        flight is replayed. The first vehicle asks the second one, and informs its ground
-        station."""
+        """Four vehicles share one modem, and the first one runs the host build of the firmware;
+        then the flight is replayed. The first vehicle calls the second one, and reports the answer
+        to its ground station."""
         vehicles = 1, 2, 3, 4
         Path("fleet.key").write_text("".join(f"0x000{at} {str(at) * 32}\n" for at in vehicles))
         os.chmod("fleet.key", 0o600)

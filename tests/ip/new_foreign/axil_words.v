@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
 // axil_words: an AXI core as written by others: four words, with the signals of bursts, names in
-// capitals, an active-low reset. It takes an address after `aw_late` clocks (before the data if
-// that is later), and data after `w_late`. It answers `late` clocks later, if it is awake and the
-// request is for a single word.
+// capitals, an active-low reset. It accepts an address after `aw_late` clocks and data after
+// `w_late` clocks; if `aw_late` is larger, the data comes first. It answers `late` clocks later, if
+// it is awake and the request is for a single word.
 
 module axil_words (
     input             S_AXI_ACLK, S_AXI_ARESETN, S_AXI_AWAKEUP,

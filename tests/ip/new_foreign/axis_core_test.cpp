@@ -95,7 +95,8 @@ TEST_F(Twice, AnswersAreAsLongAsWhatComesOut) {
         for (size_t i = 0; i < 2 * n; ++i)
             ASSERT_EQ(out[i], static_cast<Ice_Byte>(7 * (i / 16 * 8 + i % 8))) << i << " of " << n;
     }
-    auto out = twice(5); // the first word is complete, then only the kept bytes
+    auto out = twice(5); // the first word is complete; of the second word only the kept bytes are
+                         // written
     ASSERT_EQ(out.size(), 13u);
     for (size_t i = 0; i < 5; ++i)
         EXPECT_EQ(out[8 + i], 7 * i);

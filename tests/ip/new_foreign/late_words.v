@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// late_words: four words of 16 bits, written by bytes, with values valid one clock after their
-// strobe; a read clears its word. Their initial values come from a file.
+// late_words: four words of 16 bits, written byte by byte. A value is valid one clock after its
+// strobe, and a read clears the word. A file contains the initial values.
 
 module late_words (
     input             mclk, rst_ni,

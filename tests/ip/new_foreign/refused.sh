@@ -113,7 +113,7 @@ new my_port macros own macros write=we address=a wdata=d rdata=q macros.vh macro
 grep -q 'a: adr, counts bytes: PORT_MODE, PORT_LEVEL are multiples of 4; if not' log &&
     grep -q 'registers: MODE LEVEL' log && grep -q '"word": 10' macros/my_port.regs.json ||
     { cat log && exit 1; }
-# The user is asked about outputs that may be interrupts; an active-low one is reported.
+# The command asks about outputs that may be interrupts; it reports an active-low interrupt.
 echo 'module asked(input clk, we, input [31:0] d, output [31:0] q, output TIMERINT, irq_no, point,
     output [3:0] rx_events); endmodule' >asked.v
 new my_port asked own asked write=we wdata=d rdata=q asked.v >log
@@ -136,7 +136,7 @@ endmodule' >level.v
 new my_port level own level write=we wdata=d rdata=q level.v >log
 grep -q '^  arst_i: resetn' log && grep -q 'level u_core' level/my_port.v ||
     { cat log && echo 'the level of a reset is wrong' && exit 1; }
-# A narrow APB counts registers of its data width, unless its address begins at bit 2.
+# A narrow APB counts registers by its data width, unless its address begins at bit 2.
 for bits in 8 16; do
     echo "module apb$bits(input pclk, psel, penable, pwrite, input [5:0] paddr,
         input [$((bits - 1)):0] pwdata, output [$((bits - 1)):0] prdata);

@@ -201,7 +201,7 @@ TEST(HwRegisters, WaitTakesTheEventThatWasThereOrComes) {
     Port core;
     core.wait(100);
     EXPECT_FALSE(core.answer_);
-    core.set("DRIVEN", 1); // other calls are served meanwhile
+    core.set("DRIVEN", 1); // other calls are served during this call
     core.slot_.bench_.top().port_in_i = 0x80;
     core.poll();
     ASSERT_TRUE(core.answer_);

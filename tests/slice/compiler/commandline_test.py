@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""commandline_test: slice2c's options, exit statuses, files that include others, dependencies.
+"""commandline_test: tests slice2c's options, exit statuses, files that include other files,
+dependencies.
 
 Usage: commandline_test.py commandline work-folder slice2c
 """
@@ -57,7 +58,8 @@ module Top {
     "twice.ice": "#include <crlf.ice>\n#include <crlf.ice>\n",
     "text.ice": f'module L {{ const string T = "{509 * "0"}"; '
                 f'struct S {{ string a = "{510 * "0"}"; }}; }};',
-    # A file next to the including one, or above, wherever the compiler runs
+    # A file next to the including file, or in the folder above, in whichever folder the compiler
+    # runs
     "siblings/above.ice": "module Above { struct S { int a; }; };\n",
     "siblings/sub/next.ice": "module Next { struct S { Above::S a; Nothing b; }; };\n",
     "siblings/sub/low.ice": '#include "../above.ice"\n#include "next.ice"\n'
@@ -100,7 +102,7 @@ class Cases(Script):
                                       stderr=subprocess.PIPE, text=True)
             self.assertNotEqual(said.returncode, 0, option)
             self.assertIn("cannot write", said.stderr)
-        # Files of one program: no two names in them may become the same name in C.
+        # Files of one program: two names in different files must not become the same name in C.
         one = "--one-program one/fir.ice"
         self.slice2c(f"{one} one/crc.ice", 1, "crc.ice:2:31: error: '::Cores::Bytes' becomes "
                      "'Cores_Bytes' in C, as one/fir.ice:1 does")

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * program: a client of one operation of an interface that has more; with -DSERVER, one servant of a
- * file that declares more.
+ * program: a client of one operation of an interface with more operations; with -DSERVER, one
+ * servant of a file that declares more interfaces.
  */
 #include "Linked.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// crypto_test: the firmware's Ascon-AEAD128 gives the known answers of Ascon's authors, and rejects
-// a message with a wrong bit. Its X25519 gives the answers of the standard and, for random numbers,
-// those of OpenSSL.
+// crypto_test: tests that the firmware's Ascon-AEAD128 gives the known answers of Ascon's authors,
+// and rejects a message with a wrong bit. Its X25519 gives the answers of the standard and, for
+// random numbers, the answers of OpenSSL.
 
 #include "known_answers.h"
 #include "random.h"

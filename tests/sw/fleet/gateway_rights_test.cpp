@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// gateway_rights_test: who may call what through icesoc-gateway: objects for maintenance, rights by
-// certificate, and the addressee of the vehicle's calls.
+// gateway_rights_test: tests which calls a client may make through icesoc-gateway: objects for
+// maintenance, rights by certificate, and the addressee of the vehicle's calls.
 
 #include "gateway_rig.h"
 #include <IceSSL/IceSSL.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// gateway_test: icesoc-gateway between the radio and stock Ice programs without the plugin,
-// compared with ZeroC's forwarders: it preserves of a call what IceBridge preserves, also facets,
-// and programs reach it through a Glacier2 router. (Many at once: bench.load. A modem that
-// disappears and returns: test_ground_engine.)
+// gateway_test: tests icesoc-gateway between the radio and stock Ice programs without the plugin,
+// in comparison with ZeroC's forwarders. The gateway preserves the same parts of a call as
+// IceBridge, and also facets; programs reach it through a Glacier2 router. (Many clients at once:
+// bench.load. A modem that disappears and returns: test_ground_engine.)
 
 #include "gateway_rig.h"
 #include <Glacier2/Router.h>
@@ -228,7 +228,7 @@ TEST_F(Gateway, AOnewayThatWaitsTooLongIsNeverCarriedOut) {
     batch->note(2);
     batch->note(3);
     batch->ice_flushBatchRequests();
-    // this call waits after the others
+    // this call waits behind the other calls
     expectRefusal([&] { echo_->ice_ping(); }, "waited 3 s for the radio");
     power(true);
     int noted = -1;

@@ -151,7 +151,7 @@ TEST_F(Crowd, AfterAFloodEveryNewProgramIsServed) {
 }
 
 // Three programs keep their channels without using them: they leave replies unread, or never end a
-// message. A fourth that waits gets one of the channels after a while.
+// message. A fourth program gets one of these channels after some time.
 class Keepers : public ::testing::Test {
 protected:
     // Checks that the fourth program gets a reply while the other three repeat `meanwhile`.
@@ -224,9 +224,9 @@ TEST_F(Crowd, AFloodLeavesRoomForOthers) {
 
 using XBeeAT::ProgramConnection;
 
-// By Ice 3.8's manual a connection without incoming bytes for 60 s (Ice.Connection.IdleTimeout) is
-// closed; a program that has written nothing for half of that time sends a heartbeat. Ice 3.7 sends
-// none by itself.
+// Ice 3.8's manual: a connection without incoming bytes for 60 s (Ice.Connection.IdleTimeout) is
+// closed, and a program that has written nothing for half of that time sends a heartbeat. Ice 3.7
+// sends no heartbeats by itself.
 class Timed {
 public:
     Timed() {

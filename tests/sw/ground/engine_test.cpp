@@ -88,7 +88,7 @@ TEST_F(EngineTest, AModemThatIsResetInFlightIsSetUpAgain) {
     });
     EXPECT_TRUE(rig_.read(fd, 1).empty()); // the connection is reported lost ...
     close(fd);
-    fd = engine->connect(0); // ... and the next one waits until the link is back
+    fd = engine->connect(0); // ... and the next call waits until the link is back
     echoes(fd, 2);
     close(fd);
     EXPECT_EQ(rig_.with([&] { return rig_.ground->parameter("BD"); }), 7u);
@@ -270,8 +270,8 @@ TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     close(fd);
 }
 
-// A program killed during the set-up leaves the modem in command mode, in the middle of a line. The
-// modem leaves the mode by itself only after CT, 10 s.
+// A program killed during the set-up leaves the modem in command mode, in the middle of a line. By
+// itself, the modem leaves command mode only after CT, 10 s.
 TEST_F(EngineTest, AModemThatWasLeftInCommandModeIsFoundAtOnce) {
     const int port = open(rig_.pty.path().c_str(), O_RDWR | O_NOCTTY);
     ASSERT_GE(port, 0);

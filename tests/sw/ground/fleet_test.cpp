@@ -44,8 +44,8 @@ public:
         line_.received.clear();
     }
 
-    std::vector<Rig::Bytes> packets, calls; // received packets, and the calls in them that must be
-                                            // executed
+    std::vector<Rig::Bytes> packets, calls; // received packets, and the calls in these packets that
+                                            // must be executed
 
 private:
     void take(Rig::Bytes packet) {
@@ -187,7 +187,7 @@ TEST_F(FleetTest, VehiclesShareTheAirAlikeAndOneThatIsAwayCostsTheOthersLittle) 
         return log.rfind("0x0002: link connecting") > log.rfind("0x0002: link up");
     };
     ASSERT_TRUE(rig_.until(isSought));
-    rig_.pass(4.5); // the first HELLOs follow one another sooner
+    rig_.pass(4.5); // the first HELLOs follow one another faster
     const auto airNs = [&] { return double(rig_.air.counters().airNs); };
     const double before = rig_.with(airNs);
     rig_.pass(8);
@@ -258,7 +258,7 @@ TEST_F(FleetTest, AnotherOfOneAddressABabblerAndAChangeOfKeysDisturbNobodyElse) 
     EXPECT_EQ(sessions(101), 0u);
 }
 
-// Two ground stations with one address and, if the links have keys, one key.
+// Two ground stations with the same address and, if the links have keys, the same key.
 class TwinGrounds : public FleetTest, public ::testing::WithParamInterface<LinkKeys> {};
 
 TEST_P(TwinGrounds, TheNewerOneKeepsTheVehicleAndTheOlderOneHasItAgainAfterIt) {

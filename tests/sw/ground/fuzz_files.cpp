@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_files: libFuzzer target of the key file, and with RIGHTS of the gateway's file of rights. It
-// is accepted, or rejected with our messages, without a key in them; no right is granted that the
-// file does not contain.
+// fuzz_files: libFuzzer target of the parser of key files, and with RIGHTS of the parser of the
+// gateway's file of rights. An input is accepted, or rejected with a proper message that contains
+// no key. No right is granted that the file does not contain.
 
 #ifdef RIGHTS
 #include "rights.h"

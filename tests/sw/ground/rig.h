@@ -156,7 +156,8 @@ public:
 
     static constexpr uint32_t guardMs = 20;
     static constexpr std::chrono::microseconds pause{300}; // between two looks of a test
-    RfChannel air, elsewhere; // a modem in one of them is out of reach of a modem in the other
+    RfChannel air, elsewhere; // two places: a modem in one of them is out of reach of a modem in
+                              // the other
     PtyLine pty, otherPty;
     std::unique_ptr<XBee> ground, other; // `other` is null until it is placed
     Uav uav;
@@ -199,7 +200,7 @@ private:
         }
     }
 
-    // The rig does not wait for an engine with a thread that itself waits for the test.
+    // The rig does not wait for an engine whose thread itself waits for the test.
     bool goesOn() const {
         return !stop_ && std::chrono::steady_clock::now() - waiting_ < std::chrono::seconds(5);
     }

@@ -78,7 +78,7 @@ static Ice_Status passWhole(Ice_ObjectPrxPtr far, const Ice_Current* current, Ic
     return Ice_ObjectPrx_end(far, status);
 }
 
-/* Returns the servant for the type of the object; null, with `status`, if there is none. */
+/* Returns the servant for the type of the object; null, with `status` set, if no servant fits. */
 static Ice_ObjectPtr servantOf(const Ice_ObjectPrx* far, Ice_Status* status) {
     Ice_ObjectPrx asked = *far;
     Ice_ObjectPtr servant = 0;
@@ -109,7 +109,8 @@ static Ice_Status pass(Ice_ObjectPtr self, const Ice_Current* current, Ice_Input
     servant = servantOf(&far, &status);
     if (!servant)
         return status;
-    status = aim(current, &Bridge_far); /* requests that arrived meanwhile have changed the proxy */
+    status = aim(current, &Bridge_far); /* requests that arrived during this call have changed the
+                                         * proxy */
     if (status == ICE_OK)
         status = servant->dispatch(servant, current, is, os);
     if (status == ICE_CONNECTION_LOST)

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 # interop: command -- command ...
 #
-# Runs the commands in their order. Each prints its port, which becomes the last argument of the
-# next command. The exit status is that of the last command, or that of the first one, which the
-# last must have ended.
+# Runs the commands in their order. Each command prints its port, which becomes the last argument of
+# the next command. Ends with the exit status of the last command. If the first command is ended by
+# the last one, its exit status counts instead.
 set -eu
 work=$(mktemp -d)
 pids=''

@@ -14,7 +14,8 @@
 #include <string.h>
 
 #define WORDS 1024 /* size of a task's stack, words */
-#define WOKEN 7    /* priorities: two tasks woken by the interrupt, the server, two others */
+/* Priorities: two tasks that the interrupt wakes, the server, and two other tasks. */
+#define WOKEN 7
 #define SERVER 9
 #define LOW 10
 

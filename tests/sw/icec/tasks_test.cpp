@@ -122,7 +122,7 @@ protected:
         serving_.join();
         answering_.join();
     }
-    // Sends the reply from another task than the one that dispatched the operation.
+    // Sends the reply from a task other than the one that dispatched the operation.
     void answer() {
         for (;;) {
             std::unique_lock<std::mutex> lock(laterMutex_);
@@ -212,8 +212,8 @@ TEST_F(Tasks, OneThatHasEndedLeavesItsPlaceToOthers) {
     EXPECT_EQ(ask(prx, "op", 2), 4);
 }
 
-// A task that polls repeatedly takes the role of the receiving task from one that waits for a
-// reply, and gives it back.
+// A task that polls repeatedly takes over the role of the receiving task from a task that waits for
+// a reply, and gives the role back.
 TEST_F(Tasks, CallWhileTwoPollNowAndThen) {
     std::atomic<bool> over{false};
     auto poll = [&] {

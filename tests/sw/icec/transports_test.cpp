@@ -82,7 +82,7 @@ TEST_F(Transports, AnAdaptersProxyHasAnEndpointOfEachTransportItListensOn) {
     EXPECT_EQ(print(prx), "thing -t -e 1.1:loop -c 0");
 }
 
-// The expected strings are those of stock Ice's proxyToString(stringToProxy(...)).
+// The expected strings are the output of stock Ice's proxyToString(stringToProxy(...)).
 TEST_F(Transports, StringsOfProxiesAreReadAndPrintedAsByIce) {
     const std::pair<const char*, const char*> cases[] = {
         {"plain", "plain -t -e 1.1"},

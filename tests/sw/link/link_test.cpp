@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // link_test: tests sessions, channels and messages, one fault at a time. The ground station has the
-// full layer. The vehicles have the full one, unencrypted and with a key, or the minimal one.
+// full layer. The vehicle has the full layer, unencrypted or with a key, or the minimal layer.
 
 #include "link_variants.h"
 
@@ -326,7 +326,7 @@ TEST(FullLayer, LinksOverOneRadioShareWhatMayWaitForItsAnswers) {
         Link_start(&links[i], 0);
     }
     EXPECT_EQ(poll(0), (std::vector<unsigned>{1, 0})); // each calls
-    Link_answer(&links[1], 1, 1000);                   // the first one's packet
+    Link_answer(&links[1], 1, 1000);                   // packet of the first link
     EXPECT_EQ(poll(1000), (std::vector<unsigned>{1, 1}));
     EXPECT_EQ(poll(400'000), (std::vector<unsigned>{1, 1})); // the first link calls again
     Link_answer(&links[0], 0, 400'000);

@@ -97,9 +97,9 @@ protected:
     bool traffic(size_t messages, uint64_t limitUs) {
         return traffic(messages, limitUs, [] {});
     }
-    // Checks that the received messages are a subset of the sent ones, in order and unchanged, and
-    // include all that were reported as delivered. Between full layers a short message may overtake
-    // one on another channel.
+    // Checks that the received messages are a subset of the sent messages, in order and unchanged,
+    // and include all messages that were reported as delivered. Between full layers, a short
+    // message may overtake a message on another channel.
     static void check(const Messages& sent, const Side& sender, const Side& receiver) {
         ASSERT_EQ(sender.outcomes.size(), sent.size()) << "messages not reported";
         auto order = [](int channel) { return isMinimal() ? 0 : channel; };

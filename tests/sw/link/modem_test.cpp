@@ -93,8 +93,9 @@ bool isWhole(const std::vector<uint8_t>& bytes) {
     return at == bytes.size();
 }
 
-// A modem that waits for the air holds packets back: it must not join one with a part of the next,
-// since each later packet would hold parts of two frames, and each loss would cost both.
+// A modem that waits for the air holds packets back. It must not join a packet with a part of the
+// next packet: each later packet would then hold parts of two frames, and each loss would cost both
+// frames.
 TEST_P(LinkOverModems, PacketsHoldWholeFramesHoweverSlowTheModemIs) {
     unsigned packets = 0, whole = 0;
     air_.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
@@ -118,8 +119,8 @@ TEST_P(LinkOverModems, TheTraceOfTheExampleIsFlown) {
     EXPECT_GT(air_.counters().lost - lost, 100u);
 }
 
-// An idle link sends a PING after five seconds, which costs few bytes, and another soon if there is
-// no reply. It never drops a living peer in an hour of any weather, or with 30 % loss.
+// An idle link sends a PING after five seconds, which costs few bytes, and repeats it soon if there
+// is no reply. It never drops a living peer in an hour of any weather, or with 30 % loss.
 TEST_P(LinkOverModems, AnIdleSessionLastsInBadWeather) {
     a_.longestRestUs = b_.longestRestUs = 100'000;
     const U32 before = a_.statistics().bytesSent + b_.statistics().bytesSent;
@@ -178,8 +179,8 @@ TEST(LinkOverApi, APeerThatVanishesInMidSessionTakesLittleOfTheAir) {
     }
 }
 
-// One packet of a stream is in front of a reply, besides the one on the air (here with lines of
-// 250,000 baud, as the vehicle's); the stream loses at most a twentieth.
+// A reply waits for one packet of a stream, in addition to the packet on the air (here both lines
+// have 250,000 baud, like the vehicle's line). The stream loses at most a twentieth.
 TEST(LinkOverApi, ACallDuringPicturesWaitsForOnePacketOfThem) {
     const std::vector<U8> picture(LINK_MAX_MESSAGE, 1), call(1, 2);
     double pictures[2] = {0, 0};

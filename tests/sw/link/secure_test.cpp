@@ -224,8 +224,9 @@ TEST_P(Attacked, AConfirmThatWasHeldBackMakesNoSession) {
     }
 }
 
-// The attacker lets everything pass except the fragments of one side's message, and delivers these
-// later. By then their sender has been informed of the loss, and the receiver does not accept them.
+// The attacker lets everything pass except the fragments of one message, and delivers these
+// fragments later. By then their sender has been informed of the loss, and the receiver does not
+// accept them.
 TEST_P(Attacked, AMessageThatIsHeldBackIsReportedAndNeverTaken) {
     for (bool isFromA : {true, false}) {
         Side &from = isFromA ? a : b, &to = isFromA ? b : a;
@@ -431,8 +432,8 @@ TEST_P(Hindered, WhoAddsBytesToPacketsOrSendsThemBlindlyPreventsNoSession) {
             }
 }
 
-// A side that restarts has a session within a second, however often its peer, which believes in the
-// previous session, receives HELLOs of that session and of an earlier one.
+// A side that restarts has a session within a second. It does not matter how often its peer, which
+// still believes in the previous session, receives HELLOs of that session and of an earlier one.
 TEST_P(Hindered, OldHellosDelayARestartByLessThanASecond) {
     for (bool isGround : {true, false}) // the side that restarts
         for (uint64_t every : {100'000, 10'000, 2000}) {

@@ -160,8 +160,8 @@ INSTANTIATE_TEST_SUITE_P(Vehicles, InTheClear,
                          ::testing::Values(Variant{"full", "full", false},
                                            Variant{"full", "minimal", false}));
 
-// Goodput of one direction as a share of the modem's 10,000 bytes/s (docs/link.md): the layer paces
-// itself by the modem, although the radio here takes everything.
+// Goodput of one direction as a share of the modem's 10,000 bytes/s (docs/link.md). The layer paces
+// itself by the modem's rate, although the radio of this test accepts everything.
 TEST(Goodput, MeetsItsTargets) {
     const double targets[][2] = {{0, 0.83}, {0.01, 0.81}, {0.1, 0.68}, {0.3, 0.42}};
     for (auto& [loss, target] : targets) {

@@ -32,7 +32,8 @@ protected:
         Ice_initialize(&ic_);
         XBeeATEndpoint_init(&ic_, "xbee-at", &endpoint_, pair_.b.link(), 1, &port, this);
     }
-    // All messages of the endpoint have the same tag; a side can get one outcome for it.
+    // All messages of the endpoint have the same tag, and each side can get only one outcome for
+    // this tag.
     void run(U32 ms) {
         for (; ms; --ms) {
             pair_.b.outcomes.clear();
@@ -212,7 +213,7 @@ TEST_F(RadioEndpoint, ASecondGroundHasConnectionsOfItsOwn) {
 }
 
 // Options are written as the ground's plugin writes them (test_ground_ice,
-// EndpointsKeepTheirOptionsAsText...), so far as the UAV has them.
+// EndpointsKeepTheirOptionsAsText...), as far as the UAV supports them.
 TEST_F(RadioEndpoint, AProxyToAPeerIsEqualToThatOfItsString) {
     Ice_ObjectAdapter adapter;
     Ice_ObjectPrx made, parsed;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // fellow_test: tests vehicles that call each other's objects through IceC's radio endpoint, while
-// one of them serves two ground stations. Each has separate links and a separate communicator; time
-// is simulated.
+// one of the vehicles serves two ground stations. Each vehicle and ground station has separate
+// links and a separate communicator; time is simulated.
 
 #include "link_program.h"
 #include "random.h"
@@ -22,7 +22,7 @@ namespace {
 using Key = std::vector<U8>;
 struct Craft;
 
-// The parties, and their common time, which advances while one of them waits.
+// The vehicles and ground stations, and their common time, which advances while one of them waits.
 struct World {
     void step();
     void run(U32 times) {

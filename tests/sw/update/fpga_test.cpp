@@ -46,7 +46,7 @@ public:
     }
     ~Fpga() override { flash_ = nullptr; }
 
-    // State left by the factory: a golden bitstream, and the header that looks for a newer one.
+    // The state left by the factory: a golden bitstream, and the header that looks for a newer one.
     void fill(uint64_t seed) {
         flash = SpiFlash([] { return now_; }, seed);
         flash_ = &flash;
@@ -166,13 +166,14 @@ TEST_F(Fpga, ADamagedBitstreamNeverGetsItsSyncWord) {
 }
 
 TEST_F(Fpga, OnlyWhatIsSignedAndWholeIsLoaded) {
-    EXPECT_TRUE(Slots_isLoadable(&port, product)); // the golden one
+    EXPECT_TRUE(Slots_isLoadable(&port, product)); // the golden bitstream is loadable
     updateTo(2);
     EXPECT_TRUE(Slots_isLoadable(&port, product));
     lists[1] = {second.list(2, second, ours), {}, SLOTS_TRUE};
     EXPECT_FALSE(Slots_isLoadable(&port, product)); // its key was withdrawn
     EXPECT_TRUE(Slots_settleFpga(&port, 1));
-    EXPECT_TRUE(Slots_isLoadable(&port, product)); // the golden one, by the first list
+    EXPECT_TRUE(Slots_isLoadable(&port, product)); // the golden bitstream is loadable, by the keys
+                                                   // of the first list
     flash.memory[golden + 5000] ^= 1;
     EXPECT_FALSE(Slots_isLoadable(&port, product));
     flash.memory[golden + 5000] ^= 1;
@@ -195,7 +196,7 @@ TEST_F(Fpga, WhereverThePowerIsCutABitstreamConfiguresIt) {
             updateTo(2);
             return *this;
         },
-        [](Fpga& cut) { return cut.powerOn() == 1; }); // the golden one
+        [](Fpga& cut) { return cut.powerOn() == 1; }); // the golden bitstream runs
 }
 
 } // namespace

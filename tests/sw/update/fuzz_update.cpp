@@ -32,7 +32,7 @@ using Bytes = std::vector<uint8_t>;
 constexpr U32 product = 7, imageBytes = 0x200;
 constexpr U32 syncWord = 0x665599AA;
 constexpr uint8_t key = 1, filling = 0x5A; // index of the key that signs received images, and the
-                                           // byte that fills them
+                                           // byte of which these images consist
 
 void expect(bool condition) {
     if (!condition)

@@ -29,7 +29,7 @@ struct Keys {
         crypto_sign_detached(header.signature, nullptr, reinterpret_cast<const uint8_t*>(&header),
                              SLOTS_SIGNED_BYTES, secret.data());
     }
-    // Returns a list of keys that contains this key and another one.
+    // Returns a list of keys with this key and a second key.
     Slots_Header list(uint32_t version, const Keys& second, const Keys& signer) const {
         Slots_Header list{SLOTS_MAGIC, SLOTS_KEYS, version, 0, 0, {board[0], board[1]}, 0, {}, {}};
         std::copy(open.begin(), open.end(), list.digest);
@@ -145,8 +145,8 @@ private:
 };
 
 // Cuts the power at each of `all` operations of an update of the vehicles that `fresh` makes, and
-// again at a random later one; then again at the first ones, `tries` in all. `wentBack`: returns
-// whether the last cut led to the previous version.
+// then at a later operation, drawn at random. Repeats this from the first operation until there
+// were `tries` attempts. `wentBack`: returns whether the last cut led to the previous version.
 template <class Fresh, class WentBack>
 void cutAtEach(uint32_t version, uint64_t all, uint64_t tries, Fresh fresh, WentBack wentBack) {
     uint64_t cuts = 0, back = 0;

@@ -147,7 +147,7 @@ TEST_F(Loader, StartsOneOfEitherKeyUntilItIsWithdrawn) {
     ASSERT_EQ(folder.pack("keys 2 spare spare.pub list"), 0) << folder.said();
     const uint32_t at = flashBase + SLOTS_KEYS_AT + sizeof(Slots_Keys);
     chip.cpu().loadFlash(at, folder.read("list"));
-    receive(9, "key");    // replaces the confirmed one
+    receive(9, "key");    // replaces the confirmed firmware
     EXPECT_EQ(boot(), 1); // the list is not valid yet
     receive(9, "key");
     chip.cpu().writeMemory(at + offsetof(Slots_Keys, isComplete), &isTrue, 4);
@@ -338,7 +338,7 @@ TEST_F(FpgaStart, ABitstreamThatHangsTheFpgaGoesAtOnce) {
     EXPECT_TRUE(is(SLOTS_REFUSED));
 }
 
-// It would take four tries, 16 s, to detect that the FPGA hangs; but this one reads no more.
+// It would take four tries, 16 s, to detect that the FPGA hangs; but this FPGA reads no more.
 TEST_F(FpgaStart, ABoardWithoutDoneStartsSoonAndItsFpgaRuns) {
     chip.fpga.isDoneWired = false;
     chip.powerOn();
@@ -388,7 +388,7 @@ TEST_F(Packing, ABitstreamThatIsCutOrHasMoreThanItsEndIsNotSigned) {
         folder.save("more", file(more));
         refuses("bitstream more 5 key", "1001 bytes after the end of the bitstream");
     }
-    Bytes cut = bitFile(whole); // the length in its header is still that of the whole bitstream
+    Bytes cut = bitFile(whole); // the header still has the length of the whole bitstream
     cut.resize(cut.size() - 4);
     folder.save("short", cut);
     refuses("bitstream short 5 key", "as its header counts");

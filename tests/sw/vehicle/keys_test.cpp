@@ -37,7 +37,7 @@ public:
         keys = UAV_giveKeys(0, b.link());
         b.start();
     }
-    // Starts the ground's program with this key file; returns true if a session has come up.
+    // Starts the ground's program with this key file; returns whether a session was established.
     bool meets(const std::vector<Key>& file, uint64_t patienceUs = 20'000'000) {
         a.boot();
         for (size_t slot = 0; slot < file.size(); ++slot)

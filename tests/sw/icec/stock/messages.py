@@ -17,7 +17,7 @@ HEAD = b"IceP\1\0\1\0"
 # Time-outs, s, for the next reply after a call on a second connection was answered. A loaded
 # machine may exceed the first, so reactions that differ are compared again with the second.
 QUICK, PATIENT = 0.3, 10
-PAIRS = 6  # pairs of servers; while one waits for a time-out, the others work
+PAIRS = 6  # number of pairs of servers; while one pair waits for a time-out, the others work
 
 
 def size(n):

@@ -84,9 +84,9 @@ struct Literal {
     enum class Kind { None, Bool, Integer, Floating, String, Enumerator };
     Kind kind = Kind::None;
     int64_t integer = 0; // value of a Bool, an Integer or an Enumerator
+    double floating = 0; // value of a Floating
     // text of a Floating as written; text of a String in UTF-8; name of an Enumerator
-    double floating = 0;
-    std::string text; // Floating as written; String in UTF-8; name of an Enumerator
+    std::string text;
     const Declaration* owner = nullptr; // enum of an Enumerator
 };
 

@@ -8,8 +8,8 @@
 //   preprocessor   #include, #define and #if, by libmcpp; comments are kept, #line gives the origin
 //   lexer          text into tokens, each with its place in the original file and its doc comment
 //   parser         tokens into declarations by recursive descent: parser.cpp has tokens, recovery
-//                  and modules, parser_data, parser_interface and parser_types one method a rule;
-//                  each declaration is checked at the end of its rule
+//                  and modules, parser_data, parser_interface and parser_types one method for each
+//                  rule; each declaration is checked at the end of its rule
 //   symbols        identifiers that Slice allows, and what a name means in its scope; the parser
 //                  resolves every name at once
 //   literals       converts numbers and strings as written into values

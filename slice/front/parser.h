@@ -143,8 +143,8 @@ private:
     std::map<std::string_view, bool> isMain_;
     std::set<std::string_view> begun_; // files with at least one definition so far
     std::map<int, std::string> compactIds_;
-    std::set<std::string>
-        unknown_; // names of unknown types that have been reported State of the current definition.
+    std::set<std::string> unknown_; // names of unknown types that have been reported
+    // State of the current definition.
     Metadata metadata_;
     std::string doc_;
     bool local_ = false;

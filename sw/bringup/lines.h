@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * lines: tests each wire between microcontroller and FPGA from both sides, with the FPGA loaded
- * with line_tester (hdl/bringup/line_tester.v). The microcontroller moves its pins by hand, so
- * neither the FSMC nor the board's clock has to work.
+ * lines: tests each wire between microcontroller and FPGA from both sides, while the FPGA is loaded
+ * with line_tester (hdl/bringup/line_tester.v). The microcontroller drives its pins as
+ * general-purpose outputs, so neither the FSMC nor the board's clock has to work.
  */
 #pragma once
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * lines_modem: finds bad wires between FPGA and modem, without a word to the modem.
+ * lines_modem: finds bad wires between FPGA and modem, without sending a command to the modem.
  *
  * An idle XBee drives DOUT (our RXD) high and CTS low, and has pull-ups at DIN (our TXD), RTS and
  * RESET. While RESET is low it drives nothing. The tester has a pull-down at RXD, and a pull-up at
@@ -38,7 +38,8 @@ static void set(U32 pin, U32 level) {
     Pins_set(&lines_value, pin, level == 1U);
 }
 
-/* Applies the settings and looks at the levels, soon after (early) and later (now). */
+/* Applies the settings and reads the levels twice: shortly afterwards (early), and when they have
+ * settled (now). */
 static void look(void) {
     Answer answer;
     (void)Lines_exchange(&answer);

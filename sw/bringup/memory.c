@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * memory: tests DDR3 and names its lines: data by bits that differ in all beats of a burst, address
- * lines by places that are the same.
+ * memory: tests DDR3, and names faulty lines. A faulty data line shows as a bit that is wrong in
+ * all beats of a burst. A faulty address line shows as two addresses that reach the same place.
  *
  * A halfword is a beat on DQ15..DQ0. Of a byte address, bits 10..1 are the column, 13..11 the bank,
  * 26..14 the row (MIG's ROW_BANK_COLUMN). Row and column share the lines A9..A0.
@@ -114,7 +114,7 @@ static void testData(void) {
     }
 }
 
-/* A byte that is not written must stay. */
+/* Tests the data masks: bytes that are not written must keep their values. */
 static void testMasks(void) {
     U32 lane, seen;
     for (lane = 0; lane < 2U; ++lane) {
@@ -172,7 +172,8 @@ static void testAddress(void) {
                     "the memory controller's settings in MIG: part, row and column bits");
 }
 
-/* Fills memory with a function of the address, waits, and compares. Returns errors. */
+/* Fills the memory with a function of the address, waits, and compares. Returns the number of
+ * errors. */
 static U32 testCells(U32 bytes, U32 step) {
     U32 at, wrong = 0;
     for (at = 0; at < bytes; at += step)

@@ -99,7 +99,8 @@ static void multiplyA24(U16* r, const U16* a) {
     fold(r, carry + below);
 }
 
-/* Raises to the power p - 2, which has only ones except at bits 2 and 4. */
+/* Computes the inverse of a number: its power p - 2. All bits of this exponent are 1 except bits 2
+ * and 4. */
 static void invert(U16* r, const U16* a) {
     Number z;
     int bit;

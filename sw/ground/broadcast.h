@@ -23,7 +23,7 @@ public:
         : settings_(settings), key_(keys.empty() ? LinkKey{} : keys.back()) {}
     ~Broadcast() { explicit_bzero(key_.data(), key_.size()); }
 
-    // The modem is ready, and a packet has `bytes` at most.
+    // Reports that the modem is ready, and that a packet has at most `bytes`.
     void limitPacket(U32 bytes) { most_ = bytes - LINK_BROADCAST_OVERHEAD; }
     void stop() { most_ = copies_ = 0; } // sends no more copies
     // Returns the size of the largest message, bytes; 0 if the modem is not ready.

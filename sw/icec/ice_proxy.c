@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_proxy: a proxy's parts, its form on the wire, and changes of a copy.
- *
- * Identity, facet and endpoints are kept in the wire's form, since proxies are mostly sent.
+ * ice_proxy: reads and writes proxies, and changes copies of them. * Identity, facet and endpoints
+ * are stored as they are encoded in messages, because proxies are mostly sent.
  */
 #include "ice_message.h"
 

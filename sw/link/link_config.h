@@ -132,15 +132,16 @@
  * than the second number. A loss has an effect for a limited time. */
 #define LINK_WAIT_SHARED 2U /* RN that the modem has after set-up */
 #define LINK_WAIT_BOTH 3U   /* two streams */
-/* packets, of 65,536, that were lost without failed tries: more are considered many */
+/* share of packets lost without retries above which such losses count as frequent; 65,536 means all
+ * packets */
 #define LINK_QUICK_MANY 12288U
 #define LINK_SPAN 500000U
 #define LINK_SPAN_MANY 1000U
 #define LINK_SPAN_FEW 500U
 #define LINK_LOSS_COUNTS 10000000U
 
-/* Longest pause after a loss, of a side that sends little: at first, and at last. To the last
- * value four times the peer's silence is added. */
+/* Longest pause after a loss, for a side that sends little: first value, and largest value. Four
+ * times the peer's silence is added to the largest value. */
 #define LINK_REST_FIRST 8000U
 #define LINK_REST_LAST 200000U
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_minimal: the link layer of a side that only answers, in little code. It has the full layer's
- * wire format and functions (link.h), works by stop and wait, and queues one message
- * (docs/link.md).
+ * link_minimal: a small link layer for a side that only answers. It has the wire format and the
+ * functions of the full layer (link.h). It sends one fragment at a time, waits for its
+ * acknowledgement, and queues one message (docs/link.md).
  */
 #pragma once
 

@@ -18,7 +18,7 @@
  * (uav_keys.h). */
 extern const U8* uav_modemKey;
 
-/* Guard time that the modem has now, ms. 0, the initial value, stands for the factory's 1000. */
+/* Current guard time of the modem, ms. 0, the initial value, means the factory setting, 1000 ms. */
 extern U16 uav_guardMs;
 
 /* 1 if a cable to the ground's serial port replaces the modems; 0, the initial value, with a

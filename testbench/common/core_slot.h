@@ -75,7 +75,7 @@ public:
             }
         });
     }
-    void run(unsigned hz) { hz_ = hz; } // 0: it stops
+    void run(unsigned hz) { hz_ = hz; } // Sets the frequency of the clock, Hz; 0 stops the clock.
 
 private:
     unsigned hz_ = CORE_OWN_HZ, time_ = 0;
@@ -115,7 +115,7 @@ public:
             Hw_Core_interrupt(core_);
     }
 
-    // The port that generated proxies take.
+    // Functions that generated proxies call.
     void hw_start(Hw_Status status, Hw_Core& core) {
         EXPECT_EQ(status, HW_OK);
         core_ = &core;

@@ -3,21 +3,21 @@
 // mcb_model: a 64-bit user port of the Spartan-6 memory controller block (UG388), and the DDR3 that
 // it controls.
 //
-// The user port: a command FIFO of 4, data FIFOs of 64 words, and the flags of the real port. When
-//   the real port sets an error flag or loses data, the model also throws McbError, so that a test
-//   fails: a command while the FIFO is full (the real one ignores it) or before calibration is done
-//   an address that is not a multiple of 8, or beyond the memory a write command before its words
-//   are in the FIFO (wr_underrun, wr_error) a word into the full write FIFO (ignored), out of the
-//   empty read FIFO (rd_error) a word that comes from the memory while the read FIFO is full
-//   (rd_overflow)
+// The user port has a command FIFO of 4, data FIFOs of 64 words, and the flags of the real port.
+// If the real port sets an error flag or loses data, the model also throws McbError, so that a test
+// fails:
+//   a command while the FIFO is full (the real one ignores it), or before calibration is done
+//   an address that is not a multiple of 8, or beyond the memory
+//   a write command before its words are in the FIFO (wr_underrun, wr_error)
+//   a word written to the full write FIFO (ignored), or read from the empty read FIFO (rd_error)
+//   a word that arrives from the memory while the read FIFO is full (rd_overflow)
 //
-// Behind the port, commands are carried out one after another, in bursts of 8 on a device of 16
-// bits at DDR3-800 (ddr3_timing.h), with four memory clocks per clock of the design: 100 MHz. By
-// Xilinx AR36413 a write waits until the data of the previous read ends, and so does an activate;
-// otherwise a row is opened as soon as the previous burst has its command. Addresses are
-// ROW_BANK_COLUMN, MIG's default. The path through the FIFOs, both clock crossings and the PHY is
-// estimated by two constants (Timing): UG388 gives the read latency as a range that depends on the
-// configuration.
+// The port executes commands one after another, in bursts of 8, on a memory of 16 bits at DDR3-800
+// (ddr3_timing.h). The memory has four clocks per clock of the design, which is 100 MHz. By Xilinx
+// AR36413, a write and an activate wait until the data of the previous read ends; otherwise a row
+// is opened as soon as the previous burst has its command. Addresses are ROW_BANK_COLUMN, MIG's
+// default. Two constants (Timing) estimate the path through the FIFOs, both clock crossings and the
+// PHY, because UG388 gives the read latency as a range that depends on the configuration.
 
 #pragma once
 

@@ -19,7 +19,7 @@ class SerialClient {
 public:
     virtual void fromHost(uint8_t byte, uint64_t now) = 0;
     virtual void framingError(uint64_t now) = 0;
-    // Sets `byte` to the modem's next byte for the host. Returns false if there is none
+    // Sets `byte` to the modem's next byte for the host. Returns false if there is none.
     virtual bool nextToHost(uint8_t& byte) = 0;
 
 protected:

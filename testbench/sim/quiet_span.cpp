@@ -30,8 +30,9 @@ constexpr uint64_t margin = 2; // clocks before an event that are always evaluat
 constexpr uint64_t settling = 8;
 constexpr uint64_t least = 8;    // clocks that the platform is skipped alone at first
 constexpr unsigned longest = 32; // largest number of clocks between two tests of a busy chip
-constexpr uint64_t blameEvery =
-    256; // number of tests of a busy chip blocks of soc.v other than its cores
+// number of tests of a busy chip between two records of the changed cores
+constexpr uint64_t blameEvery = 256;
+// blocks of soc.v other than its cores
 const std::set<std::string> platform = {"u_platform", "u_modem", "u_system_slot"};
 // blocks that get no clock while the platform rests (testbench/sim/CMakeLists.txt)
 const char* const resting[] = {"u_platform.u_fsmc_bridge.", "u_platform.u_bus_decoder.", "u_modem.",

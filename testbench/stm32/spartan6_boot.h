@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// spartan6_boot: how a Spartan-6 configures itself from an SPI flash (UG380 v2.7, chapters 5 and
-// 7). A header at address 0 points to the MultiBoot bitstream. The FPGA tries that one three times,
-// then the golden one. A try fails by a wrong CRC or device, or if no sync word arrives in time.
-// Any other fault after the sync word stops the FPGA permanently (AMD's answer 58249): such a
-// bitstream must never be in flash.
+// spartan6_boot: models how a Spartan-6 configures itself from an SPI flash (UG380 v2.7, chapters 5
+// and 7). A header at address 0 points to the MultiBoot bitstream. The FPGA tries this bitstream
+// three times, then the golden one. A try fails if the CRC or the device is wrong, or if no sync
+// word arrives in time. Any other fault after the sync word stops the FPGA permanently (AMD's
+// answer 58249), so such a bitstream must never be in flash.
 
 #pragma once
 
@@ -24,7 +24,7 @@ struct Spartan6Boot {
     bool isStuck = false; // the FPGA makes no further try
     uint64_t clocks = 0;  // CCLK clocks that the configuration took
     unsigned strikes = 0; // tries that failed
-    // The reads of the flash, a try each: the address, and the clocks at which its chip select
+    // The reads of the flash, one for each try: the address, and the clocks at which chip select
     // falls and rises.
     struct Read {
         uint32_t address;
@@ -38,6 +38,7 @@ private:
     uint16_t general_[4] = {}; // GENERAL1..4: MultiBoot's address, and the golden one's
 };
 
-// A bitstream that configures the model, in place of one from ISE: frames of random words.
+// Returns a bitstream that configures the model, as a replacement for one from ISE; its frames
+// contain random words.
 std::vector<uint8_t> standInBitstream(uint32_t seed, uint32_t frameWords,
                                       uint32_t idCode = Spartan6Boot::idCode);

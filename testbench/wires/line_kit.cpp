@@ -33,7 +33,8 @@ LineKit::LineKit(const Options& options)
       // HCLK 120 MHz to the oscillator's 25 MHz
       fsmc_(fsmcPins_, {[this] { tick(); }, [] {}}, 24, 5),
       stm32_(fsmc_, [this] { return now_; }, Stm32F2::Config()) {
-    context_.commandArgs(0, static_cast<const char**>(nullptr)); // cdc_bit looks for its option
+    // cdc_bit reads an option from the arguments, so they must exist
+    context_.commandArgs(0, static_cast<const char**>(nullptr));
     double mhz = options.fpgaMhz;
     for (const WireFault& fault : options.faults) {
         if (fault.wire == "CLK")
@@ -109,7 +110,7 @@ void LineKit::pulseNwe(bool level) {
     }
 }
 
-// Shows the FPGA the levels of the wires, and the wires what it drives, until nothing changes.
+// Passes levels between the wires and the FPGA in both directions, until nothing changes.
 void LineKit::exchange() {
     if (!options_.isConfigured)
         return;
@@ -166,7 +167,7 @@ std::string LineKit::run(const std::string& elf, unsigned limitMs) {
     stm32_.powerOn();
     if (!stm32_.image())
         stm32_.startInRam(elf);
-    if (change_) { // once the program has given its variables their values
+    if (change_) { // only after the program has initialised its variables
         stm32_.cpu().breakpoints = {stm32_.image()->symbol("main") & ~1u};
         (void)stm32_.run();
         stm32_.cpu().breakpoints.clear();

@@ -3,16 +3,17 @@
  * tcp_endpoint: IceC's transport over TCP on a POSIX host: any ZeroC program can be the peer.
  *
  * Options: -h name or address, IPv4 or IPv6 (default 127.0.0.1), -p port (0: the system chooses),
- * -t milliseconds for connecting (default 60000). One adapter of a communicator can listen.
+ * -t time-out for connecting, ms (default 60000). One adapter of a communicator can listen.
  *
- * Peers: sending waits for a peer that does not read for sendMs, then closes. A silent connection
- * carries a heartbeat each heartbeatMs (Ice 3.8 cuts others after 60 s). Where all numbers are
- * taken, a new peer displaces the one that has been idle longest, at once if it has been served,
- * else after idleMs. A peer that has vanished is noticed within about a minute.
+ * Sending to a peer that does not read waits for sendMs, then closes the connection. A silent
+ * connection carries a heartbeat every heartbeatMs, because Ice 3.8 closes silent connections after
+ * 60 s. If all connections are in use, a new peer displaces the one that has been idle longest: at
+ * once if it has been served before, otherwise after idleMs. A peer that has vanished is detected
+ * within about a minute.
  *
- * A message that is too long, or compressed, is refused and named on standard error. A caller that
- * waits for a reply gets the limit in an UnknownLocalException; otherwise the connection ends, as
- * in stock Ice.
+ * A message that is too long or compressed is refused, and reported on standard error. A caller
+ * that waits for a reply gets an UnknownLocalException that names the limit; otherwise the
+ * connection is closed, as by stock Ice.
  */
 #pragma once
 

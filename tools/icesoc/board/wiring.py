@@ -118,6 +118,21 @@ def bullets(texts):
     return "".join(f"- {text}\n" for text in texts)
 
 
+# Facts about a chip in board.toml, as the page shows them.
+FACTS = {
+    "part": "part {value}", "speed": "speed grade -{value}", "hse_hz": "clock (HSE) {value} Hz",
+    "hse": "HSE mode {value}", "clock_hz": "oscillator {value} Hz", "vccaux": "VCCAUX {value} V",
+    "banks": "VCCO of banks 0 to 3: {value} V", "reset_low": "active-low reset key: {value}",
+    "ddr": "DDR3 of the module in use: {value}", "debugger": "debugger {value}"}
+
+
+def fact_text(value):
+    """Returns the value of a fact as text."""
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+
+
 def page(board: Board):
     """Returns the board's page in Markdown, docs/boards/NAME.md."""
     facts = board.facts
@@ -131,8 +146,8 @@ def page(board: Board):
     text += "\n" + " ".join(facts.get("summary", "").split()) + "\n" if facts.get("summary") else ""
     text += "\n## Chips\n| chip | facts |\n|---|---|\n"
     for role, noun in (("mcu", "microcontroller"), ("fpga", "FPGA")):
-        shown = [f"{key.replace('_', ' ')} {value}" for key, value in facts[role].items()
-                 if key not in ("module", "connectors")]
+        shown = [FACTS.get(key, "{key}: {value}").format(key=key, value=fact_text(value))
+                 for key, value in facts[role].items() if key not in ("module", "connectors")]
         text += f"| {noun} | {'; '.join(shown)} |\n"
     if board.ddr:
         text += f"| memory | {board.ddr['part']}, bank {board.ddr['bank']} |\n"

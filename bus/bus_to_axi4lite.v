@@ -138,7 +138,7 @@ module bus_to_axi4lite #(
     end
 `endif
 `ifdef FORMAL
-    // Each answered access was answered by its own transfer, with the core's response.
+    // Each answered access had one transfer, and was answered with the core's response.
     wire window = bus_valid_i && bus_addr_i[3] && bus_ready_o && !bus_error_o;
     always @* if (!rst_i && window) begin
         assert (open && address[4:2] == bus_addr_i[2:0]);

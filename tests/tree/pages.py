@@ -17,8 +17,8 @@ ROOMS = "hdl|bus|ip|slice|sw|testbench|synth|tests|tools|docs|cmake|examples|boa
 
 
 def exists(tree, path, files):
-    """Returns whether a page's path is in the repository; also a folder, a name without its ending
-    or a pattern."""
+    """Returns whether a path that a page names is in the repository. The path may also be a folder,
+    a file name without its ending, or a pattern."""
     path = path.rstrip("/")
     pattern = "^" + re.escape(path).replace(r"\*", "[^/]*") + r"(/|$|\.)"
     return any(re.match(pattern, f) for f in files)

@@ -13,7 +13,7 @@ from icesoc.util import templates
 
 KINDS = {".vhd": "vhdl", ".vhdl": "vhdl", ".v": "verilog", ".sv": "verilog",
          ".vh": "header", ".svh": "header", ".h": "header", ".inc": "header"}
-# Verilator's options for a core, whatever the style of its source.
+# Options of Verilator for third-party code, which accept any style.
 FLAGS = ["-Wno-fatal", "-Wno-lint", "-Wno-style",
          *("-Wno-" + w for w in "TIMESCALEMOD SELRANGE COMBDLY INITIALDLY".split()),
          "-Werror-MODDUP", "--no-timing"]

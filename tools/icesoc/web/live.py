@@ -195,7 +195,7 @@ def mark_viewed(folder, is_viewed=True):
             with open(path, "w"):
                 os.utime(path)
     except OSError:
-        pass  # the folder has gone, or another request was faster
+        pass  # the folder was removed, or another request has done this
 
 
 class Vehicle:

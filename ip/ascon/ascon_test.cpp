@@ -130,7 +130,7 @@ TEST_F(AsconTest, HashesTheKnownAnswers) {
 TEST_F(AsconTest, EqualsTheModelForRandomMessages) {
     for (int i = 0; i < 60; ++i) {
         place();
-        bool isSlow = i % 6 == 5; // such a memory is slower than the rounds between two uses of it
+        bool isSlow = i % 6 == 5; // a memory that is slower than the rounds between two accesses
         memory_.setStall(isSlow ? 0.97 : 0.2);
         memory_.setLinger(isSlow ? 0.97 : 0);
         auto key = randomKey(), nonce = randomKey();

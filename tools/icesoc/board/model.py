@@ -2,7 +2,7 @@
 """model: reads boards/NAME/board.toml with the modules and parts that it names.
 
 The facts of parts (boards/parts/*.csv) and of modules (boards/modules/*.toml) are read here and
-nowhere else. check.py judges what was read; the generators are in ucf.py and the files beside it.
+nowhere else. check.py judges what was read; the generators are in ucf.py and the files next to it.
 """
 import csv
 import json

@@ -201,12 +201,12 @@ def copies_in(folder, files, change):
 
 def read_module(top, files, headers=(), params=(), defines=(), is_whole=True, ghdl="ghdl",
                 library="", libraries=()):
-    """The module `top`: its ports in order, and whether Yosys reads it, not Verilator alone. A port
-    that resets registers asynchronously has "reset", the level at which it does. `headers`: files
-    in whose folders `include finds more. `params`: NAME=value of parameters or generics; `defines`:
-    NAME or NAME=value of macros. `is_whole`: all of its modules are in the files. `ghdl`: the
-    program that reads VHDL; `library`: name that the files have for their library; `libraries`:
-    other libraries, NAME=FILE for each of their files."""
+    """Returns the ports of the module `top` in their order, and whether Yosys can read the module
+    (otherwise only Verilator can). A port that resets registers asynchronously has the key "reset",
+    its active level. `headers`: files whose folders are searched by `include. `params`: NAME=value
+    of parameters or generics. `defines`: NAME or NAME=value of macros. `is_whole`: the files
+    contain all modules of the design. `ghdl`: the program that reads VHDL. `library`: the name of
+    the files' VHDL library. `libraries`: other libraries, NAME=FILE for each of their files."""
     with tempfile.TemporaryDirectory() as work:
         out = os.path.join(work, top + ".v")
         if is_vhdl(files[0]):

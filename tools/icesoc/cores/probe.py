@@ -90,8 +90,8 @@ def signed(value):
 
 
 def read(probe, state, before, after):
-    """Returns the changes from `before` before the trigger's, or before the newest, to `after`
-    behind it."""
+    """Returns the `before` changes before the trigger's change and the `after` changes after it.
+    Without a trigger, the newest change takes the place of the trigger's."""
     size = 8 * state.words
     ring = RING_BYTES // size
     count = ring if state.wrapped else state.next

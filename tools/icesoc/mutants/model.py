@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Stands in for Verilator where drawn mutants are tried against tests: a model carries all mutants
-of its modules, and MUTANT in the environment chooses one by its number when a test begins (none:
-the module as it is).
+"""Replaces Verilator when tests are run with drawn mutants. A model contains all mutants of its
+modules, and the number MUTANT in the environment selects one when a test begins. Without MUTANT the
+module is unchanged.
 
-A mutant was drawn in its module as a proof reads it. In a model the cell is found by its kind, its
-source line and its place among such cells; a missing bit becomes the last one. DRAWN is the list
-that drawn.py writes.
+A mutant was drawn in the module as the proof reads it. In a model, its cell is found by kind,
+source line, and position among the cells with the same kind and line. If the mutated bit does not
+exist there, the last bit is used. DRAWN is the list that drawn.py writes.
 """
 import collections, json, os, pathlib, re, subprocess, sys, tempfile
 

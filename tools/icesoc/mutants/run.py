@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""Plants each seeded bug in a copy of the tree and expects the test it names to fail.
+"""Plants each seeded bug in a copy of the tree, and expects the test that the bug names to fail.
 
-The bugs of a block stand in tests/mutants/<block>.bugs.json, a core's in
+The bugs of a block are in tests/mutants/<block>.bugs.json, the bugs of a core in
 ip/<core>/<core>.bugs.json:
 
     "name": {"does": "What the bug does, in a sentence.",
       "test": "the test that catches it, as ctest names it", "file": "hdl/some/file.v",
-      "old": "the line of the file that goes, or a list of lines",
+      "old": "the line of the file that is replaced, or a list of lines",
       "new": "the line, or lines, that replace it",
       "more": [{"old": "...", "new": "..."}]}
 
-Lines that go must be found once in the file. "more" changes further places; "file" there names
-another file.
+The old lines must occur exactly once in the file. "more" changes further places; a "file" in it
+names another file.
 
 Leaves build/mutants/results.tsv (name, result, test, seconds, file:line).
 Exit status 1: a bug survived, is no longer found in its file, or does not build.

@@ -1,18 +1,20 @@
 #!/usr/bin/python3 -I
 # SPDX-License-Identifier: MIT
-"""kept: runs a test that is a function of files; where none of these has changed since it passed,
-prints the kept output.
+"""kept: runs a test whose result depends only on files. If none of these files has changed since
+the test passed, prints the stored output instead.
 
-Usage: kept.py OWN COMMAND [WORD...]   OWN: the test's work folder, emptied before; "" for none
+Usage: kept.py OWN COMMAND [WORD...]   OWN: work folder of the test, which is emptied first, or ""
 
-strace sees each file that the test's processes open, look for and list, programs and libraries
-among them. A verdict is what the test printed, and the state that it left each of these in: files
-of the tree by content, others by size and time of change. It holds while all of them are as they
-were. Outside the tree, the names in a folder do not count, nor do caches that every installation of
-a package writes: a package that has none of these files changes nothing. The environment is the
-same for all: nothing else gets in. A test that fails leaves no verdict; nor does one that is
-killed, or one with a file that changed meanwhile; FRESH=1 computes. Verdicts are below
-XDG_CACHE_HOME (~/.cache), the newest four of a command, for all clones.
+strace reports each file that the processes of the test open, look for or list, including programs
+and libraries. A stored result consists of the output and the state of each of these files: files
+of the tree by their content, other files by size and time of change. The result is valid as long
+as all these files are unchanged. Outside the tree, two things do not count: the names in a folder,
+and caches that every installation of a package writes. A package without any of these files
+therefore invalidates no result. All tests get the same environment.
+
+No result is stored for a test that fails, that is killed, or that used a file which changed during
+the test. FRESH=1 runs every test. The results are below XDG_CACHE_HOME (~/.cache) and shared by all
+clones; each command keeps its newest four.
 """
 
 import datetime

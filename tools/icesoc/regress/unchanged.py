@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 """unchanged: finds the tests that have passed with their present inputs, so that `make test` runs
-the others only.
+only the other tests.
 
-The inputs of a test are a text each, and a digest of all of them is kept with its pass:
-- of a program: its bytes, and the files that it names in them by an absolute path below the tree or
-  the build folder, as its compile definitions do. A folder stands for all files in it.
+When a test passes, a digest of its inputs is stored. The inputs are:
+- of a test program: its bytes, and the files below the tree or the build folder whose absolute
+  paths these bytes contain (from compile definitions). A folder stands for all files in it.
 - of any other test: all files of the tree, and the programs of the build.
-- of both: the seed, and the versions of the packages in cmake/setup.sh with all that they depend
-  on. Other packages of the machine do not count.
+- of both: the seed, and the versions of the packages in cmake/setup.sh and of all packages that
+  these depend on. Other packages of the machine do not count.
 """
 import functools
 import json

@@ -219,11 +219,15 @@ def read_vcd(text):
 
 
 def drawing_of(failure, room):
-    """{from, to, signals: [[name, bits, [time, value, ...]], ...], first: how many of them stand
-    before the tree of instances, more: signals left out}: the program's, those that the failure's
-    text names, those that move below its instance, but no words of memories; then others that move,
-    constant ones; in each group the outermost first. Signals that a converter has named are left
-    out. A drawing of more than `room` bytes loses its older changes, then the last signals."""
+    """Returns the drawing of a failure's waveform: {from, to, signals: [[name, bits, [time, value,
+    ...]], ...], first: number of signals listed before the tree of instances, more: number of
+    signals left out}.
+
+    First come the rows of the program, the signals that the failure's text names, and the signals
+    that change below the failure's instance, except for words of memories. Then come other signals
+    that change, and constant signals. Each group begins with the outermost signals. Signals that
+    a converter has named are left out. If the drawing exceeds `room` bytes, its older changes are
+    left out, then the last signals."""
     try:
         signals, moments = read_vcd(collect(["fst2vcd", "-f", failure.wave])[1]
                                     if failure.wave.endswith(".fst")

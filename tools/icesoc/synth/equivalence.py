@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
 """equivalence: proves that a netlist behaves like its RTL in each clock, starting with the first.
 
-Yosys puts both side by side, with one output that is high if any of theirs differ
-(synth/yosys/equivalence.ys); abc finds registers that are always equal (lcorr), then other signals
-(scorr), then the clock of a difference (bmc3) or the proof (pdr). What RTL leaves undefined,
-flip-flops have by the netlist at the start, else 0. Where there are several clocks, edges are
-inputs: any order of them is proven.
+Yosys puts both side by side, with one output that is high if any of their outputs differ
+(synth/yosys/equivalence.ys). abc first finds registers that are always equal (lcorr), then other
+equal signals (scorr). Then it finds the clock in which an output differs (bmc3), or the proof
+(pdr). Initial values that the RTL leaves undefined are taken from the netlist's flip-flops; other
+undefined values are 0. With several clocks, their edges are inputs, so any order of edges is
+proven.
 """
 import json
 import pathlib
@@ -118,9 +119,9 @@ def solved(file, commands, is_plain, options, seconds):
         raise Stop(said)
     with open(f"{file}.aig", "rb") as aiger:
         has_state = aiger.readline().split()[3] != b"0"
-    # bmc3 finds a difference soon, most before anything else, where pdr seeks a proof; sat decides
-    # what newer versions of pdr do not: a miter in which scorr has left no register. -T is of the
-    # wall-clock time, which is useless on a busy machine; ulimit limits CPU seconds.
+    # bmc3 finds most differences soon, and pdr then looks for a proof. If scorr has left no
+    # register, newer versions of pdr do not decide, and sat does. -T limits the wall-clock time,
+    # which is useless on a busy machine; ulimit limits CPU seconds.
     whole, less = f"{file}.aig", f"{file}.less.aig"
     steps = ([(whole, "bmc3 -F 20 -T 10"),
               (whole, f"lcorr -C 30000; scorr; write_aiger {less}; bmc3 -F 50 -T {seconds // 5}"),

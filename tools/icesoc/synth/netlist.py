@@ -127,8 +127,9 @@ class Netlist:
 
 @functools.lru_cache(1 << 16)
 def rank(name):
-    """Orders the names of one bit: the driver's has no name of GHDL's (n123_o), is not an input of
-    the block below, and is the deepest, since outputs are passed up."""
+    """Returns the sort key of a name of a bit; the name of the driver comes first. It is not a name
+    made by GHDL (n123_o), not an input of an inner block, and the deepest name, since outputs are
+    passed up."""
     last = name.rpartition(".")[2]
     return (bool(re.match(r"n\d+(_|$)", last)), len(last) > 2 and last.endswith("_i"),
             -name.count("."), len(name), name)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""runner: synthesis runs by Yosys, in parallel, each result kept under the hash of its sources, and
-the figures of a run.
+"""runner: runs Yosys' syntheses in parallel, caches each result under the hash of its sources, and
+computes the figures of a run.
 
-Figures, stored in the cache as JSON: {"lut", "ff", ...: counts; "cells": counts by Yosys cell type;
+The cache stores the figures as JSON: {"lut", "ff", ...: counts; "cells": counts by Yosys cell type;
 "costs": {path: {signal: Cost}}; and the figures of slices.py, timing.py, nets.py}. "clocks" are the
-clocks of all orders, rising; "mhz" is their median, which is compared with the budget.
+clocks of all orders, lowest first; "mhz" is their median, which is compared with the budget.
 """
 import concurrent.futures
 import dataclasses
@@ -74,9 +74,10 @@ DECLARES_MEMORY = re.compile(r"\b(?:reg|logic|bit)\b[^;]*?\w\s*\[[^];]*\]\s*[;,=
 
 
 def script_of(run, library, options, output, more="", memory=False):
-    """The script of a run; `more`: a further library of what its sources instantiate; `memory`: it
-    has one that they do not declare. A design with limits keeps Yosys' whole libraries: with fewer
-    modules its mapping is another, by chance."""
+    """Returns the Yosys script of a run. `more`: a further library of cells that the sources
+    instantiate. `memory`: the design has a memory although the sources declare none. A design with
+    limits keeps Yosys' whole libraries, because with fewer modules its mapping changes by
+    chance."""
     includes = "".join(f" -I{folder}" for folder in library.include_folders)
     files, listed = library.files_of(run.design.top), [m.file for m in library.modules.values()]
     # SystemVerilog has additional keywords, and packages are listed before the modules that use
@@ -184,8 +185,9 @@ def places_of(n, figures):
 
 
 def together(orders):
-    """The figures of a design from its netlist in several orders: the order with the median
-    of LUTs, but for time the one with the median clock, with the paths of the slowest."""
+    """Returns the figures of a design from its netlists in several orders. Counts are those of the
+    order with the median of LUTs; the clock is that of the order with the median clock; the longest
+    paths are those of the slowest order."""
     if len(orders) == 1:
         return orders[0] | {"luts": [orders[0]["lut"]], "clocks": [orders[0]["mhz"]]}
     by_lut = sorted(orders, key=lambda figures: figures["lut"])
@@ -244,9 +246,9 @@ def carry_out_one(run, library, options, version):
 
 
 def time_left(runs, options, now):
-    """"11 of 55 designs, about 3:20 left: soc, vision". By its LUTs a design takes a time that is
-    of an idle machine; finished runs, or the load, show how much slower this one is. A
-    netlist in several orders shows their number."""
+    """Returns a line such as "11 of 55 designs, about 3:20 left: soc, vision". The time of a design
+    on an idle machine is estimated from its LUTs; the finished runs, or the load, show how much
+    slower this machine is. A netlist in several orders shows their number."""
     def expected(run):
         return 1 + options.luts.get(run.design.name, 100) * (1 + run.orders) / 200
 

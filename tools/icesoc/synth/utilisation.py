@@ -69,9 +69,9 @@ def rows_of(plan, runs, library, accepted, yosys):
 
 
 def tell_cores(library, options, o, accepted, runs):
-    """Prints the cost of some cores in the chip, whatever the limits: in the synthesised one, the
-    only design wanted, or, without runs, in the accepted one. Missing cores are allowed. Returns 1
-    if the synthesis failed."""
+    """Prints the cost of some cores in the chip, without checking limits. With runs, this is the
+    chip that was synthesised, which is then the only requested design; without runs, it is the
+    accepted chip. Cores may be missing. Returns 1 if the synthesis failed."""
     run = next((run for run in runs if run.wanted), None)
     if run and run.error:
         return 1

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""fetch: brings what the build uses and Debian's packages leave out, without touching the system.
+"""fetch: downloads files that the build needs and Debian's packages do not contain, without
+changing the system.
 
-Usage: fetch.py THING FOLDER    puts it into FOLDER; `fetch.py --help` lists the things
-A file with a checksum here must be the tested one, or it is refused. Downloads are kept in
-${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network. ICESOC_NPM, ICESOC_RAW:
-a mirror of registry.npmjs.org, of raw.githubusercontent.com.
-Exit status 77: no network, and only optional parts need this file.
+Usage: fetch.py THING FOLDER    puts THING into FOLDER; `fetch.py --help` lists the things
+A file whose checksum is listed here is refused if its checksum differs. Downloads are kept in
+${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network. ICESOC_NPM is a mirror
+of registry.npmjs.org, ICESOC_RAW a mirror of raw.githubusercontent.com.
+Exit status 77: there is no network, and only optional parts need this file.
 """
 
 import argparse

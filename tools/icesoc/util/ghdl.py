@@ -17,8 +17,9 @@ def place_in(line):
 
 
 def place_of_signal(lines, declared, name):
-    """Returns the place of a signal that is declared at a line, counted from 1: the comment before
-    the statement that assigns the signal. A port has none, but its value has. Empty: not found."""
+    """Returns the place of a signal that is declared at a line, counted from 1. The place is in the
+    comment before the statement that assigns the signal; for a port it is the comment of the
+    signal that drives the port. Returns an empty text if there is none."""
     above = ""
     for line in lines[declared:]:
         if line == "endmodule":

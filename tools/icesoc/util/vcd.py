@@ -31,8 +31,9 @@ class Variable:
 
 
 def read(text):
-    """Returns the head of a VCD file, its variables, and a generator of (time, key, value): the
-    moments, with key None, and the changes. A value is bits without "b", or a text without "s"."""
+    """Returns the head of a VCD file, its variables, and a generator of (time, key, value). An item
+    with the key None is a new time; every other item is a change. A value is the bits without "b",
+    or the text without "s"."""
     head, _, body = text.partition("$enddefinitions")
     variables, scopes = [], []
     for kind, rest in re.findall(r"\$(scope|upscope|var)\s+(.*?)\s*\$end", head, re.S):

@@ -208,8 +208,9 @@ class Vehicle:
         self.name, self.protocol, self.port = found.groups()
 
     def policy(self, host):
-        """Returns what the page at a host may connect to. A request by https comes first, by which
-        the browser chooses its certificate."""
+        """Returns the addresses to which the page at a host may connect. They include https,
+        because the page first sends a request by https, for which the browser selects its
+        certificate."""
         plain = {"ws": "http", "wss": "https"}[self.protocol]
         return f" {self.protocol}://{host}:{self.port} {plain}://{host}:{self.port}"
 

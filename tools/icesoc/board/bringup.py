@@ -117,7 +117,8 @@ th, td {{ text-align: left; vertical-align: top; padding: 3px 8px;
 pre {{ background: var(--wash); padding: .6rem; overflow: auto; }}</style></head>
 <body><h1>Bring-up of {html.escape(report.data["board"])}:
 <span class="{colours.get(result, "soft")}">{result}</span></h1>
-<p>{html.escape(report.data.get("how", ""))} {html.escape(report.data.get("date", ""))}</p>
+<p>{html.escape(report.data.get("how", ""))} {html.escape(report.data.get("date", ""))}
+Modem: {html.escape(report.data.get("modem", "unknown"))}.</p>
 <table><tr><th>step</th><th></th><th>passes when</th><th>result</th></tr>
 {"".join(rows)}</table>
 <h2>Console</h2><pre>{log}</pre></body></html>

@@ -100,6 +100,11 @@ class Board:
         return self.facts.get("fsmc", {}).get("address_lines", 25)
 
     @property
+    def modem(self):
+        """Returns the kind of modem (--modem of a flight), or None."""
+        return self.facts.get("modem", {}).get("profile")
+
+    @property
     def banks(self):
         return self.facts["fpga"].get("banks", [0.0] * 4)
 

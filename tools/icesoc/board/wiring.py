@@ -149,6 +149,9 @@ def page(board: Board):
         shown = [FACTS.get(key, "{key}: {value}").format(key=key, value=fact_text(value))
                  for key, value in facts[role].items() if key not in ("module", "connectors")]
         text += f"| {noun} | {'; '.join(shown)} |\n"
+    if board.modem:
+        text += (f"| modem | {board.modules['modem'].facts['title']}; profile {board.modem} "
+                 "([modems on sale](../modem.md#modems-on-sale)) |\n")
     if board.ddr:
         text += f"| memory | {board.ddr['part']}, bank {board.ddr['bank']} |\n"
     if facts.get("open"):

@@ -3,12 +3,14 @@
 import datetime
 import os
 import select
+import shlex
 import subprocess
 import termios
 import time
 from pathlib import Path
 
-from icesoc.board import bringup
+from icesoc import TREE
+from icesoc.board import bringup, firmware, make
 from icesoc.cli.build_folder import BuildFolder
 from icesoc.cli.command import command
 from icesoc.cli.commands.board import NAME, read
@@ -16,6 +18,9 @@ from icesoc.cli.options import (BUILD, FOLDER, JOBS, SECONDS, SWITCH, TEXT, WORD
 from icesoc.util.console import say
 from icesoc.util.errors import Stop
 
+CALL_TIMEOUT = 30  # time for a call, s
+BREAK_SECONDS = 1.0  # time before the reset of a vehicle that is to be opened, s
+LOAD_TIMEOUT = 120  # time after which OpenOCD or a call is ended, s
 SILENCE = 60  # time without a line, s, after which the report ends
 CONSOLE = "/dev/ttyUSB0"
 
@@ -26,6 +31,8 @@ CONSOLE = "/dev/ttyUSB0"
     Option("wire", WORDS, "with --simulated: faults of the board's wires, such as D3:open "
                           "D1-D2:short NWE:late=12ns"),
     Option("device", TEXT, "serial port of the board's console", CONSOLE),
+    Option("cable", TEXT, "serial port of a cable in the modem's place (docs/modem.md): loads the "
+                          "firmware and calls it, instead of the self-test", ""),
     Option("listen", SWITCH, "only read the console; the self-test was started by hand"),
     Option("silence", SECONDS, "end the report after this time without output from the board",
            SILENCE),
@@ -33,7 +40,8 @@ CONSOLE = "/dev/ttyUSB0"
     BUILD, JOBS],
          examples=["board bringup nucleo-qmtech --simulated",
                    "board bringup nucleo-qmtech --simulated --wire D3:open",
-                   "board bringup nucleo-qmtech --device /dev/ttyUSB0"],
+                   "board bringup nucleo-qmtech --device /dev/ttyUSB0",
+                   "board bringup nucleo-qmtech --cable /dev/ttyUSB1"],
          brief="board bringup nucleo-qmtech --simulated --out build/brief/bringup")
 def board_bringup(values):
     """test a new board: name each bad wire, and write a report
@@ -41,16 +49,21 @@ def board_bringup(values):
     Loads the self-test into the microcontroller's RAM by OpenOCD, listens to the console, and
     writes OUT/bringup.html and OUT/bringup.json. Run it twice: first with the bitstream of
     synth/ise/lines.v in the FPGA, which tests the wires, then with the chip's bitstream.
-    --simulated runs both on a model of the board."""
+    --cable then loads the firmware and calls it. --simulated runs the self-test on a model."""
     board = read(values.name)
     folder = Path(values.out or f"build/board/{board.name}")
     report = bringup.Report(board)
     report.data["date"] = datetime.datetime.now().strftime("%Y-%m-%d %H:%M")
     build = BuildFolder(values.build, values).prepare()
+    report.data["modem"] = board.modem or "unknown"
     if values.simulated:
         build.ninja("icesoc-bringup", "firmware_bringup_flash")
         report.data["how"] = " ".join(["Simulated.", *values.wire])
         simulated(values, build, report)
+    elif values.cable:
+        report.data["how"] = f"Board with a cable at {values.cable}."
+        build.ninja("firmware_uav", "xbeeat")
+        over_cable(values, build, report, folder)
     else:
         report.data["how"] = f"Board at {values.device}."
         on_board(values, build, report, folder)
@@ -87,6 +100,7 @@ def simulated(values, build, report):
 def on_board(values, build, report, folder):
     """Starts the self-test in RAM by OpenOCD, and reads the console."""
     build.ninja("firmware_bringup")
+    make.write({"openocd.cfg": firmware.openocd(report.board)}, folder)
     elf = build / "firmware/bringup.elf"
     start = ["openocd", "-f", str(folder / "openocd.cfg"), "-c",
              f"init; reset halt; load_image {elf}; "
@@ -99,13 +113,75 @@ def on_board(values, build, report, folder):
                    "give its name by --device") from None
     try:
         set_rate(port)
-        say("$ " + " ".join(f"'{word}'" if " " in word else word for word in start))
-        if not values.listen and subprocess.run(start, check=False).returncode:
+        say("$ " + shlex.join(start))
+        if not values.listen and not started(start):
             raise Stop("board bringup: OpenOCD failed (above); start the self-test by hand and use "
                        "--listen")
         listen(port, values.silence, report)
     finally:
         os.close(port)
+
+
+def started(words):
+    """Runs OpenOCD; returns whether it has loaded the program."""
+    try:
+        return subprocess.run(words, check=False, timeout=LOAD_TIMEOUT).returncode == 0
+    except FileNotFoundError:
+        raise Stop("board bringup: expected the program openocd, got none in PATH; install "
+                   "openocd") from None
+    except subprocess.TimeoutExpired:
+        return False
+
+
+def ended(words, meanwhile=None):
+    """Runs a program, and `meanwhile` while it runs. Returns why it has failed, or an empty
+    text."""
+    say("$ " + shlex.join(map(str, words)))
+    try:
+        with subprocess.Popen([str(word) for word in words]) as process:
+            try:
+                failed = meanwhile() if meanwhile else ""
+                status = process.wait(LOAD_TIMEOUT)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                return f"{Path(words[0]).name} did not end within {LOAD_TIMEOUT} s"
+    except OSError as error:
+        return f"{Path(words[0]).name}: {error.strerror}"
+    return failed or (f"{Path(words[0]).name} ended with status {status}" if status else "")
+
+
+def over_cable(values, build, report, folder):
+    """Loads the firmware, sets the vehicle to open mode over the console, and calls it over a
+    cable. The last step of the report."""
+    make.write({"openocd.cfg": firmware.openocd(report.board)}, folder)
+    follow(report, "STEP call: the firmware answers a call over a cable in the modem's place")
+    openocd = ["openocd", "-f", folder / "openocd.cfg", "-c"]
+    begin = time.monotonic()
+
+    def restart():
+        time.sleep(BREAK_SECONDS)  # the line is then in the break state
+        return ended([*openocd, "init; reset run; shutdown"])
+
+    steps = [
+        ("MCU", lambda: ended([*openocd,
+                               f"program {build / 'firmware/uav.elf'} verify reset exit"]),
+         "the message of OpenOCD; both jumpers of ST-LINK (CN4)"),
+        ("CONSOLE_TX-CONSOLE_RX",
+         lambda: ended([TREE / "sw/ground/clients/provide_key.py", "--port", values.device,
+                        "--open"], restart),
+         "the console; JUMPER_OPEN, if the vehicle has a key"),
+        ("MODEM_TXD-MODEM_RXD",
+         lambda: ended([TREE / "icesoc", "call", "--device", values.cable, "--wire", "--timeout",
+                        CALL_TIMEOUT, "hwengine1.ice_ping"]),
+         "JUMPER_WIRED; TXD and RXD of the cable are crossed; RTS and CTS; its rate of 111,111 "
+         "baud")]
+    for wire, run, check in steps:
+        if failed := run():
+            follow(report, f"FAIL call {wire} silent: {failed}; check: {check}")
+            follow(report, "END 1")
+            return
+    follow(report, f"PASS call: answered after s: {time.monotonic() - begin:.1f}, with loading")
+    follow(report, "END 0")
 
 
 def set_rate(port):
@@ -125,7 +201,11 @@ def listen(port, silence, report):
     while time.monotonic() < until:
         if not select.select([port], [], [], 0.5)[0]:
             continue
-        if not (got := os.read(port, 4096)):
+        try:
+            got = os.read(port, 4096)
+        except OSError:  # the adapter was unplugged
+            got = b""
+        if not got:
             return
         pending += got
         *lines, pending = pending.split(b"\n")

@@ -32,7 +32,7 @@ const HardwareOutput hardwareOutputs[] = {
     {"--hw-new-verilog",
      "folder for a core to begin with, in Verilog, and its test",
      {hw::verilogSkeleton, hw::testSkeleton}},
-    {"--hw-new-vhdl", "the same in VHDL", {hw::vhdlSkeleton, hw::testSkeleton}}};
+    {"--hw-new-vhdl", "folder for the same in VHDL", {hw::vhdlSkeleton, hw::testSkeleton}}};
 
 struct Options {
     std::vector<std::string> files, includes, defines, undefines;
@@ -254,7 +254,7 @@ void addOptions(CLI::App& app, Options& o) {
     for (size_t i = 0; i < std::size(hardwareOutputs); ++i)
         app.add_option(hardwareOutputs[i].option, o.hardware[i], hardwareOutputs[i].help);
     app.add_flag("--hw-own-clock", o.hwOwnClock,
-                 "cores run in separate clock domains: servants check that they answered");
+                 "the clock of each core may stop; servants check that the core has answered");
     app.add_flag("--describe", o.describe,
                  "print the declarations as JSON, generate nothing (docs/call.md)");
     app.add_flag("--depend", o.depend, "print make dependencies, generate nothing");
@@ -265,13 +265,21 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_flag("--underscore", o.rules.underscore, "allow underscores in names");
     app.add_flag("--ice", o.rules.icePrefix, "allow names that start with 'ice'");
     app.set_version_flag("-v,--version", "slice2c 1.0, Slice of Ice 3.7");
-    app.footer("Exit status: 0; 1 if a file has errors or the command line is wrong.");
+    app.footer("The exit status is 1 if a file has errors or the command line is wrong.\n"
+               "\n"
+               "examples:\n"
+               "  slice2c --output-dir gen Mesh.ice\n"
+               "  slice2c -I slice -I /usr/share/ice/slice --output-dir gen slice/Mesh.ice\n"
+               "  slice2c --hw-verilog gen --hw-regs gen --hw-c gen Filter.ice");
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{"Generates C90 stubs and skeletons for IceC from Slice files."};
+    CLI::App app{
+        "Generates C90 proxies and servants for IceC from Slice files, and hardware wrappers "
+        "for interfaces\nwith metadata [\":hw\"].",
+        "slice2c"};
     Options o;
     addOptions(app, o);
     try {

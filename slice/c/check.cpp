@@ -24,9 +24,9 @@ void checkMetadata(const Declaration& d, Diagnostics& diagnostics) {
                           number.find_first_not_of("0123456789") == std::string::npos;
             int n = digits ? std::stoi(number) : 0;
             if (n < 1 || n > 65535)
-                diagnostics.error(d.at, "[\"" + m + "\"]: the maximum is a number, 1..65535");
+                diagnostics.error(d.at, "[\"" + m + "\"]: expected a maximum of 1 to 65535");
         } else if (m != "c:scoped" || d.kind != DKind::Enum) {
-            diagnostics.warning(d.at, "metadata [\"" + m + "\"] means nothing here",
+            diagnostics.warning(d.at, "metadata [\"" + m + "\"] has no effect here",
                                 Diagnostics::Metadata);
         }
     }
@@ -35,9 +35,9 @@ void checkMetadata(const Declaration& d, Diagnostics& diagnostics) {
 void checkText(const Literal& value, const Location& at, Diagnostics& diagnostics) {
     constexpr size_t most = 509;
     if (value.kind == Literal::Kind::String && value.text.size() > most)
-        diagnostics.error(at, "a string of " + std::to_string(value.text.size()) +
-                                  " bytes; a compiler of C90 needs to take " +
-                                  std::to_string(most) + " only");
+        diagnostics.error(at, "string of " + std::to_string(value.text.size()) +
+                                  " bytes: expected at most " + std::to_string(most) +
+                                  ", the length that C90 guarantees");
 }
 
 // The names at file scope in the generated C, each with its Slice name.
@@ -83,8 +83,8 @@ public:
     void checkInner(const std::string& c, const std::string& slice, const Location& at) {
         auto it = names_.find(c);
         if (it != names_.end())
-            diagnostics_.error(at, "'" + slice + "' is in C the name that '" + it->second +
-                                       "' has there");
+            diagnostics_.error(at,
+                               "'" + slice + "' has the same name in C as '" + it->second + "'");
     }
 
 private:
@@ -127,10 +127,9 @@ private:
         std::string c = cEnumerator(d, e.name), id = d.id() + "::" + e.name;
         auto [it, isNew] = names_.emplace(c, id);
         if (!isNew && it->second != id)
-            diagnostics_.error(e.at,
-                               "'" + id + "' becomes '" + c + "' in C, as '" + it->second +
-                                   "' of another file does; [\"c:scoped\"] before the enum puts "
-                                   "its name in between");
+            diagnostics_.error(e.at, "'" + id + "' becomes '" + c + "' in C, as '" + it->second +
+                                         "' in another file does; [\"c:scoped\"] before the enum "
+                                         "adds the name of the enum");
     }
 
     const Unit& unit_;
@@ -196,6 +195,6 @@ void checkC(const Unit& unit, const CFileNames& files, Diagnostics& diagnostics)
     for (const std::string& m : unit.metadata)
         if (m.compare(0, 2, "c:") == 0 && m.compare(0, 10, "c:include:") != 0)
             diagnostics.warning({diagnostics.intern(unit.file), 1, 1},
-                                "metadata [[\"" + m + "\"]] means nothing here",
+                                "metadata [[\"" + m + "\"]] has no effect here",
                                 Diagnostics::Metadata);
 }

@@ -26,8 +26,8 @@ std::string cProxy(const Declaration& d);
 std::string cIdentifier(const std::string& name);
 // Returns the name of a member of the struct, class or exception `d`.
 std::string cMember(const Declaration& d, const Field& member);
-// Returns the name of a parameter, which functions, the asynchronous call's members and variables
-// share.
+// Returns the C name of a parameter. Functions, variables and the members of an asynchronous call
+// all use this name.
 std::string cParameter(const Operation& o, const Field& parameter);
 // Returns the part of a function name that stands for the operation, after the interface.
 std::string cOperation(const std::string& name);

@@ -35,10 +35,11 @@ void addLimits(Unit& unit, const std::vector<std::string>& files, Diagnostics& d
             });
             if (found == all.end())
                 diagnostics.error(at, "'" + name +
-                                          "' is not defined: a line is a name with its "
-                                          "modules, then metadata, M::Names c:max:20");
+                                          "' is not defined: expected a name with its modules, "
+                                          "then metadata, such as M::Names c:max:20");
             else if (!(words >> metadata))
-                diagnostics.error(at, "'" + name + "' has no metadata behind it, such as c:max:20");
+                diagnostics.error(at, "'" + name +
+                                          "': expected metadata after the name, such as c:max:20");
             else
                 do
                     (*found)->metadata.insert((*found)->metadata.begin(), metadata);

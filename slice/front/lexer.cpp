@@ -149,7 +149,7 @@ private:
         while (isLetter(peek()) || isDigit(peek()))
             advance();
         if (begin == position_)
-            diagnostics_.error(at, "'\\' without the identifier that it should escape");
+            diagnostics_.error(at, "'\\' without an identifier after it");
         else
             add(Token::Kind::Identifier, begin, at, escaped);
     }

@@ -43,7 +43,7 @@ public:
             if (c == '\\' && position_ < text_.size())
                 escape(text_[position_++]);
             else if (static_cast<unsigned char>(c) < 32 || c == 127)
-                error("a string holds printable characters only; write an escape sequence");
+                error("a string may only contain printable characters; write an escape sequence");
             else
                 value_ += c;
         }

@@ -226,7 +226,7 @@ void Parser::module() {
             error(begin, "module '" + called + "' must differ from the module around it, '" +
                              around + "'");
     if (scope_.size() == 1000)
-        fail("at most 1000 modules within one another");
+        fail("modules are nested too deeply: expected at most 1000");
     expect("{");
     scope_.push_back(called);
     scopeId_ += "::" + called;
@@ -280,13 +280,13 @@ Declaration& Parser::declareType(Declaration::Kind kind, bool mayBeForward) {
     Declaration* earlier = symbol->declaration;
     if (!earlier) {
         error(begin,
-              "'" + called + "' is a module already, at line " + std::to_string(symbol->at.line));
+              "'" + called + "' is already a module, at line " + std::to_string(symbol->at.line));
         return d;
     }
     if (earlier->kind != kind || !mayBeForward || (!earlier->isForward && !isSymbol(";"))) {
         bool isAgain = earlier->at.file == begin.file && earlier->at.line == begin.line &&
                        earlier->at.column == begin.column;
-        error(begin, "'" + called + "' is defined already" +
+        error(begin, "'" + called + "' is already defined" +
                          (isAgain ? ": this file is included twice; begin it with #pragma once"
                                   : std::string(", as ") + kindName(earlier->kind) + " at line " +
                                         std::to_string(earlier->at.line)));

@@ -171,7 +171,7 @@ void Parser::sequence() {
     Declaration& d = declareType(Declaration::Kind::Sequence, false);
     d.element = element;
     if (element.kind == Type::Kind::Void)
-        error(begin, "a sequence of void makes no sense");
+        error(begin, "a sequence cannot have elements of type void");
     d.complete();
     checkLocal(element, d.isLocal, "sequence '" + d.name + "'", begin);
     expect(";");

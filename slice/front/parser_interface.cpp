@@ -13,7 +13,7 @@ std::vector<const Declaration*> Parser::baseList(const Declaration& d, Declarati
         Location begin = token().at;
         if (isWord("Object") || isWord("Value")) {
             error(begin, "'" + std::string(token().text) +
-                             "' is the base of all that have none; leave it out");
+                             "' is a base of every interface and class; do not list it");
             ++position_;
             continue;
         }
@@ -88,7 +88,7 @@ void Parser::interface() {
     checkBases(d);
     braces(d, [&] { operation(d); });
     if (hasMetadata(d.metadata, "delegate") && (!d.isLocal || allOperations(d).size() != 1))
-        diagnostics_.warning(d.at, "[\"delegate\"] is for local interfaces of one operation",
+        diagnostics_.warning(d.at, "[\"delegate\"]: expected a local interface with one operation",
                              Diagnostics::Metadata);
 }
 
@@ -158,7 +158,7 @@ void Parser::checkMemberOfClass(const Declaration& d, const Field& f) {
 
 void Parser::parameters(Operation& o, const Declaration& owner) {
     if (isWord("void") && isSymbol(")", 1)) {
-        diagnostics_.warning(token().at, "'(void)' is C, not Slice; taken as '()'");
+        diagnostics_.warning(token().at, "'(void)' is C, not Slice; read as '()'");
         ++position_;
     }
     while (!isSymbol(")")) {
@@ -207,7 +207,8 @@ void Parser::throwsClause(Operation& o, const Declaration& owner) {
         for (const Operation& other : owner.operations)
             isOperation = isOperation || first == lowerCase(other.name);
         if (isOperation) {
-            error(begin, "'" + written + "' has changed meaning: an operation has the name here");
+            error(begin,
+                  "'" + written + "' has changed meaning: here it is the name of an operation");
             continue;
         }
         if (!s || s->kind != Symbol::Kind::Declaration ||

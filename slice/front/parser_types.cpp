@@ -57,7 +57,7 @@ Type Parser::type() {
                 t.kind = kind;
                 if (isSymbol("*"))
                     fail("no '*': '" + std::string(name) +
-                         "' has no proxies, and Slice no pointers to data");
+                         "' has no proxies, and Slice has no pointers to data");
                 return t;
             }
         if (acceptWord("Object")) {

@@ -93,8 +93,8 @@ std::string tooLongLine(const std::filesystem::path& file, const std::vector<std
         length += line.size();
         if (length > longestLine)
             return file.string() + ":" + std::to_string(number) +
-                   ": error: the line is too long: a line, with those that '\\' joins to it, has "
-                   "at most " +
+                   ": error: the line is too long: a line, with the lines that '\\' joins to it, "
+                   "may have at most " +
                    std::to_string(longestLine) + " bytes\n";
         if (!line.empty() && line.back() == '\\')
             continue;

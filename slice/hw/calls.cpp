@@ -13,7 +13,7 @@ namespace {
 constexpr unsigned defaultTimeout = 1000, longestTimeout = 60000; // ms
 constexpr unsigned mostElements = 65535;
 const std::string unfit =
-    "' does not fit into registers: numbers, bools, enums and structs of them do";
+    "' does not fit into registers: expected numbers, bools, enums, or structs of these";
 
 class CallMapper {
 public:
@@ -64,11 +64,10 @@ private:
         call.isLong = !limit.empty() || hasMetadata(o.metadata, "hw:long");
         call.isAmd = isAmd(d_, o);
         if (!limit.empty() && !number(limit, 1, longestTimeout, call.timeout))
-            error(o.at, "[\"hw:long:" + limit + "\"]: the time is in ms, 1.." +
+            error(o.at, "[\"hw:long:" + limit + "\"]: expected a time in ms, 1 to " +
                             std::to_string(longestTimeout));
         if (call.isAmd && !call.isLong)
-            error(o.at,
-                  "'" + o.name + "' is [\"amd\"], and done at once; [\"hw:long\"] takes time");
+            error(o.at, "'" + o.name + "' has [\"amd\"] but not [\"hw:long\"], so it ends at once");
         call.thrown = o.throws;
         for (const Declaration* e : o.throws)
             call.labels.push_back(operationName(d_, o) + "_" +
@@ -124,8 +123,8 @@ private:
         if (o.parameters.size() != 1 || o.parameters.front().isOut || !type.declaration ||
             type.declaration->isForward || o.result.kind != Type::Kind::Void || !o.throws.empty())
             return error(o.at, "'" + o.name +
-                                   "' has a proxy; an operation that registers one has "
-                                   "it as its only parameter, and no result");
+                                   "' has a proxy: an operation that registers a proxy must have "
+                                   "no other parameter and no result");
         keys(o.metadata, {}, o.at);
         Listener l{&o, type.declaration, snakeCase(o.name), block_.calls.size(), 0};
         for (const Declaration* d : lineage(*type.declaration))
@@ -134,7 +133,7 @@ private:
                     std::any_of(event.parameters.begin(), event.parameters.end(),
                                 [](const Field& p) { return p.isOut; })) {
                     error(o.at, "'" + event.name + "' of '" + d->name +
-                                    "' is an event; it has no results, and throws nothing");
+                                    "' is an event, which cannot have results or throw exceptions");
                     continue;
                 }
                 Call call = begin(event, *d);
@@ -161,7 +160,9 @@ private:
         std::string wanted = metadataValue(metadata, "hw:word");
         std::string most = metadataValue(metadata, "hw:max");
         if (isOptional)
-            return error(at, what + " is optional; a register is always there");
+            return error(
+                at,
+                what + " is optional: expected a value that is always present, like a register");
         if (!isSequence(type) && !isMappable(type))
             return error(at, subject + unfit);
         if (!isSequence(type) && !most.empty())
@@ -187,8 +188,8 @@ private:
                      const std::string& most, const Location& at) {
         unsigned bytes = elementBytes(type);
         if (bytes == 0)
-            return error(at, what + " has elements that do not fit into a buffer: numbers, bools "
-                                    "and structs of them do");
+            return error(at, what + " has elements that do not fit into a buffer: expected "
+                                    "numbers, bools, or structs of these");
         int stated = statedMaximum(*type.declaration);
         unsigned count = stated > 0 ? static_cast<unsigned>(stated) : 0;
         unsigned limit = count ? count : mostElements;
@@ -196,7 +197,7 @@ private:
             return error(at, "[\"hw:max:" + most + "\"]: elements, 1.." + std::to_string(limit));
         if (count == 0)
             return error(at, what + " is a sequence: add [\"hw:max:N\"], the largest number of "
-                                    "elements its buffer in DDR3 has");
+                                    "elements in its DDR3 buffer");
         addCount(words, type, name, c, isOut, count, offset_);
         offset_ += (count * bytes + bufferAlignment - 1) / bufferAlignment * bufferAlignment;
     }
@@ -227,7 +228,7 @@ void checkKeys(const std::vector<std::string>& metadata, const std::vector<std::
     for (const std::string& m : metadata)
         if (m.compare(0, 3, "hw:") == 0 &&
             std::find(known.begin(), known.end(), m.substr(0, m.find(':', 3))) == known.end())
-            diagnostics.error(at, who + " in hardware: [\"" + m + "\"] means nothing here");
+            diagnostics.error(at, who + " in hardware: [\"" + m + "\"] is not valid here");
 }
 
 void mapCalls(const Declaration& d, const Unit& unit, Block& block, Diagnostics& diagnostics) {

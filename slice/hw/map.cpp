@@ -33,7 +33,7 @@ public:
         identity();
         pins();
         if (!d_.bases.empty())
-            error(d_.at, "has a base; each slot is one interface by itself");
+            error(d_.at, "has a base, but a slot implements one interface without bases");
         mapCalls(d_, unit_, block_, diagnostics_);
         if (block_.calls.size() > mostOperations)
             error(d_.at, "has " + std::to_string(block_.calls.size()) +
@@ -64,7 +64,7 @@ private:
              {std::pair{"hw:type", &block_.type}, std::pair{"hw:version", &block_.version}}) {
             std::string text = metadataValue(d_.metadata, key);
             if (!text.empty() && !number(text, 0, 0xFFFF, *value))
-                error(d_.at, "[\"" + std::string(key) + ":" + text + "\"] is not 0..0xFFFF");
+                error(d_.at, "[\"" + std::string(key) + ":" + text + "\"]: expected 0 to 0xFFFF");
         }
     }
 

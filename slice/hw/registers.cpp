@@ -38,10 +38,10 @@ json fieldsOf(const Word& word) {
     for (const Piece& p : word.pieces) {
         std::string half = p.portWidth <= 32 ? "" : p.portLsb ? "_HIGH" : "_LOW", doc = p.name;
         if (p.isCode)
-            doc = "0: none; else which exception";
+            doc = "number of the thrown exception; 0 means none";
         if (p.isCount)
-            doc = "elements, at most " + std::to_string(p.most) + ", in the buffer at byte " +
-                  std::to_string(p.offset);
+            doc = "number of elements, at most " + std::to_string(p.most) +
+                  ", in the buffer at byte " + std::to_string(p.offset);
         fields.push_back(field(upperCase(p.name) + half, p.lsb, p.width, doc));
     }
     return fields;
@@ -52,33 +52,34 @@ json registers(const Block& b) {
     std::string reset = "RESET"; // changed below if an operation has this name
     for (const Call& c : b.calls) {
         std::string name = upperCase(c.name);
-        std::string what = (c.isEvent ? "the event was taken: " : "begins ") + c.operation->name;
+        std::string what = (c.isEvent ? "acknowledges the event " : "starts ") + c.operation->name;
         act.push_back(field(name, c.bit, 1, c.isEvent ? what : firstLine(c.operation->doc, what)));
         if (c.isLong)
-            busy.push_back(field(name + "_BUSY", c.bit, 1, "has begun, and is not done"));
+            busy.push_back(field(name + "_BUSY", c.bit, 1, "in progress"));
         if (c.isLong)
             refused.push_back(
                 field(name + "_REFUSED", refusedLsb + c.bit, 1, "the core refused the last call"));
     }
     while (std::any_of(act.begin(), act.end(), [&](const json& f) { return f["name"] == reset; }))
         reset = "CORE_" + reset;
-    act.push_back(field(reset, resetBit, 1, "the core, and what is under way"));
+    act.push_back(field(reset, resetBit, 1, "resets the core and ends all operations"));
     busy.insert(busy.end(), refused.begin(), refused.end());
     auto add = [&](unsigned number, const std::string& name, const char* access, const char* doc,
                    const json& fields) {
         list.push_back(registerOf(b, number, name, access, doc, fields));
     };
-    add(control, "CONTROL", "ws", "1 in an operation's bit: it begins", act);
+    add(control, "CONTROL", "ws", "writing 1 to a bit starts the operation", act);
     if (b.hasLong())
         add(status, "STATUS", "ro", "state of operations that take time", busy);
     if (b.pageBits)
-        add(page, "PAGE", "rw", "which words 8..15 are",
-            json::array({field("ADDRESS", 0, pageLsb + b.pageBits, "a multiple of 32")}));
+        add(page, "PAGE", "rw", "selects the page that words 8 to 15 show",
+            json::array({field("ADDRESS", 0, pageLsb + b.pageBits,
+                               "byte address in the core, a multiple of 32")}));
     unsigned lsb = b.memoryLsb();
     if (b.memoryWord)
-        add(b.memoryWord, "MEMORY", "rw", "where the buffers are in DDR3",
+        add(b.memoryWord, "MEMORY", "rw", "place of the buffers in DDR3",
             json::array({field("ADDRESS", 0, 32 - lsb,
-                               "byte address from bit " + std::to_string(lsb) + " on")}));
+                               "byte address, bits " + std::to_string(lsb) + " and up")}));
     for (const Word* w : b.words())
         add(w->number, w->name, w->isOut ? "ro" : "rw", w->isOut ? "results" : "parameters",
             fieldsOf(*w));
@@ -93,7 +94,7 @@ json eventsOf(const Block& b) {
                 {{"name", upperCase(c.name) + (c.isEvent ? "" : "_DONE")},
                  {"bit", c.bit},
                  {"doc", c.isEvent ? firstLine(c.operation->doc, "event " + c.operation->name)
-                                   : c.operation->name + " is done, or refused"}});
+                                   : c.operation->name + " has ended or was refused"}});
     return events;
 }
 

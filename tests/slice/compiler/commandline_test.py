@@ -172,8 +172,8 @@ class Cases(Script):
         self.slice2c("--depend -Ilimits limits/user.ice", 0, "limits/mesh.limits")
         for line, said in (("G::Point c:max:2", "mesh.limits:1:1: error: 'G::Point' is not def"),
                            ("\nG::Points # 7", "mesh.limits:2:1: error: 'G::Points' has no meta"),
-                           ("G::Points c:max:0", "the maximum is a number"),
-                           ("G::Points c:least:1", "means nothing here")):
+                           ("G::Points c:max:0", "expected a maximum of 1 to 65535"),
+                           ("G::Points c:least:1", "has no effect here")):
             write("limits/mesh.limits", line)
             self.slice2c(words, int("nothing" not in said), said)
 
@@ -203,10 +203,10 @@ class Cases(Script):
         self.slice2c("joined.ice", 1, f"joined.ice:[0-9]*: {too_long}")
         self.slice2c("-I . crlf.ice without.ice --output-dir x")
         self.assertEqual(self.said, "")  # line ends of any kind are accepted without a message
-        self.slice2c("-I . twice.ice", 1, "crlf.ice:2:9: error: .S. is defined already: this file "
+        self.slice2c("-I . twice.ice", 1, "crlf.ice:2:9: error: .S. is already defined: this file "
                      "is included twice; begin it with #pragma once")
-        self.slice2c("text.ice", 1, "^1 error$", "text.ice:1:[0-9]*: error: a string of 510 bytes; "
-                     "a compiler of C90 needs to take 509 only")
+        self.slice2c("text.ice", 1, "^1 error$", "text.ice:1:[0-9]*: error: string of 510 bytes: "
+                     "expected at most 509, the length that C90 guarantees")
 
     def beside_and_above(self):
         self.slice2c("siblings/sub/low.ice", 1, "^module Next",

@@ -26,13 +26,13 @@ ALIASES = {}  # other goals of make: goal -> the switch that it sets
 
 
 class Command:
-    """A command: a function of its options' values.
+    """A command, with the function that carries it out for the values of its options.
 
-    make: its goal in make, if it has one. when: the variable that selects this command among
-    several with the same goal. takes_environment: an option that is not given is read from the
-    variable with its name. brief: one or several command lines that run all steps of the command in
-    short (commands --brief). long: the command line that `nightly` runs, with {day} for a seed;
-    None if the tests cover it.
+    make: goal of the command in make, or "". when: variable that selects this command if several
+    commands have the same goal. takes_environment: an option that is not given is read from the
+    environment variable with its name. brief: one or several command lines that run all steps of
+    the command in a short time (commands --brief). long: command line that `nightly` runs, with
+    {day} for a seed; None if the tests cover the command.
     """
     takes_environment = True
 

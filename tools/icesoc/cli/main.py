@@ -100,9 +100,9 @@ def main(words, function=act):
 
 
 def path_of(error):
-    """Returns the path of the file that an exception is about. Python omits the path when a write
-    fails, as on a full disk; then it is the path of the file that is open in the innermost
-    function, or a path there."""
+    """Returns the path of the file to which an exception refers. If a write fails, for example on a
+    full disk, Python omits the path. This function then returns the path of a file that is open in
+    the innermost function, or the value of a path there."""
     found = error.filename or ""
     for frame, _ in [] if found else traceback.walk_tb(error.__traceback__):
         local = frame.f_locals.values()

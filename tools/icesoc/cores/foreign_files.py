@@ -95,8 +95,9 @@ def only_once(modules, what_to_do):
 
 
 def check_names(slot, top, files):
-    """Checks that each module is in one file, and that none has the name of the slot or of a module
-    of this project, because names are unique in a chip. Returns TOP as it is declared."""
+    """Checks that each module is in only one file, and that no module has the name of the slot or
+    of a module of this project, because names must be unique in a chip. Returns TOP with the
+    capitals of its declaration."""
     kind = "entity" if is_vhdl(files[0]) else "module"
     there = declared(files, kind)
     names = [n for n, *_ in there]
@@ -153,8 +154,9 @@ def filled(file, defines):
 
 
 def macros_of(files):
-    """Returns the macros that are byte addresses of registers: {name: value}. These are hexadecimal
-    numbers with a size, if all have the same size and are different multiples of 4; else none."""
+    """Returns the macros that are byte addresses of registers, as {name: value}. All macros that
+    are hexadecimal numbers with a size count, if their sizes are equal and their values are
+    different multiples of 4. Otherwise the result is empty."""
     found = re.findall(r"^\s*`define\s+(\w+)\s+(\d+)'h([0-9a-fA-F_]+)\s*(?://.*)?$",
                        "\n".join(map(text_of, files)), re.M)
     values = {n: int(digits, 16) for n, _, digits in found}
@@ -164,9 +166,9 @@ def macros_of(files):
 
 
 def names_of(top, files, core):
-    """Returns the names of the core's words by address: the constants as wide as the address in the
-    file with `top`, otherwise its macros. KEY0 and KEY7 at a distance of 7 also name the words
-    between them."""
+    """Returns the names of the core's words by address. The names are the constants in the file
+    with `top` that are as wide as the address; without such constants, its macros. Two names such
+    as KEY0 and KEY7 that are 7 words apart also name the words between them."""
     text = next((t for t in map(text_of, files) if re.search(rf"^\s*module\s+{top}\b", t, re.M)),
                 "")
     text = re.sub(r"//.*", "", text)

@@ -5,15 +5,20 @@
                    [GHDL=program] [LIBRARY=name|name=file...] [ADDRESS=words|bytes]
                    [PARAM:NAME=value...] [DEFINE:NAME...] [ROLE=port...] FILE...
 
-Reads the ports of the module or entity TOP and writes into FOLDER, which must not exist: NAME.v,
-which connects TOP to the slot; its registers, with the names that TOP has for their addresses; a
-test; its part of a mission; core.toml. ROLE=port gives a port a role if its name does not. Ports
-that are neither bus, clock, reset nor interrupt become pins. CLOCK: the core has a separate clock
-with at most this frequency.
-ADDRESS: what its address counts. GHDL: the program that reads VHDL (ghdl). LIBRARY: the VHDL
-library of its files; util=FILE puts one file, or those of a pattern, into another library. PARAM:
-a parameter or generic of TOP. DEFINE: a macro of its Verilog, NAME or NAME=value. A core with
-AXI-Streams (axis) has an operation instead of registers: foreign_axis.py.
+Reads the ports of the module or entity TOP, and writes these files into FOLDER, which must not
+exist: NAME.v, which connects TOP to the slot; a description of the registers, with the names that
+TOP has for their addresses; a test; ground.py, which calls the core in a mission; core.toml. Ports
+that are neither bus, clock, reset nor interrupt become pins. A core with AXI-Streams (axis) has an
+operation instead of registers: foreign_axis.py.
+
+CLOCK     the core has a separate clock with at most this frequency
+GHDL      program that reads VHDL (ghdl)
+LIBRARY   VHDL library of the files; util=FILE puts one file, or the files of a pattern, into
+          another library
+ADDRESS   unit of the core's address: words or bytes
+PARAM     parameter or generic of TOP
+DEFINE    Verilog macro, NAME or NAME=value
+ROLE      role of a port whose name does not show its role
 """
 import fnmatch
 import json

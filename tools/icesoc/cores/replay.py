@@ -4,9 +4,9 @@ outputs, clock by clock.
 
     replay.py capture.vcd --scope u_fir.u_filter --top fir_filter build/main/gen/fir_filter.v
 
-The capture has all inputs of the block but clock and reset, and outputs to compare. The block
-begins in reset: what it had stored before the capture is not known. Writes replay.v, and replay.fst
-with all its inner signals, into --out.
+The capture must contain all inputs of the block except clock and reset, and outputs to compare. The
+block begins in reset, because its state before the capture is unknown. Writes replay.v, and
+replay.fst with all inner signals of the block, into --out.
 """
 
 import argparse

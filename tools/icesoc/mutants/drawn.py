@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Draws mutants of each proven module with Yosys' `mutate` and expects the module's proof, or its
-tests, to fail (docs/regression.md#drawn-mutants).
+"""Draws mutants of each proven module with Yosys' `mutate`, and expects the module's proof or its
+tests to fail (docs/regression.md#drawn-mutants).
 
-The score of a module is the share of mutants caught, without those that are not bugs, over all its
-proofs. Leaves build/mutants/drawn.json. Exit status 1: a module scores less than the gate.
+The score of a module is the share of caught mutants over all its proofs; mutants that are not bugs
+do not count. Leaves build/mutants/drawn.json. Exit status 1: the score of a module is too low.
 """
 import argparse, collections, functools, json, os, pathlib, re, shutil, subprocess, sys, time
 from icesoc import TREE
@@ -81,8 +81,9 @@ class Proof:
         return (self.work / "list").read_text().splitlines()[:number]
 
     def lines_of_proof(self):
-        """Returns the lines of the module's proof in the form that Yosys' select takes: those of
-        its file after `ifdef FORMAL or RULES, and those of the files included there."""
+        """Returns the lines of the module's proof in the form of Yosys' command select: the lines
+        of the module's file after `ifdef FORMAL or RULES, and all lines of the files included
+        there."""
         lines = next(self.source.glob(f"**/{self.module}.v")).read_text().splitlines()
         first = next((n for n, line in enumerate(lines, 1)
                       if re.fullmatch("`(ifdef|elsif) (FORMAL|RULES)", line)), len(lines))

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""coverage: compares coverage of RTL and host code with gates, for each file: points of the RTL
-(lines, branches, toggles, covers) from Verilator, lines of VHDL from GHDL, of C and C++ from gcov.
+"""coverage: compares the coverage of each file with its minimum (gate). Verilator counts points of
+the RTL (lines, branches, toggles, covers), GHDL lines of VHDL, gcov lines of C and C++.
 
-Usage, in the tree: coverage.py GATES.json FOLDER   FOLDER: rtl.dat, host.info, vhdl.info, as far as
-there are such; summary.json is written there. Exit status 1: a file is below its gate.
+Usage, in the tree: coverage.py GATES.json FOLDER
+FOLDER contains rtl.dat, host.info and vhdl.info, each if it exists; summary.json is written there.
+Exit status 1: a file is below its gate.
 """
 import collections
 import json

@@ -100,9 +100,9 @@ def reason_of(log):
 
 
 def find_assertion(failure):
-    """Adds the failing assertion to the failure of a proof: its place and text, its instance, and
-    whether it belongs to the proven module. Yosys names the cell of an assertion by instance, file
-    and line, with the lines of all cells around it."""
+    """Adds the failing assertion to the failure of a proof: its location and text, its instance,
+    and whether it is in the proven module itself. Yosys names the cell of an assertion by instance,
+    file and line, and adds the lines of all enclosing cells."""
     match = re.search(
         r"Assert failed in \S+: (\S+) \((?:\$flatten/)?(?:(\S*?)\.?\$assert\$(\S+)\$)?",
         failure.result.log)
@@ -125,9 +125,10 @@ def find_assertion(failure):
 
 
 def rank(failure, tests):
-    """Returns the place of a failure in the reading order. First come proofs, which name the
-    property, those of a module before those of the modules around it; then checks of sources; then
-    tests of one block, of the chip, and of the firmware; last whole missions."""
+    """Returns the position of a failure in the reading order. Proofs come first, because they name
+    the property; the proof of an inner module comes before the proofs of the modules that contain
+    it. Then come checks of sources, tests of one block, of the chip and of the firmware, and whole
+    missions."""
     test = tests.get(failure.result.name)
     text = " ".join([failure.result.name, *([test.place, *test.labels] if test else [])])
     order = ("^formal[.]", "^(lint|tree)[.]", "^(vhdl|slice)[.]|(hdl|bus|ip)/?.* rtl", " rtl",

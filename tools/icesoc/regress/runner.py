@@ -53,9 +53,10 @@ class Progress:
                         self.hangs[name] = f"Hang, ended after {how}{where}", stacks
 
     def late(self, cpu_of):
-        """Names tests that are late; yields (name, time) of those that hang: their CPU time, or the
-        time for which they have run without using the CPU, is ten times their usual time. A test
-        that waits for a CPU is not ended. `cpu_of`: the CPU time of a running test by name."""
+        """Prints the names of late tests, and yields (name, time) of each test that hangs. A test
+        hangs if its CPU time, or the time for which it has run without using the CPU, is ten times
+        its usual time. A test that waits for a CPU does not hang. `cpu_of`: function that returns
+        the CPU time of a running test, given its name."""
         for name, begin in list(self.running.items()):
             now, usual = time.monotonic(), self.usual.get(name)
             age, known = now - begin, "unknown" if usual is None else f"{usual:.1f} s"
@@ -172,8 +173,9 @@ def readable(log):
 
 
 def run_tests(tests, build, out, seed, jobs, history):
-    """Runs tests in parallel, tests that failed last time first. Returns their results, and the
-    signal that interrupted them, or None: then these are the results of the finished tests."""
+    """Runs tests in parallel; tests that failed last time start first. Returns the results, and the
+    signal that interrupted the tests, or None. After a signal, these are the results of the
+    finished tests."""
     chosen, junit = out / "tests.list", (out / f"junit-{seed}.xml").resolve()
     write_numbers(chosen, tests)
     junit.unlink(missing_ok=True)

@@ -83,8 +83,8 @@ class Test:
             if self.name.startswith("vhdl.") else []
 
     def blocks(self):
-        """Returns the words that --block compares with: those of the folder, and those of the name
-        up to the case."""
+        """Returns the words with which --block is compared: the words of the test's folder, and the
+        words of its name up to the name of the case."""
         kind, _, rest = self.name.partition(".")
         more = rest if kind in ("formal", "lint", "wave") else ""
         return set(re.findall("[A-Za-z0-9]+", f"{self.place}/{kind}/{more}"))
@@ -156,8 +156,9 @@ def list_tests(build):
 
 
 def targets_of(test, build, outputs):
-    """The targets that ninja must build for a test: `Test.targets`, or else the `outputs` of the
-    build folder in its command; "all" if the command has that folder, or an unknown file in it."""
+    """Returns the targets that ninja must build for a test. These are `Test.targets` or, without
+    them, the `outputs` of the build folder that the test's command names. The target is "all" if
+    the command names the build folder itself, or an unknown file in it."""
     if test.unbuilt:
         return [test.program]
     if test.name.startswith("formal."):

@@ -72,8 +72,8 @@ def instance_in(slot, build):
 
 
 def instances(changed, source, build):
-    """Returns names of instances of the modules and entities in a text of changes, those of the
-    first file first. A model's top has the module's own name."""
+    """Returns the names of instances of the modules and entities in a text of changes, starting
+    with the first file. The top of a model has the name of the module."""
     texts = None
     for path in re.findall(r"((?:hdl|bus|ip)/[^\s:,]*\.(?:sv|vhdl|v|vhd))(?=[:, ]|$)", changed):
         file = source / path
@@ -93,8 +93,8 @@ def instances(changed, source, build):
 
 
 def scope_in(signals, names):
-    """Returns the first of these names that an instance in the waveform has, as the waveform spells
-    it (GHDL writes small letters); "" if it has none."""
+    """Returns the first of these names that is the name of an instance in the waveform, in the
+    waveform's spelling (GHDL writes small letters); "" if there is no such instance."""
     scopes = {scope.lower(): scope for signal in signals for scope in signal.scopes}
     return next((scopes[name.lower()] for name in names if name.lower() in scopes), "")
 
@@ -189,8 +189,9 @@ class Signal:
 
 
 def shown(bits, width):
-    """Returns a value in hexadecimal, or "x" or "z" if it has such a bit; a single bit unchanged.
-    VCD omits leading bits that are 0, or equal to the first bit given."""
+    """Returns a value as hexadecimal number, or "x" or "z" if one of its bits is x or z. A single
+    bit is returned unchanged. VCD omits leading bits that are 0, or equal to the first written bit
+    x or z."""
     bits = bits.rjust(width, bits[0] if bits[0] in "xz" else "0")
     strange = bits.lstrip("01")
     digits = (len(bits) + 3) // 4
@@ -198,8 +199,8 @@ def shown(bits, width):
 
 
 def read_vcd(text):
-    """Returns the signals of a VCD file that change, and its first and last moment. A signal with
-    several names has its outermost one."""
+    """Returns the signals of a VCD file that change, and the first and last time of the file. A
+    signal with several names gets the outermost name."""
     signals, moments = {}, []
     _, variables, changes = vcd.read(text)
     for each in variables:

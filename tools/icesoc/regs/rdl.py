@@ -4,9 +4,10 @@
     ./icesoc contract from-rdl spi.rdl --out FOLDER
 
 Reads a flat subset: addrmap, reg and field. Register n of an addrmap gets word FIRST + n, after the
-three words that every slot has; an addrmap that begins with ID, EVENT and MASK, as in
-icesoc.rdl, has them already; <SLOT>_PAGES has the words after the slot's PAGE. Anything that a
-register description cannot express is an error with its line (rdl_properties.py).
+three words that every slot has. An addrmap that begins with ID, EVENT and MASK, as in icesoc.rdl,
+already contains these words. An addrmap <SLOT>_PAGES contains the words that are reached through
+the slot's PAGE. Anything that a register description cannot express is an error with its line
+(rdl_properties.py).
 """
 import argparse
 import json

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""rdl_properties: every property of SystemRDL 2.0 (Accellera, annex E), by its effect on what
-software sees: taken over, without effect, or not representable and so an error with its line.
+"""rdl_properties: lists every property of SystemRDL 2.0 (Accellera, annex E) by its effect for
+software: it is converted, it has no effect, or it cannot be represented and is an error with its
+line.
 """
 from icesoc.regs import names
 

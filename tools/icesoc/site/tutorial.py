@@ -4,8 +4,8 @@
 A block of the language `console` has commands (`$ command`), each with its expected output. A line
 `...` stands for any number of lines, and `...` inside a line for any text. The comment
 `<!-- exit status N -->` in front of a block gives the exit status of its last command; it is 0
-otherwise. `<!-- long -->` marks a block that a brief run leaves out. Any other block in front of
-which a line names a file, such as "`ip/x/x.v`:", is the content of that file.
+otherwise. `<!-- long -->` marks a block that a brief run leaves out. If the line before any other
+block names a file, such as "`ip/x/x.v`:", the block is the content of that file.
 """
 import dataclasses
 import re

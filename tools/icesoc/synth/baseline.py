@@ -156,10 +156,10 @@ def above_limits(row):
 
 
 def judge(row, baseline, yosys, goal):
-    """Returns (failures, notes) of a design. Its budget is the accepted figure and a little more,
-    because optimisation varies: 3 % + 4 LUTs, 1 % + 2 flip-flops. Limits always apply, whatever was
-    accepted. The clock (`goal`, MHz) must be kept by a design that was accepted with it; one that
-    was accepted below it may lose a tenth."""
+    """Returns (failures, notes) of a design. Its budget is the accepted figure plus a margin for
+    the variation of the optimisation: 3 % + 4 LUTs, 1 % + 2 flip-flops. Limits always apply,
+    whatever was accepted. A design whose accepted clock reaches `goal` (MHz) must still reach it; a
+    design whose accepted clock is lower may lose a tenth of it."""
     name, f = row.design.name, row.figures
     if row.main.error:
         return ([f"{name}: synthesis failed"] if row.main.wanted else []), []

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""merge_ucf: puts MIG's constraints and others together into one file for ngdbuild.
+"""merge_ucf: merges MIG's constraints with other constraints into one file for ngdbuild.
 
 Usage: merge_ucf.py MIG.ucf OTHER.ucf... > all.ucf
- MIG writes its names as if its core were the top. Here it is the instance u_mig of chip.v: what is
-inside gets that prefix, c3_sys_clk and c3_sys_rst_i are the pads sys_clk_i and sys_rst_i, and a bit
-is <n>, as XST writes it. VCCAUX, places and standards of OTHER replace MIG's. Each change is
-printed on stderr. Exit status 1: a statement that is not understood, or two of OTHER that say
-different things. """
+MIG writes names as if its core were the top. Here the core is the instance u_mig of chip.v, so
+inner names get this prefix. c3_sys_clk and c3_sys_rst_i become the pads sys_clk_i and sys_rst_i. A
+bit is written as <n>, as in XST. VCCAUX, locations and I/O standards of OTHER replace MIG's. Each
+change is printed on stderr. Exit status 1: a statement is not understood, or two statements of
+OTHER contradict each other."""
 
 import os
 import re

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""slices: estimates a netlist's slices of four LUT6 and eight flip-flops (docs/utilisation.md).
+"""slices: estimates the number of slices for a netlist; a slice has four LUT6 and eight flip-flops
+(docs/utilisation.md).
 
-The rules of Spartan-6 and 7-series slices (UG384, UG474): clock, enable and set/reset are common to
-a slice; a LUT6 is two functions of at most five common inputs; a carry chain takes a slice for
-every four bits with the LUTs in front of it; a LUT RAM takes a SLICEM.
+Rules of Spartan-6 and 7-series slices (UG384, UG474): clock, enable and set/reset are common to
+a slice. A LUT6 can hold two functions of at most five common inputs. A carry chain takes one slice
+for every four bits, including the LUTs in front of it. A LUT RAM needs a SLICEM.
 """
 import typing
 
@@ -12,17 +13,18 @@ from icesoc.synth.netlist import LUT_INPUTS, MEMORY_LUTS, UNDEFINED
 
 SITES, FLIP_FLOPS, MUXES, SHARED_INPUTS = 4, 8, 2, 5
 
-# map makes (sites + share * flip-flops) / 4 slices; share: fraction of flip-flops that do not share
-# a site with a LUT. The figures come from published reports (reports.py).
+# Fraction of flip-flops that do not share a site with a LUT; map makes (sites + share * flip-flops)
+# / 4 slices. The figure comes from published reports (reports.py).
 USUAL_SHARE = 0.74
-# Fraction of functions that need no separate site, because two share one: 2 to 31 % in the reports,
-# 14 % on average. A lower value is used, since map's sites are more than estimated (reports.py).
+# Fraction of functions that need no separate site, because two functions share one: 2 to 31 % in
+# the reports, 14 % on average. A lower value is used, because map needs more sites than estimated
+# (reports.py).
 USUAL_PAIRING = 0.11
 
 
 class Range(typing.NamedTuple):
-    """Published over estimated figures of `count` designs, each predicted by the others: the
-    median, and where nine of ten lie."""
+    """Ratios of published to estimated figures of `count` designs, each predicted by the other
+    designs: the median, and the range of nine of ten."""
     median: float
     low: float
     high: float
@@ -90,8 +92,8 @@ def control_set(cell):
 
 
 def slices_of(n):
-    """Returns the estimate ("slices"); "low", the least for any placer; "high", which one published
-    design of twenty exceeds; and the counts they are computed from."""
+    """Returns the estimate ("slices"); "low", the minimum for any placer; "high", which one of
+    twenty published designs exceeds; and the counts from which these are computed."""
     luts, sets = [], {}  # sets: control set -> [flip-flops fed by a separate LUT, others]
     memory = carry = through = wide = flip_flops = 0
     for cell in n.cells:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""timing: the longest paths of a Spartan-6 netlist, by an estimate as XST makes before placement.
+"""timing: estimates the longest paths of a Spartan-6 netlist, as XST does before placement.
 
-Cell delays are those that XST 14.7 prints for speed grade -3; a net's delay depends on its fan-out
-alone. Grade -2 is slower by SLOW_GRADE. Clock skew and placement are not known here: ROUTED is the
-ratio of published designs to their estimates. Paths between pads and registers contain XST's
-buffers (pads_of).
+Cell delays are the delays that XST 14.7 prints for speed grade -3. The delay of a net depends only
+on its fan-out. Grade -2 is slower by the factor SLOW_GRADE. Clock skew and placement are not known
+here; ROUTED is the ratio of published clocks to their estimates. Paths between pads and registers
+contain XST's buffers (pads_of).
 """
 import typing
 
@@ -12,8 +12,8 @@ from icesoc.synth import netlist
 from icesoc.synth.netlist import LUT_INPUTS
 from icesoc.synth.slices import Range
 
-# delay of grade -2 divided by that of -3, about: DS162 has 0.26 for 0.21 ns (LUT), 0.53 for 0.45
-# (clock to out)
+# Approximate delay of grade -2 divided by the delay of grade -3. DS162: 0.26 and 0.21 ns (LUT),
+# 0.53 and 0.45 ns (clock to out).
 SLOW_GRADE = 1.2
 
 # delays, ns, grade -3
@@ -128,8 +128,8 @@ class Analysis:
         return self.known[bit]
 
     def net(self, bit, reader):
-        """The delay of a net; none is needed from a LUT into the flip-flop, wide multiplexer or
-        adjacent carry."""
+        """Returns the delay of a net. It is 0 from a LUT to the flip-flop, wide multiplexer or
+        carry cell next to it."""
         if reader is None:  # the bit leads to an output pad
             return net_delay(len(self.n.readers.get(bit, [])) + 1)
         source, to = self.n.driver_type(bit), self.n.cells[reader].type

@@ -2,12 +2,13 @@
 # SPDX-License-Identifier: MIT
 # cores: source-folder generated-folder work-folder   Lists of cores: the chip with them, lint of
 # soc.v with each, and errors. It is a shell script because a case is a list and the output of
-# programs (coremap, Verilator, GCC, xmllint, Yosys).
+# programs (coremap, Verilator, GCC, xmllint, Yosys). refused.py checks all errors of lists.
 set -eu
 source=$1 gen=$2 work=$3
 coremap() { "$source/tools/python" -m icesoc.chip.coremap "$@"; }
 regmap() { "$source/tools/python" -m icesoc.regs.generate "$@"; }
-data=$(cd "$(dirname "$0")/data" && pwd)
+here=$(cd "$(dirname "$0")" && pwd)
+data=$here/data
 rm -rf "$work"
 mkdir -p "$work/own"
 # The led with a separate clock.
@@ -17,36 +18,41 @@ clocked() { "$source/tools/python" -m icesoc.chip.clocked "$@"; }
 clocked "$work/own/tuner.toml" "$work/own/tuner.regs.json" "$work/own/tuner_clocked.v"
 fail() { echo "cores: $*" && exit 1; }
 
-chip() { # name, the list: the chip in $work/name
-    out=$work/$1
-    mkdir -p "$out"
-    printf '%b' "$2" >"$out/cores.list"
-    coremap "$out/cores.list" --base "$source/bus/map.regs.json" \
+# The registers of the cores are the same in all chips.
+registers=$work/registers
+mkdir "$registers"
+regmap "$data"/*.regs.json "$work"/own/*.regs.json --output-dir "$registers"
+
+known() { # a program with words: calls it with the options of coremap for the known cores
+    "$@" --base "$source/bus/map.regs.json" \
         --core "led=$data/led.toml=$data/led.regs.json" \
         --core "adder=$data/adder.toml=$data/adder.regs.json" \
         --core "mover=$data/mover.toml=$data/mover.regs.json" \
         --core "probe=$source/ip/probe/core.toml=$source/ip/probe/probe.regs.json" \
         --core "tuner=$work/own/tuner.toml=$work/own/tuner.regs.json" \
-        --block "0=system=$source/hdl/system/system.regs.json" --output-dir "$out" 2>"$out/messages"
+        --block "0=system=$source/hdl/system/system.regs.json"
+}
+chip() { # name, the list: the chip in $work/name
+    out=$work/$1
+    mkdir -p "$out"
+    printf '%b' "$2" >"$out/cores.list"
+    known coremap "$out/cores.list" --output-dir "$out" 2>"$out/messages"
 }
 accepted() {
     chip "$@" || { cat "$out/messages" && fail "refused: $2"; }
-    for regs in "$out/map.regs.json" "$data"/*.regs.json "$work"/own/*.regs.json;
-    do regmap "$regs" --output-dir "$out"; done
+    regmap "$out/map.regs.json" --output-dir "$out"
     # shellcheck disable=SC2086 # a list of folders
-    verilator --lint-only -Wall -I"$out" $(for f in "$out" "$data" "$work/own" "$source"/bus \
-        "$source"/hdl/* "$source/ip/probe" "$gen"; do [ ! -d "$f" ] || echo "-y $f"; done) \
+    verilator --lint-only -Wall -I"$out" -I"$registers" $(for f in "$out" "$registers" "$data" \
+        "$work/own" "$source"/bus "$source"/hdl/* "$source/ip/probe" "$gen"; do
+            [ ! -d "$f" ] || echo "-y $f"; done) \
         -I"$gen" --top-module soc "$source/hdl/soc.v"
     gcc -std=c90 -pedantic -Wall -Wextra -Wmissing-prototypes -Werror -fsyntax-only -I"$out" \
-        -I"$data" -I"$source/sw/hw" \
+        -I"$registers" -I"$data" -I"$source/sw/hw" \
         -I"$source/sw/hw/registers" -I"$gen/slice/Registers" -I"$source/ip/probe" \
         -I"$gen/slice/Probe" -I"$source/sw/icec" -I"$source/sw/base" "$out/soc_cores.c"
 }
-refused() { # message, list
-    ! chip refused "$2" || fail "accepted: $2"
-    grep -q -- "$1" "$work/refused/messages" || { cat "$work/refused/messages" &&
-        fail "'$1' is not said: $2"; }
-    [ ! -f "$work/refused/soc_cores.vh" ] || fail "files were written in spite of: $1"
+refused() { # message, list: a case for refused.py
+    printf '%s\0%b\0' "$1" "$2" >>"$work/refusals"
 }
 has() { # file of the chip, expected lines
     file=$1
@@ -95,7 +101,7 @@ event='//peripheral[name="SYSTEM"]/registers/register[name="EVENT"]'
 "$source/tools/python" -m icesoc.regs.rdl "$out/icesoc.rdl" "$work/back" >"$work/rdl" 2>&1 ||
     { cat "$work/rdl" && fail 'SystemRDL with pages'; }
 for f in "$data/led.regs.json" "$work/back/led.regs.json"; do
-    python3 -c 'import json, sys
+    /usr/bin/python3 -c 'import json, sys
 registers = json.load(open(sys.argv[1]))["registers"]
 print(sorted(json.dumps(dict(r), sort_keys=True) for r in registers))' "$f"
 done | uniq | wc -l | grep -qx 1 || { cat "$work/back/led.regs.json" &&
@@ -221,11 +227,11 @@ described 'pins\[0\].name: expected' \
 accepted probe 'adder
 probe signals=u_adder.u_registers.u_wrapper.mask,u_modem.u_timer.clocks:17
 probe name=other signals=u_adder.irq_o\n'
-yosys -q -p "verilog_defaults -add -I$out -I$gen $(for f in bus hdl/fsmc hdl/ddr hdl/cdc; do \
-    printf -- '-I%s ' "$source/$f"; done)
+yosys -q -p "verilog_defaults -add -I$out -I$registers -I$gen $(for f in bus hdl/fsmc hdl/ddr \
+    hdl/cdc; do printf -- '-I%s ' "$source/$f"; done)
     read_verilog $source/hdl/soc.v
-    hierarchy -top soc $(for f in "$out" "$data" "$source/ip/probe" "$gen" "$source"/bus \
-        "$source"/hdl/*; do [ ! -d "$f" ] || printf -- '-libdir %s ' "$f"; done)
+    hierarchy -top soc $(for f in "$out" "$registers" "$data" "$source/ip/probe" "$gen" \
+        "$source"/bus "$source"/hdl/*; do [ ! -d "$f" ] || printf -- '-libdir %s ' "$f"; done)
     proc; flatten; opt_clean; check -assert
     select -assert-count 1 w:u_adder.u_registers.u_wrapper.mask" >"$work/yosys" 2>&1 ||
     { cat "$work/yosys" && fail 'Yosys does not join a signal with the probe'; }
@@ -273,6 +279,8 @@ refused "1: error: gate=on: 'led' has no output idle_o" 'led gate=on\n'
 refused 'gate=off: expected gate=on' 'adder gate=off\n'
 refused "expected a core's output of 1 bits" 'led button_i=mover.nothing_o\n'
 refused "_o=none leaves it unconnected" 'mover\nmover name=a\nmover name=b\nmover name=c\n'
+mkdir "$work/refused"
+known "$source/tools/python" "$here/refused.py" "$work/refusals" "$work/refused"
 coremap --help | grep -q 'one core per line' || fail 'no help'
 ! coremap "$work/missing" --base "$source/bus/map.regs.json" 2>"$work/messages" ||
     fail 'a missing list is accepted'

@@ -80,17 +80,19 @@ def main():
     parser = argparse.ArgumentParser(
         prog="regs", description="Generates the Verilog, C, VHDL and Markdown views of a block's "
                                  "registers.")
-    parser.add_argument("description", help="register description, *.regs.json")
+    parser.add_argument("descriptions", nargs="+", metavar="description",
+                        help="register description, *.regs.json")
     parser.add_argument("--output-dir", default=".", help="folder of the files (default .)")
     parser.add_argument("--block", action="store_true",
                         help="also the register block in Verilog and VHDL, and its proof")
     args = parser.parse_args()
-    try:
-        block = Block.read(args.description)
-        for name, text in views(block, args.block).items():
-            save(Path(args.output_dir) / name, text)
-    except (Wrong, OSError) as e:
-        sys.exit(f"{args.description}: error: {e}")
+    for description in args.descriptions:
+        try:
+            block = Block.read(description)
+            for name, text in views(block, args.block).items():
+                save(Path(args.output_dir) / name, text)
+        except (Wrong, OSError) as e:
+            sys.exit(f"{description}: error: {e}")
 
 
 if __name__ == "__main__":

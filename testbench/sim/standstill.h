@@ -15,7 +15,8 @@
 class Standstill {
 public:
     // `now` returns simulated time, ns. `seconds`: CPU time of this process after which an
-    // unchanged simulated time is reported on stderr (default 10).
+    // unchanged simulated time is reported on stderr (default 10). After a report, Ctrl-C ends the
+    // process at once.
     explicit Standstill(std::function<uint64_t()> now, double seconds = 10);
     ~Standstill();
     Standstill(const Standstill&) = delete;

@@ -16,7 +16,7 @@ import time
 
 from icesoc.regress.junit import ended, finished, read_junit, write_junit
 from icesoc.util.errors import Interrupted
-from icesoc.util.process import adopt_orphans, end_descendants, hear_signals, start
+from icesoc.util.process import adopt_orphans, end_descendants, hear_signals, start, wait
 
 
 def reason(text):
@@ -51,15 +51,19 @@ def run(words, results):
             if end := ended(line):
                 name, outcome, seconds, total = end
                 ends[name] = outcome, seconds
-        return program.wait(), False
+        status = wait(program)
+        if results.exists() or status < 128:
+            return status, False
     except Interrupted as stop:
         time.sleep(0.1)  # until CTest has logged the test that has just ended
         adopt_orphans()
         program.kill()
         program.wait()
         end_descendants()
-        write_finished(words[words.index("--test-dir") + 1], results, ends, total)
-        return stop.status, True
+        status = stop.status
+    # CTest writes its JUnit at its end; it was stopped, by us or by a signal.
+    write_finished(words[words.index("--test-dir") + 1], results, ends, total)
+    return status, True
 
 
 def main():

@@ -112,8 +112,9 @@ class Browser:
             raise RuntimeError(answer["exceptionDetails"].get("exception", {}).get("description"))
         return answer["result"].get("value")
 
-    def until(self, condition, seconds=60):
-        """Waits until an expression is true, and returns its value."""
+    def until(self, condition, seconds=600):
+        """Waits until an expression is true, and returns its value. The default time is long,
+        because a loaded machine must not decide a test."""
         end = time.monotonic() + seconds
         while not (value := self.run(condition)):
             if time.monotonic() > end:

@@ -21,7 +21,7 @@ fi
 mkdir -p "$found"
 if [ -f "$seeds" ]; then
     mkdir "$work/seeds"
-    python3 -c 'import sys
+    /usr/bin/python3 -c 'import sys
 for number, line in enumerate(sys.stdin):
     line = line.partition("#")[0]
     open(f"{sys.argv[1]}/{number}", "wb").write(bytes.fromhex(line))' "$work/seeds" <"$seeds"

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """sizes: measures the bytes of the firmware's layers, from maps of the linker and objects.
 

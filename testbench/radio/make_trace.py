@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """make_trace: prints a trace of a flight: out to 300 m at 10 m/s, most of a minute there, and back.
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """figures: writes docs/figures.md, a table for each JSON file that `./icesoc bench`, `size` and
 `firmware` have left; benches in Python make their files with `figure` and `leave`.

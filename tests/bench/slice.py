@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """slice: measures the processor time of slice2c and slice2cpp on the five largest files of Debian's
 zeroc-ice-slice. The two alternate on each file, and the best of several rounds counts, because

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """trust: reports the results of attacks on the link and of power losses during updates, and the
 cost of a key in bytes on the air, as the tests have counted them.

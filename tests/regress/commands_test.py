@@ -52,7 +52,7 @@ foreach(label zeroc nightly)
   set_tests_properties(${label}.Suite PROPERTIES LABELS ${label})
 endforeach()
 """
-STEPS = """#!/usr/bin/env python3
+STEPS = """#!/usr/bin/python3
 import sys
 name = "_".join(word for word in sys.argv[1:4] if word.isalpha())
 open("done", "a").write(name + "\\n")

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """interrupted: interrupts make regress, make synth and make new-ip at moments drawn from a seed, by
 Ctrl-C (INT to all processes), TERM or KILL. No process may be left, and the next run must give the

@@ -54,7 +54,7 @@ hardware)
     "$slice2c" "$ice" --output-dir "$work/c" $hardware
     # The registers are a contract; test_slice_hardware runs wrappers, servants and proxies,
     # test_ip_sample new cores.
-    python3 - "$out"/*.regs.json >"$work/registers" <<'PYTHON' # a line for each thing
+    /usr/bin/python3 - "$out"/*.regs.json >"$work/registers" <<'PYTHON' # a line for each thing
 import json, sys
 for path in sys.argv[1:]:
     for key, value in json.load(open(path)).items():

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """files_test: tests which files a design needs, and where its signals are declared."""
 import pathlib, tempfile, unittest

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """parts_test: compares parts of the utilisation report with published reports of Xilinx' tools, and
 with figures that can be added up by hand."""

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """any_order: tests that `make run` on a machine without the packages of tests, followed by `make
 test`, which installs them, finds the same tests as a machine that had all packages from the start.

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """arrows: checks every #include, and every import of the tools, against the rooms of rooms.toml;
 checks that each C file has its header, and that libraries have no circles.

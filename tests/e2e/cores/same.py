@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """same: compares a probe's capture with the simulator's trace: same.py capture.vcd trace.vcd
 nanoseconds-of-a-clock

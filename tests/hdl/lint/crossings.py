@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """crossings: finds flip-flops that see another clock, or a pin, other than through hdl/cdc.
 

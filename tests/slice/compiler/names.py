@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """names: every identifier of generated C is tried as every kind of name that a Slice file can give.
 

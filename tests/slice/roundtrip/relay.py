@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """relay: forwards connections between a client and a server on 127.0.0.1, prints its own port, and
 runs until it is killed. relay.py PCAP PORT: writes every byte to PCAP as TCP over IPv4, including

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """bridge: bridge.py HEADER... >bridged.c writes servants with operations that call Bridge_far.
 

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """outside: checks that the program of docs/icec.md, "A program outside this tree", builds and
 prints what the page shows.

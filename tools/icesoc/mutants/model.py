@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Replaces Verilator when tests are run with drawn mutants. A model contains all mutants of its
 modules, and the number MUTANT in the environment selects one when a test begins. Without MUTANT the

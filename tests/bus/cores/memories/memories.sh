@@ -28,7 +28,7 @@ for order in 'little middle big' 'little big middle' 'middle little big' 'middle
         --core "little=$work/little.toml=$work/little.regs.json" \
         --core "middle=$work/middle.toml=$work/middle.regs.json" \
         --core "big=$work/big.toml=$work/big.regs.json" --output-dir "$work"
-    python3 - "$work/map.regs.json" "$order" <<'PYTHON'
+    /usr/bin/python3 - "$work/map.regs.json" "$order" <<'PYTHON'
 import json, sys
 constants = {c["name"]: c["value"] for c in json.load(open(sys.argv[1]))["constants"]}
 end = constants["BUFFERS"]

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """messages: compares the reactions of IceC and of stock Ice to hostile and unusual messages: the
 operations executed, the replies, and whether the connection ends.

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """strings: checks that IceC reads and prints proxy strings as stock Ice does: cases written by
 hand, and many more that are composed at random from parts.

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """server: runs ZeroC's own server of a suite: server.py FOLDER SUITE ENCODING. Prints the ports of
 its two adapters, and serves until `shutdown` is called."""

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """suite: runs ZeroC's own test client of a suite, and counts its checks.
 

@@ -133,7 +133,7 @@ class Values(Work):
                 ("./icesoc fly", {"SEED": "x"}, "SEED: expected a whole number"),
                 ("make -s new-ip NAME=abc", {"LANG": "verilog"},
                  "--lang: expected verilog or vhdl"),
-                ("make -s run OPEN=1 KEY=Makefile", {}, "OPEN=1 flies in the clear")):
+                ("make -s run OPEN=1 KEY=Makefile", {}, "OPEN=1 flies without a key, KEY=")):
             self.assertIn(said, ask(*words.split(), **given)[1])
         self.assertNotIn("OPEN=1 flies",
                          ask("make", "-s", "run", "OPEN=0", "KEY=Makefile", "OUT=/proc/none")[1])

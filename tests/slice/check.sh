@@ -2,16 +2,17 @@
 # SPDX-License-Identifier: MIT
 # check: golden|hardware|equal|errors|compile slice2c file.ice-or-folder work-folder source-folder
 #        [ghdl]
-# The expected results are at the end of the file: messages of the compiler after `//> `, and after
-# `//= ` lines of the generated header, then of the server's C, or of the registers, in their order.
-# golden: the C has no warnings.
-# hardware: the wrappers and new cores are Verilog without warnings, and without latches.
-# equal: each interface's VHDL wrapper, and the new core around it, compile as VHDL-93 and -2008
-# without a warning. The wrapper behaves like the Verilog one: after reset, for any inputs, their
-# outputs are the same in every clock (proven, not bounded).
-# errors: nothing is written.
-# A message's source line and caret are compared where the file has them.
-# UPDATE_GOLDENS=1 rewrites messages.
+# Checks the output of slice2c for a Slice file. The expected results are at the end of the file:
+# messages of the compiler after `//> `; and after `//= ` lines of the generated header, then lines
+# of the server's C, or lines of the registers, each in their order. The source line and the caret
+# of a message are only compared if the file contains them. UPDATE_GOLDENS=1 rewrites the messages.
+#
+# golden: the generated C has no warnings.
+# hardware: the wrappers and new cores are Verilog without warnings and without latches.
+# equal: the VHDL wrapper of each interface, and the new core around it, compile as VHDL-93 and
+# VHDL-2008 without a warning. The VHDL wrapper behaves like the Verilog wrapper: after reset, for
+# any inputs, their outputs are the same in every clock (proven, not bounded).
+# errors: the compiler writes no files.
 set -eu
 kind=$1 slice2c=$2 ice=$3 work=$4 source=$5
 rm -rf "$work"

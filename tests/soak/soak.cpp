@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// soak: link layers over XBee models in API mode and a bad radio, for any time: one vehicle and one
-// ground station, or --vehicles and --grounds, where each station talks to all vehicles. Random
-// messages in both directions; loss, bursts, corruption, duplication; reboots of vehicles, stations
-// and modems; some are away for a while. With --attacked, or with several, each pair has a separate
-// key, and a hostile modem listens, forges and sends noise; a second vehicle uses the address of
-// another; keys are changed. With several, a second program with the first station's address and
-// keys appears, and both believe that they have the vehicles. No message may be wrong, duplicated,
-// out of order or at the wrong receiver, and each is delivered or reported: the first violation
-// ends the program.
+// soak: tests link layers over XBee models in API mode and a bad radio, for any time. There are one
+// vehicle and one ground station, or several (--vehicles, --grounds); each station talks to all
+// vehicles. Random messages are sent in both directions. The radio loses, corrupts and duplicates
+// packets, also in bursts. Vehicles, stations and modems restart, and some are out of reach for a
+// while.
+//
+// With --attacked, or with several vehicles, each pair of station and vehicle has a separate key.
+// A hostile modem listens, forges packets and sends noise, a second vehicle uses the address of
+// another one, and keys are changed. With several vehicles, a second program with the address and
+// the keys of the first station appears, and both believe that they hold the vehicles.
+//
+// No message may be wrong, duplicated, out of order or at the wrong receiver, and each message must
+// be delivered or reported as lost. The first violation ends the program.
 
 #include "attacker.h"
 #include "ends.h"

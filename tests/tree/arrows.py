@@ -1,18 +1,20 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""arrows: checks every #include, and every import of the tools, against the rooms of rooms.toml;
-checks that each C file has its header, and that libraries have no circles.
+"""arrows: checks every #include, and every import of the tools, against the dependencies in
+rooms.toml. Also checks that each C file includes its header, and that the files of a library have
+no circular dependencies.
 
-    arrows.py TREE                the includes of TREE, a checkout
+    arrows.py TREE                checks the includes in a checkout
     arrows.py --circles LIBRARY [PREFIX...]
-                                  the object files of a static library: none needs one that needs
-                                  it; all files with names that begin with a PREFIX count as one
-                                  (natural recursion)
+                                  checks the object files of a static library for circular
+                                  dependencies; files whose names begin with the same PREFIX count
+                                  as one file, because their recursion is intended
 
-A room is a folder, the longest that fits a file. A file may include from its own room and from
-those that its room may use. A C file in sw/ includes the header of its name, or one that the table
-`headers` of rooms.toml gives for it or its folder. Exit status 1: an include that no room allows,
-a C file without its header, or a circle.
+A room is a folder of rooms.toml; a file belongs to the innermost room that contains it. It may
+include headers of its room, and of the rooms that its room may use. A C file in sw/ must include
+the header with its name, or the header that the table `headers` of rooms.toml gives for the file or
+its folder. Exit status 1: an include is not allowed, a C file does not include its header, or a
+dependency is circular.
 """
 import os
 import re

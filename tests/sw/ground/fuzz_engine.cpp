@@ -5,11 +5,15 @@
 // the wire, so that sessions come up. Nothing may crash, hang or leak, and a message passed to a
 // program is complete.
 //
-// The first byte's lowest bit: the modem is set up first. Then a byte names the step (mod 8), the
-// next its argument n:
-//   0 n bytes of noise on the serial line    1 a frame of the peer's is harmed
-//   2 n frames are lost    3,4 a program (n mod 3) writes a message of the bytes behind
-//   5 it writes n raw bytes    6 it disconnects, and (n > 127) connects again    7 8 n ms pass
+// If the lowest bit of the first byte is 1, the modem is set up first. Then each step has two
+// bytes, its kind (mod 8) and its argument n; data follows:
+//   0     n bytes of noise arrive on the serial line
+//   1     a frame of the peer is damaged
+//   2     n frames are lost
+//   3, 4  program n mod 3 writes a message with the data that follows
+//   5     this program writes n raw bytes
+//   6     this program disconnects; if n > 127, it connects again
+//   7     8 n ms pass
 //
 // Clock and serial port are implemented here, so the engine's thread runs alone, in the input's
 // time.

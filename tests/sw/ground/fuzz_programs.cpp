@@ -4,11 +4,14 @@
 // pieces on a socket, and the engine's ProgramConnection splits them into messages. Each message
 // must be one that was sent, complete and in order. The replies must also be complete messages.
 //
-// The first byte's lowest bit: the program is a server that the UAV called. Then a byte names the
-// step (mod 8), the next its argument n:
-//   0,1 the n bytes behind are sent    2,3 a head of kind n mod 5 and they are    4 an answer of n
-//   bytes is given to the program 5 the program reads n bytes    6 it sends no more    7 n tenths
-//   of a second pass
+// If the lowest bit of the first byte is 1, the program is a server that the UAV called. Then each
+// step has two bytes, its kind (mod 8) and its argument n; data follows:
+//   0, 1  the n bytes that follow are sent
+//   2, 3  a message header of kind n mod 5 is sent, then the bytes that follow
+//   4     the program gets an answer of n bytes
+//   5     the program reads n bytes
+//   6     the program sends nothing more
+//   7     n tenths of a second pass
 
 #include "ice_header.h"
 #include "program_connection.h"

@@ -5,17 +5,17 @@
 // full layer has a peer with a session; the minimal one receives a HELLO. Nothing may crash, hang,
 // or write out of bounds, and no frame or message may have an impossible size.
 //
-// An input byte names the step (mod 8), the next its argument n:
-//   0, 1  n bytes, unchanged
-//   2     a frame of n bytes, checksum (under a key: tag) of the session added
-//   3     the same; a data frame has the number that is expected
-//   4     the same of the handshake; to the minimal layer HELLO with nonce n
-//   5     n ms pass; the program takes messages (n < 64) or not
-//   6     a message (of n bytes; minimal layer: 5 n) is sent on channel n mod 4, opened if need be;
-//         255, and to the minimal layer each fourth, closes one
-//   7     n frames of the peer's come through, and the radio of a minimal layer has room again
+// Each step of the input has two bytes, its kind (mod 8) and its argument n:
+//   0, 1  n bytes arrive, unchanged
+//   2     a frame of n bytes arrives; the session's checksum (with a key: tag) is added
+//   3     as 2, but a data frame has the expected number
+//   4     as 2, but a handshake frame; for the minimal layer, a HELLO with nonce n
+//   5     n ms pass; the program accepts messages if n < 64, otherwise not
+//   6     a message of n bytes (minimal layer: 5 n) is sent on channel n mod 4, which is opened if
+//         necessary; n = 255, and in the minimal layer every fourth n, closes a channel instead
+//   7     n frames of the peer arrive, and the radio of a minimal layer has room again
 //
-// With -DKEYED both have a key, and the fuzzer knows it.
+// With -DKEYED both sides have a key, and the fuzzer knows the key.
 
 #include "link_program.h"
 #include <cstdint>

@@ -15,6 +15,7 @@ import unittest
 from pathlib import Path
 
 TREE = Path(__file__).resolve().parents[1]
+LONGEST = 600  # s; a program that takes longer hangs: a loaded machine must not decide a test
 
 
 def write(path, text):

@@ -19,7 +19,7 @@ import unittest
 from pathlib import Path
 from unittest import mock
 
-from script import TREE
+from script import LONGEST, TREE
 
 BUILD = Path(sys.argv[2]).resolve()
 HERE = Path(__file__).resolve().parent
@@ -308,7 +308,7 @@ class Call(unittest.TestCase):
                                          vehicle])
             self.assertEqual((status, out), wanted[:2], err)
             self.assertIn(wanted[2], err)
-        server.communicate(timeout=20)
+        server.communicate(timeout=LONGEST)
         self.assertEqual(self.ask(["add", "1", "2", "--locator", f"x:{endpoint} -p 1"])[0], 4)
 
     def test_speed(self):

@@ -10,6 +10,7 @@ from icesoc.cli import command, everything, flight  # noqa: F401
 from icesoc.cli.options import FLIGHT, SWITCH
 from icesoc.util.lock import lock
 from icesoc.util.ninja import explained
+from script import LONGEST
 
 
 def clean(**more):
@@ -23,7 +24,8 @@ def clean(**more):
 def ask(*words, **environment):
     """Returns (exit status, output) of a program in the tree."""
     done = subprocess.run(words, cwd=TREE, env=clean(**environment), stdin=subprocess.DEVNULL,
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, timeout=100)
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          timeout=LONGEST)
     return done.returncode, done.stdout
 
 

@@ -29,6 +29,7 @@ import traceback
 from pathlib import Path
 
 from icesoc import TREE
+from script import LONGEST
 
 DATA = TREE / "tests/bus/cores/data"
 BUILD, WORK = Path(), Path()  # the build folder, and the work folder of this run
@@ -143,7 +144,7 @@ class Runner:
         """Runs the parser. Returns (status, message); a status of at least 128 is a finding."""
         if self.parser.program:
             run = subprocess.run([BUILD / self.parser.program, *self.words],
-                                 capture_output=True, timeout=60)
+                                 capture_output=True, timeout=LONGEST)
             return run.returncode & 255, (run.stdout + run.stderr).decode(errors="replace")
         said = io.StringIO()
         try:

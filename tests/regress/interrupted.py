@@ -17,7 +17,7 @@ import subprocess
 import sys
 import time
 
-LONGEST = 300  # s; after this time a run counts as hanging
+LONGEST = 600  # s; after this time a run counts as hanging
 source, build, work = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
 moments, tools = int(sys.argv[4]), sys.argv[5:]
 

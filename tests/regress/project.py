@@ -9,8 +9,8 @@ import shlex
 import sys
 from pathlib import Path
 
-from script import (TREE, Script, append, commit, edit, fresh, git, main,  # noqa: F401
-                    repository, write)
+from script import (LONGEST, TREE, Script, append, commit, edit, fresh, git,  # noqa: F401
+                    main, repository, write)
 
 BUILD = Path(sys.argv[3]) if len(sys.argv) > 3 else TREE / "build/main"
 REGRESS = BUILD / "tests/regress/regress"

@@ -21,7 +21,8 @@ import unittest.mock
 import xml.etree.ElementTree as xml
 from pathlib import Path
 
-from project import BREAK, REGRESS, TREE, Project, append, commit, edit, git, main, write
+from project import (BREAK, LONGEST, REGRESS, TREE, Project, append, commit, edit, git, main,
+                     write)
 from icesoc.regress import runner, unchanged
 from icesoc.regress.tests import Test
 
@@ -174,7 +175,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
                                    stderr=subprocess.STDOUT, text=True, start_new_session=True)
             said = list(itertools.takewhile(lambda line: not line.startswith("6 of 7"), run.stdout))
             os.killpg(run.pid, number)
-            self.said = "".join(said) + run.communicate(timeout=60)[0]
+            self.said = "".join(said) + run.communicate(timeout=LONGEST)[0]
             self.assertEqual(run.returncode, status, self.said)
             left = ["pgrep", "--session", str(run.pid), "--runstates", "D,I,R,S,T,t"]
             self.assertEqual(subprocess.run(left, stdout=subprocess.PIPE).stdout, b"")

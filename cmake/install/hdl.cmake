@@ -85,8 +85,8 @@ in_folder(files cdc cdc_skew.v cdc_bit.v cdc_bus.v cdc_copy.v cdc_pulse.v cdc_re
 icesoc_hdl_core(cdc TOP async_fifo FILES ${files} INCLUDES cdc/cdc_random.vh
   CONSTRAINTS cdc.tcl PURPOSE "Clock-domain crossings, synchronisers, pulses, buses and a FIFO")
 
-in_folder(files bus bus_decoder.v bus_registers.v bus_wrapper.v bus_window.v bus_crossing.v
-  bus_to_wishbone.v bus_to_axi4lite.v)
+in_folder(files bus bus_decoder.v bus_registers.v bus_wrapper.v bus_window.v
+  bus_crossing_core.v bus_crossing.v bus_to_wishbone.v bus_to_axi4lite.v)
 icesoc_hdl_core(bus TOP bus_decoder FILES ${files} INCLUDES bus/slot_ports.vh bus/slot_connect.vh
   DEPENDS cdc PURPOSE "Register bus, its decoder, slots, and adapters to Wishbone and AXI4-Lite")
 

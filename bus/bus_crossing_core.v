@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+//
+// bus_crossing_core: core side of bus_crossing; carries out each request as one access to the core,
+// and keeps the answer until the next access ends.
+//
+// A reset of the core ends the access with an error. Requests do not overlap: the next one arrives
+// after ended_o of the previous one.
+
+`default_nettype none
+
+module bus_crossing_core (
+    input  wire        clk_i,  // the core's clock
+    input  wire        rst_i,  // may begin at any time, ends with clk_i
+    // request and answer
+    input  wire        begins_i, // one cycle
+    output wire        ended_o,  // one cycle, one clock after the access
+    output reg  [32:0] answer_o, // error and data, valid with ended_o
+    output reg         irq_o,    // a flip-flop, because a glitch of a LUT must not cross
+    // core
+    output wire        core_valid_o,
+    input  wire        core_ready_i,
+    input  wire [31:0] core_rdata_i,
+    input  wire        core_error_i,
+    input  wire        core_irq_i
+);
+    reg  busy, ended;
+    wire ends = busy && (core_ready_i || rst_i);
+    initial {busy, ended, irq_o} = 3'b000;
+    assign core_valid_o = busy && !rst_i;
+    assign ended_o      = ended;
+    always @(posedge clk_i) begin
+        busy  <= begins_i || (busy && !ends);
+        ended <= ends; // one clock after the access takes effect on the interrupt
+        irq_o <= core_irq_i;
+        if (ends)
+            answer_o <= {core_error_i || rst_i, core_rdata_i};
+    end
+
+`ifdef FORMAL
+    bus_rules #(.MASTER(1), .LIMIT(60000), .PATIENCE(60000)) u_rules (
+        .clk_i(clk_i), .rst_i(rst_i), .valid_i(core_valid_o), .write_i(1'b0), .addr_i(10'd0),
+        .wdata_i(32'd0), .ready_i(core_ready_i), .rdata_i(core_rdata_i), .error_i(core_error_i));
+    reg        past = 1'b0, open = 1'b0; // open: a request has not been answered yet
+    reg        known = 1'b0, done = 1'b0; // known: an access has ended; done: in the last clock
+    reg [32:0] answer;                    // its error and data
+    wire       completes = core_valid_o && core_ready_i;
+    always @(posedge clk_i) begin
+        past  <= 1'b1;
+        open  <= begins_i || (open && !ended_o);
+        done  <= busy && (completes || rst_i);
+        known <= known || (busy && (completes || rst_i));
+        if (busy && (completes || rst_i))
+            answer <= completes ? {core_error_i, core_rdata_i} : {1'b1, core_rdata_i};
+        assume (!begins_i || !open);
+    end
+    always @* begin
+        // Each request is one access and has one answer.
+        assert (open == (busy || ended));
+        assert (!(busy && ended));
+        assert (!core_valid_o || open);
+        assert (ended_o == done);
+        // The answer is the core's, or an error of the reset. It is stable until the next access.
+        assert (!known || answer_o == answer);
+        assert (known || !ended_o);
+        cover (ended_o && !answer_o[32] && answer_o[31:0] == 32'd5);
+        cover (ended_o && answer_o[32] && past);
+        cover (known && begins_i);
+    end
+`endif
+endmodule

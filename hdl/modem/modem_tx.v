@@ -40,8 +40,8 @@ module modem_tx (
 
     wire last   = rd_index_o == packet_bytes_i;                // all bytes of the packet have been
                                                                // read
-    wire rested = (count[8] && count[6]) || whole || api_i; // 320 ticks have passed, or no pause is
-                                                            // needed
+    // 320 ticks have passed, or no pause is needed
+    wire rested = (count[8] && count[6]) || whole || api_i;
 
     wire leaves = tx_valid_o && tx_ready_i;
     wire ends   = state == REST && (tx_ready_i || api_i) && rested;

@@ -3,8 +3,9 @@
 // air: measures the radio link over two modems and the air between them, without chip and kernel:
 // goodput in one direction and in both at once, and round trips, unencrypted and encrypted
 // (docs/link.md). Both modems are in API mode, unless --api gives another number. The ground modem
-// uses 111,111 baud and the vehicle modem 250,000, as with the firmware. In one direction the
-// ground sends; pictures are sent by the vehicle.
+// uses 111,111 baud and the vehicle modem 250,000, as with the firmware. Where goodput is
+// measured in one direction, the ground sends. Where calls are measured during a picture transfer,
+// the vehicle sends the pictures.
 
 #include "figures.h"
 #include "modem_pair.h"

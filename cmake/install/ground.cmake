@@ -19,8 +19,9 @@ list(APPEND installable xbeeat xbeeat_cpp11 gateway ${pack_update})
 set(clients ${top}/sw/ground/clients)
 install(FILES ${top}/sw/ground/python/icesoc.py DESTINATION ${module} RENAME __init__.py
   COMPONENT ${component})
-install(FILES ${clients}/places.py ${clients}/plugged.py ${clients}/vehicles.py
-  ${clients}/mission_log.py ${clients}/stay.py ${top}/tools/icesoc/util/record.py
+install(FILES ${clients}/places.py ${clients}/plugged.py ${clients}/reasons.py
+  ${clients}/vehicles.py ${clients}/mission_log.py ${clients}/stay.py
+  ${top}/tools/icesoc/util/record.py
   DESTINATION ${module} COMPONENT ${component})
 install(PROGRAMS ${clients}/mission.py ${clients}/provide_key.py ${clients}/change_key.py
   ${clients}/update.py DESTINATION ${module} COMPONENT ${component})

@@ -82,7 +82,7 @@ def main():
         text = json.dumps({"version": version, **flight}, indent=1)
         (out / "flight.json").write_text(text + "\n")
     except OSError as error:
-        sys.exit(f"icesoc-fly: {error}")
+        sys.exit(f"icesoc-fly: cannot write {error.filename or out}: {error.strerror}")
     simulator = str(PREFIX / "bin/icesoc-sim")
     second = ["--observer-device", "{device2}"] if flight["vehicles"] > 1 else []
     os.execv(simulator, [

@@ -105,10 +105,11 @@ class Cases(Script):
         self.has("vehicle 'uav9': expected one of uav1; or add a line Vehicle.uav9=")
 
     def test_call(self):
-        """icesoc-call calls cores through the gateway, by radio and by a vehicle's name; wrong
-        arguments and unknown vehicles are refused."""
+        """icesoc-call calls cores through the gateway, by radio and by a vehicle's name. Wrong
+        arguments, unknown vehicles, a device or port in use and missing files are refused with
+        the reason."""
         self.install("icesoc-ground", "icesoc-sim", "icesoc-slice2c")
-        port = free_port()
+        port, other = free_port(), free_port()
         write("vehicles.conf", f"Vehicle.uav1=tcp -h 127.0.0.1 -p {port}\n")
         write("radio.conf", "Vehicle.uav1=xbee-at -d modem -a 0x0001\nXBeeAT.Guard=20\n")
         write("calls.sh", "#!/bin/bash\nset -e\nln -sf $1 modem\n"
@@ -118,6 +119,8 @@ class Cases(Script):
               f"icesoc-gateway -d $1 -g 20 -l 127.0.0.1:{port} &\n"
               "trap 'kill $!' EXIT\n"
               f"until true 2>/dev/null >/dev/tcp/127.0.0.1/{port}; do sleep 0.1; done\n"
+              f"! icesoc-gateway -d $1 -g 20 -l 127.0.0.1:{other}\n"
+              f"! icesoc-gateway -d /dev/ptmx -l 127.0.0.1:{port}\n"
               "export ICESOC_VEHICLES=vehicles.conf\n"
               "icesoc-call hwengine1.startProcessing\n"
               "icesoc-call hwengine1.getResult --json\n"
@@ -125,7 +128,10 @@ class Cases(Script):
               "icesoc-call uav.isAlive 8 --repeat 3 --vehicle uav1\n")
         self.use("icesoc-sim", "--image", IMAGE, "--size", "96x64", "--guard", "20", "--out",
                  "flight", "--", "bash", "calls.sh", "{device}")
-        self.has('^{"result": true}$', '"found": 1[0-9][0-9],', "^calls 3, failures 0, min ")
+        self.has('^{"result": true}$', '"found": 1[0-9][0-9],', "^calls 3, failures 0, min ",
+                 "icesoc-gateway: error: xbee-at: cannot open serial port .* uses it",
+                 "^gateway: error: cannot use /dev/pts/.*: Device or resource busy$",
+                 f"^gateway: error: cannot listen at .*{port}.*: Address already in use$")
         self.use("icesoc-call", "--list", "hwengine1")
         self.has("setParameterA\\(value: short 0..255 grey levels\\)")
         self.use("icesoc-call", "hwengine1.setParameterA", "300", status=2)
@@ -133,6 +139,17 @@ class Cases(Script):
         self.use("icesoc-call", "uav.isAlive", "7", "--vehicle", "uav9", status=2,
                  env={"ICESOC_VEHICLES": "vehicles.conf"})
         self.has("vehicle 'uav9': expected one of uav1")
+        write("two.conf", "Vehicle.a=tcp -p 1\nVehicle.b=tcp -p 2\n")
+        self.use("icesoc-call", "uav.isAlive", "7", status=2, env={"ICESOC_VEHICLES": "two.conf"})
+        self.has("--vehicle: expected a name, as two.conf lists several: a, b$")
+        self.use("icesoc-call", "uav.isAlive", "7", "--gateway", "nohost.invalid:1", status=4)
+        self.has("cannot reach nohost.invalid:1: nohost.invalid: host not found$")
+        self.use("icesoc-update", "missing", status=1)
+        self.has("^update: missing: No such file or directory$")
+        self.use("icesoc-provide-key", "--port", "/dev/null", "--open", status=1)
+        self.has("^provide_key: [^(]*Inappropriate ioctl for device$")
+        self.use("icesoc-fly", "--out", "/proc/missing", status=1)
+        self.has("^icesoc-fly: cannot write /proc/missing: No such file or directory$")
 
     def test_page(self):
         """Checks the gateway's page: its files, and a call like the one the browser makes. The

@@ -187,8 +187,19 @@ std::shared_ptr<Ice::ObjectPrx> publisherOf(const std::shared_ptr<Ice::Communica
 std::shared_ptr<Ice::ObjectAdapter> adapterOf(const std::shared_ptr<Ice::Communicator>& ic,
                                               const std::string& name, const std::string& endpoints,
                                               Take take) {
-    const auto made = endpoints.empty() ? ic->createObjectAdapter(name)
-                                        : ic->createObjectAdapterWithEndpoints(name, endpoints);
+    const auto made = [&] {
+        try {
+            return endpoints.empty() ? ic->createObjectAdapter(name)
+                                     : ic->createObjectAdapterWithEndpoints(name, endpoints);
+        } catch (const Ice::ConnectFailedException&) {
+            throw; // an error of the modem's serial port
+        } catch (const Ice::SocketException& e) {
+            const std::string place = endpoints.empty()
+                                          ? ic->getProperties()->getProperty(name + ".Endpoints")
+                                          : endpoints;
+            throw std::runtime_error("cannot listen at " + place + ": " + reasonOf(e));
+        }
+    }();
     made->addDefaultServant(std::make_shared<Servant>(std::move(take)), "");
     return made;
 }
@@ -324,9 +335,10 @@ int main(int argc, char** argv) {
     Options o;
     addOptions(app, o);
     try {
-        Ice::StringSeq words(argv + 1, argv + argc);
+        Ice::StringSeq words(argv, argv + argc);
         Ice::InitializationData data;
-        data.properties = Ice::createProperties(words);
+        data.properties = Ice::createProperties(words); // the first word is the name in the log
+        words.erase(words.begin());
         for (const char* prefix : {"IceSSL", "XBeeAT"})
             words = data.properties->parseCommandLineOptions(prefix, words);
         std::reverse(words.begin(), words.end());

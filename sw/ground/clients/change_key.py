@@ -20,6 +20,7 @@ import Ice
 import places
 import plugged
 import provide_key
+from reasons import reason_of
 
 
 def write(path, lines):
@@ -129,7 +130,7 @@ def main():
         sys.exit("change_key: %s" % ("the vehicle is in flight: it accepts a new key after landing"
                                      if e.ice_id() == "::Autopilot::InFlight" else e))
     except (Ice.Exception, provide_key.Failed, RuntimeError, OSError) as e:
-        sys.exit("change_key: %s" % e)
+        sys.exit("change_key: %s" % reason_of(e))
 
 
 if __name__ == "__main__":

@@ -26,6 +26,7 @@ import plugged
 import stay
 from mission_log import Air, Log, Patience, report, whole
 from PIL import Image, ImageDraw
+from reasons import reason_of
 
 # Smallest number of corners of a complete result. With 121 corners, a faulty core passed that
 # treats a pixel at the threshold as brighter; with 313, this core failed.
@@ -343,7 +344,7 @@ def fly(args):
         sys.exit("mission: no answer for %d s: is the UAV on, in reach, and has it the same key?" %
                  args.patience)
     except (Ice.Exception, RuntimeError, OSError, subprocess.CalledProcessError) as e:
-        sys.exit("mission: %s" % e)
+        sys.exit("mission: %s" % reason_of(e))
     finally:
         communicator.destroy()
 

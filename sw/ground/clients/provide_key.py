@@ -18,6 +18,8 @@ import termios
 import time
 import tty
 
+from reasons import reason_of
+
 # numbers from Linux' ioctl_tty(2); termios of Python 3.11 lacks both
 TIOCSBRK, TIOCCBRK = 0x5427, 0x5428
 GROUP = 0xFFFF  # address that key files use for the group key
@@ -172,7 +174,7 @@ def main():
                "has this key, and no other"))
         return 0
     except (Failed, OSError, termios.error) as e:
-        sys.exit("provide_key: %s" % e)
+        sys.exit("provide_key: %s" % reason_of(e))
     except KeyboardInterrupt:
         return 130
 

@@ -20,6 +20,7 @@ import lz4.block
 import places
 import plugged
 from mission_log import Air
+from reasons import reason_of
 
 HEADER = places.record_of("sw/update/slots_header.toml")
 MAGIC, KEYS = HEADER.constants["SLOTS_MAGIC"], HEADER.constants["SLOTS_KEYS"]
@@ -301,7 +302,7 @@ def main():
     except Ice.UserException as e:
         sys.exit("update: %s" % (IN_FLIGHT if e.ice_id() == "::Update::InFlight" else e))
     except (Failed, Ice.Exception, OSError) as e:
-        sys.exit("update: %s" % e)
+        sys.exit("update: %s" % reason_of(e))
     finally:
         if communicator:
             communicator.destroy()

@@ -49,6 +49,9 @@ def find(name, file=None):
         return ":" + vehicles[name], properties
     if name and properties.get("Ice.Default.Locator"):
         return "@" + name, properties
+    if not name and vehicles:
+        raise Unknown("vehicle: expected a name, as %s lists several: %s" %
+                      (path, ", ".join(sorted(vehicles))))
     raise Unknown("vehicle '%s': expected one of %s; or add a line Vehicle.%s=... to %s" %
                   (name, ", ".join(sorted(vehicles)) or "none", name or "NAME", path))
 

@@ -11,6 +11,7 @@ import sys
 import time
 
 import Ice
+from reasons import reason_of
 
 from icesoc import TREE
 from icesoc.call.mapping import Mapping, escaped
@@ -203,12 +204,3 @@ def properties_in(file):
     found = Ice.createProperties()
     found.load(file)
     return found.getPropertiesForPrefix("")
-
-
-def reason_of(error):
-    """Returns a short text that describes an exception of Ice."""
-    for field in ("unknown", "reason"):
-        if getattr(error, field, ""):
-            return getattr(error, field).strip().rpartition("\n")[2]
-    number = getattr(error, "error", 0)
-    return os.strerror(number) if number else error.ice_id().rpartition(":")[2]

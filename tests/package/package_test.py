@@ -283,6 +283,10 @@ cc -std=c90 -ffunction-sections -fdata-sections -o by_pkg_config -Imade \\
             print(name, path.stat().st_size, "bytes")
         self.ask("dpkg-deb", "--info", found["icesoc-ground"])
         self.has("Depends: .*python3-zeroc-ice", "libzeroc-ice3.7", "postinst")
+        # Packages of two versions are refused, because each needs the others of its version.
+        self.has(r"Depends: icesoc-slice2c \(= [0-9.]+-1~deb[0-9]+\)")
+        self.ask("dpkg-deb", "--info", found["icesoc-sim"])
+        self.has(r"Depends: icesoc-ground \(= [0-9.]+-1~deb[0-9]+\)")
         self.ask("dpkg-deb", "--info", found["icesoc-hdl"])
         self.has("Architecture: all")
         self.ask("dpkg-deb", "--contents", found["icesoc-ground"])

@@ -136,11 +136,9 @@ void Link_shareRadio(Link* link, Link* with);
 
 /* Returns the modem's RN for the current traffic: the smallest exponent of the random wait before
  * its first try.
- * - 0 for a lone sender: it need not wait. 1 if the modem encrypts: a packet then takes 16 ms
- *   instead of 10, and without a random wait an interferer of a fixed period that hits one packet
- *   hits the next ones too.
- * - LINK_WAIT_BOTH for two streams, which would begin together otherwise; unless many packets are
- *   lost without failed tries, which shows that the two seldom begin together.
+ * - 0 for a lone sender: it need not wait.
+ * - LINK_WAIT_SHARED for two streams, which would begin together otherwise. If many packets are
+ *   lost without failed tries, the two seldom begin together: then 0, unless the modem encrypts.
  * - LINK_WAIT_SHARED for a stream during which the peer calls, so that calls get through; and for a
  *   side that sends little while packets are lost, so that an interferer does not meet all of them.
  * `transmit` may call it. */

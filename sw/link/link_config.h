@@ -131,7 +131,6 @@
  * 5,000). A stream begins with at least the first number of bytes in a span, and ends with fewer
  * than the second number. A loss has an effect for a limited time. */
 #define LINK_WAIT_SHARED 2U /* RN that the modem has after set-up */
-#define LINK_WAIT_BOTH 3U   /* two streams */
 /* share of packets lost without retries above which such losses count as frequent; 65,536 means all
  * packets */
 #define LINK_QUICK_MANY 12288U

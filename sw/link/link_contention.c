@@ -61,8 +61,8 @@ U32 link_chooseWait(Link_Contention* c, U32 now, const Link_Statistics* counts, 
     if (now - c->lostAt >= LINK_LOSS_COUNTS)
         c->hasLost = 0;
     if (c->own.isStream && c->peers.isStream)
-        return c->quick <= LINK_QUICK_MANY ? LINK_WAIT_BOTH : isSlow ? LINK_WAIT_SHARED : 0U;
+        return c->quick > LINK_QUICK_MANY && !isSlow ? 0U : LINK_WAIT_SHARED;
     if (c->peers.isStream || c->isCalled || (c->hasLost && !c->own.isStream))
         return LINK_WAIT_SHARED;
-    return isSlow;
+    return 0;
 }

@@ -91,7 +91,9 @@ std::string readSecret(const std::string& path) {
 
 KeyFile::KeyFile(const std::string& path) : path_(path) {
     std::string text = readSecret(path), line;
-    std::istringstream lines(text);
+    const std::string mark = "\xEF\xBB\xBF"; // byte order mark that some editors write
+    std::istringstream lines(text.compare(0, mark.size(), mark) == 0 ? text.substr(mark.size())
+                                                                     : text);
     for (int number = 1; std::getline(lines, line); ++number) {
         std::istringstream words(line.substr(0, line.find('#')));
         std::vector<std::string> word;

@@ -8,11 +8,17 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <memory>
 #include <stdexcept>
 
+// stb_image accepts a GIF file that is cut, and any bytes as a TGA file.
+#define STBI_ONLY_JPEG
+#define STBI_ONLY_PNG
+#define STBI_ONLY_PNM
 #define STB_IMAGE_IMPLEMENTATION
 #include <stb/stb_image.h>
 
@@ -64,6 +70,8 @@ int orientationOf(const Bytes& file) {
     if (in.number(0, 2) != 0xFFD8)
         return 1;
     for (size_t at = 2; at + 4 <= file.size(); at += 2 + in.number(at + 2, 2)) {
+        while (in.number(at, 2) == 0xFFFF) // bytes 0xFF may fill the space before a marker
+            ++at;
         const size_t marker = in.number(at, 2);
         if (marker < 0xFF00 || marker == imageData)
             break;
@@ -99,7 +107,7 @@ PnmHeader pnmHeader(const Bytes& file) {
         return number;
     };
     const size_t width = next(), height = next();
-    header.white = std::clamp<size_t>(next(), 1, 65535);
+    header.white = next();
     header.end = std::min(at + 1, file.size());
     header.bytes = width * height * (file[1] == '6' ? 3 : 1) * (header.white > 255 ? 2 : 1);
     return header;
@@ -141,14 +149,40 @@ Picture turned(const Picture& from, int orientation) {
     return to;
 }
 
+// Returns the type of a file by its first bytes.
+std::string typeOf(const Bytes& file) {
+    const auto begins = [&](const char* with) {
+        return file.size() >= 4 && std::equal(with, with + std::strlen(with), file.begin(),
+                                              [](char a, uint8_t b) { return uint8_t(a) == b; });
+    };
+    return begins("\xFF\xD8") ? "JPEG" : begins("\x89PNG") ? "PNG" : begins("P5") ? "PGM" : "";
+}
+
+// Returns the message for a file that stb_image rejects.
+std::string rejected(const std::string& path, const Bytes& file, const char* reason) {
+    const std::string type = typeOf(file);
+    if (type.empty())
+        return "'" + path + "': expected a PNG, JPEG or PGM file";
+    // stb_image tries PNG last, so that its reason is about PNG.
+    const std::string why = type != "PNG" ? "" : reason && *reason ? reason : "no end";
+    return "'" + path + "': the " + type + " file is damaged, cut or of an unusual kind" +
+           (why.empty() ? "" : " (" + why + ")") + ": save it again as PNG";
+}
+
 } // namespace
 
 Picture readPicture(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
+    if (std::filesystem::is_directory(path))
+        throw std::runtime_error("cannot read picture '" + path + "': it is a folder");
     Bytes file((std::istreambuf_iterator<char>(in)), {});
     if (!in.is_open() || in.bad() || file.empty())
         throw std::runtime_error("cannot read picture '" + path + "'");
     PnmHeader header = pnmHeader(file);
+    if (header.white == 0 || header.white > 65535)
+        throw std::runtime_error("picture '" + path +
+                                 "': expected a largest sample value of 1 to 65535, got " +
+                                 std::to_string(header.white));
     if (header.bytes > file.size() - header.end) // stb_image would accept a file that is too short
         throw std::runtime_error("picture '" + path + "' is cut: expected " +
                                  std::to_string(header.bytes) + " bytes of samples, got " +
@@ -164,9 +198,7 @@ Picture readPicture(const std::string& path) {
                               &picture.height, &channels, 1),
         stbi_image_free);
     if (!grey || picture.width == 0 || picture.height == 0)
-        throw std::runtime_error("'" + path + "' is not a picture that can be read (" +
-                                 (grey ? "no pixels" : stbi_failure_reason()) +
-                                 "): give a PNG, JPEG or PGM file");
+        throw std::runtime_error(rejected(path, file, grey ? "no pixels" : stbi_failure_reason()));
     const size_t count = static_cast<size_t>(picture.width) * picture.height;
     for (size_t i = 0; i < count; ++i)
         picture.grey.push_back(static_cast<uint8_t>(std::min<size_t>(

@@ -93,6 +93,31 @@ class Values(Work):
                 self.assertEqual(getattr(given, o.field), getattr(made, o.field),
                                  f"{each.name} {o.name}")
 
+    def test_a_certificate_has_the_name_of_its_file(self):
+        for name, status in (("Jos\u00e9", 0), ("\u00fc" * 64, 0), ("a" * 65, 2), ("k\udcff", 2)):
+            file = self.work / f"{name}.pem"
+            found, text = ask("./icesoc", "key", "--certificate", str(file))
+            self.assertEqual(found, status, text)
+            if status:
+                self.assertIn("expected at most 64 characters in UTF-8 before the suffix", text)
+            else:
+                subject = subprocess.run(
+                    ["openssl", "x509", "-in", file, "-noout", "-subject", "-nameopt",
+                     "utf8,-esc_msb"], capture_output=True, text=True, check=True).stdout
+                self.assertEqual(subject, f"subject=CN={name}\n")
+
+    def test_a_folder_that_was_removed_is_named_as_the_cause(self):
+        place = self.work / "gone"
+        place.mkdir()
+        text = subprocess.run(["sh", "-c", f"rmdir '{place}' && '{TREE}/icesoc' board list"],
+                              cwd=place, capture_output=True, text=True, check=False).stderr
+        self.assertIn("the current folder does not exist any more", text)
+
+    def test_a_missing_flight_in_the_default_folder_is_refused(self):
+        status, text = ask("./icesoc", "replay", ICESOC_TREE=str(self.work / "tree"))
+        self.assertEqual(status, 2)
+        self.assertIn("contains no recorded flight", text)
+
     def test_keys_and_lists_of_keys_are_made_at_both_doors(self):
         for name in ("tree/build/main/sw/update", "files"):
             (self.work / name).mkdir(parents=True)
@@ -153,6 +178,10 @@ MISTAKES = {
     "./icesoc run --jobs 0": "--jobs: expected a whole number, at least 1, got '0'",
     "./icesoc run fir": "run takes no 'fir'",
     "./icesoc run --seed": "expected one argument",
+    "./icesoc run --seed \u0663": "--seed: expected a whole number, at least 0, got '\u0663'",
+    "./icesoc run --size \u0669\u0666x64": "--size: expected WIDTHxHEIGHT",
+    "./icesoc contract from-rdl Makefile": "expected a SystemRDL file and an output folder",
+    "./icesoc key /none/my.key": "folder '/none' not found; create it first",
     "./icesoc core test": "expected the name of a core",
     "./icesoc replay nowhere": "contains no recorded flight",
     "./icesoc run --replay nowhere": "contains no recorded flight",
@@ -171,6 +200,7 @@ MISTAKES = {
     "./icesoc nightly --steps nothing --built": "unknown step 'nothing': expected one of kept, ran",
     "make -s rnu": "unknown target 'make rnu'; did you mean run?",
     "make -s run LOS=1": "make run has no variable LOS; did you mean LOSS?",
+    "make -s run loss=1": "make run has no variable loss; did you mean LOSS?",
     "make -s run DRAW=3": "it is one of make mutants",
     "make -s run CAMERA=yes": "CAMERA: expected 1 or 0, got 'yes'",
     "make -s run SIZE=96x65k": "SIZE: expected WIDTHxHEIGHT",

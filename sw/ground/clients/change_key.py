@@ -29,7 +29,8 @@ def write(path, lines):
     temporary = path + ".new"
     with contextlib.suppress(FileNotFoundError):
         os.remove(temporary)
-    with open(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as f:
+    with open(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w",
+              encoding="utf-8", errors="surrogateescape", newline="") as f:
         if os.geteuid() == 0:  # a file that belongs to the gateway's user keeps its owner
             owner = os.stat(path)
             os.chown(f.fileno(), owner.st_uid, owner.st_gid)
@@ -37,6 +38,13 @@ def write(path, lines):
         f.flush()
         os.fsync(f.fileno())
     return temporary
+
+
+def lines_of(path):
+    """Returns the lines of a key file. Only a line feed ends a line, as in read_key, and bytes that
+    are not UTF-8 are kept."""
+    with open(path, encoding="utf-8-sig", errors="surrogateescape", newline="") as f:
+        return f.read().removesuffix("\n").split("\n")
 
 
 def keys_of(lines, address):
@@ -91,8 +99,7 @@ def change(args):
 
 def change_alone(args):
     provide_key.read_key(args.key, args.address)  # reports malformed lines
-    with open(args.key) as f:
-        lines = f.read().splitlines()
+    lines = lines_of(args.key)
     number, keys = keys_of(lines, args.address)
     if len(keys) == 1:
         keys.append(secrets.token_hex(16))

@@ -58,7 +58,7 @@ def open_secret(path):
         if stat.S_ISFIFO(found.st_mode) and not select.select([fd], [], [], PIPE_WAIT)[0]:
             raise Failed("'%s' is a pipe that nothing is written to" % path)
         os.set_blocking(fd, True)
-        return open(fd, errors="replace")
+        return open(fd, encoding="utf-8-sig", errors="replace", newline="\n")
     except BaseException:
         os.close(fd)
         raise

@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iostream>
@@ -40,6 +41,17 @@ bool isUnchecked = false;
     throw std::runtime_error(text);
 }
 
+// Throws if an output file is also an input: a private key would be overwritten.
+void checkOutput(const std::string& output, const std::vector<std::string>& inputs) {
+    namespace fs = std::filesystem;
+    for (const std::string& input : inputs) {
+        std::error_code none; // a missing file is not equivalent
+        if (fs::absolute(input).lexically_normal() == fs::absolute(output).lexically_normal() ||
+            fs::equivalent(input, output, none))
+            fail("'" + output + "': expected an output file that is not also an input");
+    }
+}
+
 void save(const std::string& path, const Bytes& bytes) {
     std::ofstream out(path, std::ios::binary);
     out.write(reinterpret_cast<const char*>(bytes.data()),
@@ -56,7 +68,7 @@ bool readSeed(const std::string& path, Bytes& seed) {
         return false;
     if (in < 0)
         fail("cannot read the private key '" + path + "': " + std::strerror(errno));
-    struct stat found{};
+    struct stat found {};
     const bool isFile = fstat(in, &found) == 0 && S_ISREG(found.st_mode);
     const bool isWhole = isFile && found.st_size == off_t(seed.size()) &&
                          read(in, seed.data(), seed.size()) == ssize_t(seed.size());
@@ -101,6 +113,8 @@ struct Keys {
 
 Bytes readPublic(const std::string& path) {
     Bytes key(crypto_sign_PUBLICKEYBYTES);
+    if (std::filesystem::exists(path) && !std::filesystem::is_regular_file(path))
+        fail("the public key '" + path + "' is not a regular file");
     std::ifstream in(path);
     std::string digits;
     size_t size = 0;
@@ -371,7 +385,13 @@ int main(int argc, char** argv) {
                          const std::function<void()>& run) {
         CLI::App* command = app.add_subcommand(name, what)->fallthrough();
         command->add_option("words", word, names)->required()->expected(least, most);
-        command->callback(run);
+        command->callback([&, run] {
+            std::vector<std::string> inputs(word.begin(), word.end() - 1);
+            if (!second.empty())
+                inputs.push_back(second);
+            checkOutput(word.back(), inputs);
+            run();
+        });
     };
     const auto number = [&](const char* name, uint32_t& to, const char* what) {
         app.add_option_function<std::string>(

@@ -268,6 +268,8 @@ refused "slot=64: expected 2 to 63" 'led slot=64\n'
 refused "slot=x" 'led slot=x\n'
 refused "'modem' is a name of the platform;" 'led name=modem\n'
 refused "name=Led: expected small letters" 'led name=Led\n'
+refused "2: error: the identity 'update' is an object of the platform" \
+    'led\nadder identity=update\n'
 refused "identity 'a' is taken" 'led identity=a\nadder identity=a\n'
 refused "'slot' is given twice" 'led slot=3 slot=4\n'
 refused "'as': expected name=, identity=" 'led as\n'

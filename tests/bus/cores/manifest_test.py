@@ -5,7 +5,8 @@ import unittest
 from pathlib import Path
 
 from icesoc import TREE
-from icesoc.chip import manifest
+from icesoc.call import objects
+from icesoc.chip import coremap, manifest
 from icesoc.regs.model import Wrong
 
 
@@ -54,6 +55,19 @@ class Manifest(unittest.TestCase):
 
     def test_a_missing_file_is_named(self):
         self.refused("verilog: no file lump.v", 'interface = "lamp.ice"\nverilog = ["lump.v"]\n')
+
+    def test_a_name_is_no_reserved_word(self):
+        for name in ("signal", "module", "logic", "test"):
+            self.refused(f"name: '{name}' is a reserved word",
+                         f'name = "{name}"\ninterface = "lamp.ice"\nverilog = ["lamp.v"]\n')
+
+    def test_a_core_has_files_and_each_once(self):
+        self.refused("expected 'verilog' or 'vhdl'", 'interface = "lamp.ice"\nverilog = []\n')
+        self.refused("verilog: lamp.v is listed twice",
+                     'interface = "lamp.ice"\nverilog = ["lamp.v", "lamp.v"]\n')
+
+    def test_the_objects_of_the_platform_are_those_that_can_be_called(self):
+        self.assertEqual(coremap.PLATFORM_OBJECTS, set(objects.VEHICLE))
 
     def test_a_core_has_one_interface(self):
         self.refused("expected one of 'interface'", 'verilog = ["lamp.v"]\n')

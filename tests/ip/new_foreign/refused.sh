@@ -68,6 +68,11 @@ refused 'a strobe of one clock needs an ack' req_words own strobe=req write=wr w
     rdata=held clock=clock cores.v
 refused "FILES lacks the file with module 'inner'" outer wishbone outer.v
 refused "PARAMS: axil_words has no 'WIDTH'" axil_words axil PARAM:WIDTH=8 axil_words.v
+refused 'PARAMS: WIDTH is given twice' axil_words axil PARAM:WIDTH=8 PARAM:WIDTH=16 axil_words.v
+for odd in '' 1X a-b; do
+    refused "PARAMS: expected a name, got '$odd'" axil_words axil "PARAM:$odd=8" axil_words.v
+    refused "DEFINES: expected a name, got '$odd'" axil_words axil "DEFINE:$odd" axil_words.v
+done
 refused "'my_wide' of .* has 64 bits" wide own select=clk_en write=we address=a wdata=my_wide \
     rdata=q wide.v
 echo 'module broad(input clk, we, input [31:0] d, output [31:0] q, output [127:0] pads,
@@ -127,6 +132,14 @@ grep -q 'interrupt = !interrupt_0;' asked/my_port.v
 # Many pins that are not needed.
 new my_port asked own spared write=we wdata=d rdata=q 'open=*' pin=point asked.v >log
 prints 'irq_no: interruptn$' 'rx_events: open$' 'point: pin point_o$'
+# A file that is listed twice is taken once; a real number may have an exponent.
+echo 'module gain #(parameter real G = 1.0) (input clk, we, input [31:0] d, output [31:0] q);
+    assign q = G > 100.0 ? d : 0;
+endmodule' >gain.v
+new my_port gain own gain write=we wdata=d rdata=q PARAM:G=2.5e3 gain.v "$PWD/./gain.v" >log
+grep -q 'gain #(.G(2.5e3)) u_core' gain/my_port.v &&
+    [ "$(grep -c 'gain\.v"' gain/core.toml)" = 1 ] ||
+    { cat log gain/core.toml gain/my_port.v && exit 1; }
 # The level of a reset by OpenCores' parameter, whatever other signal uses the name.
 echo 'module level #(parameter ARST_LVL = 0) (input clk, arst_i, we, input [31:0] d,
         output reg [31:0] q);

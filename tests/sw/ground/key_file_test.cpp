@@ -46,6 +46,10 @@ TEST_F(KeyFiles, OneKeyServesEveryVehicle) {
     }
 }
 
+TEST_F(KeyFiles, AMarkAndLineEndsOfOtherEditorsAreIgnored) {
+    EXPECT_EQ(read("\xEF\xBB\xBF" + a + "\r\n").of(1)[0][1], 0x11);
+}
+
 TEST_F(KeyFiles, EachVehicleHasItsLineAndTheNextKeyComesFirst) {
     const KeyFile file = read("# fleet\n0x0001 " + a + "\n\n0xBEEF " + b + " " + a + " # soon\n");
     EXPECT_EQ(file.of(1).size(), 1u);

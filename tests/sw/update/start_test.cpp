@@ -204,7 +204,7 @@ TEST(PackUpdate, SaysWhatIsWrong) {
     refuses("image " FIRMWARE "uav.elf 0 key update", "expected 1 to 4294967294");
     refuses("image " FIRMWARE "loader.elf 2 key update", "--emit-relocs");
     EXPECT_EQ(folder.pack("image " FIRMWARE "uav.elf 2 key update"), 0);
-    struct stat key{};
+    struct stat key {};
     EXPECT_EQ(stat((folder.path + "/key").c_str(), &key), 0);
     EXPECT_EQ(key.st_mode & 0777, 0600u);
     ::chmod((folder.path + "/key").c_str(), 0644);
@@ -418,6 +418,22 @@ TEST_F(Packing, APrivateKeyIsAFileOfItsOwnersAlone) {
     refuses("bitstream whole 5 long", "expected 32 bytes, got 33");
     refuses("bitstream whole 5 open", "chmod 600");
     refuses("bitstream whole 5 dangling", "cannot write the private key");
+}
+
+TEST_F(Packing, AnOutputIsNotAnInput) {
+    folder.save("whole", whole);
+    ASSERT_EQ(folder.pack("public key open.pub"), 0) << folder.said();
+    const Bytes key = folder.read("key");
+    ASSERT_EQ(std::system(("cd " + folder.path + " && ln key other && mkfifo pipe").c_str()), 0);
+    for (const char* words : {"public key key", "public key ./key", "public key other",
+                              "bitstream whole 5 key key", "bitstream whole 5 key whole",
+                              "keys 2 key open.pub open.pub", "public new.key new.key"}) {
+        EXPECT_NE(folder.pack(words), 0) << words;
+        EXPECT_NE(folder.said().find("not also an input"), std::string::npos) << folder.said();
+    }
+    EXPECT_EQ(folder.read("key"), key);
+    EXPECT_EQ(folder.read("whole"), whole);
+    refuses("keys 2 key pipe", "not a regular file");
 }
 
 TEST_F(Packing, OfManyAtOnceAllHaveTheSameNewKey) {

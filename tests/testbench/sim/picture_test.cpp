@@ -46,6 +46,16 @@ protected:
     }
     Picture read(const std::string& file) { return read(Bytes(file.begin(), file.end())); }
 
+    // Returns the message for a file that is rejected.
+    std::string reasonFor(const std::string& file) {
+        try {
+            read(file);
+        } catch (const std::runtime_error& error) {
+            return error.what();
+        }
+        return "accepted";
+    }
+
     // Adds an EXIF block with an orientation, in either byte order.
     static Bytes oriented(int orientation, bool isLittle) {
         const auto number = [&](size_t value, int bytes) {
@@ -113,6 +123,27 @@ TEST_F(Pictures, TheMaximumOfAPnmFileIsWhite) {
     EXPECT_EQ(read(std::string("P5 2 1 255\n\x0A\xFF", 13)).grey, (Bytes{10, 255}));
     EXPECT_EQ(read(std::string("P5 2 1 1000\n\x01\xF4\x03\xE8", 16)).grey, (Bytes{128, 255}));
     EXPECT_EQ(read(std::string("P6 1 1 100\n\x64\x64\x64", 14)).grey, (Bytes{255}));
+}
+
+TEST_F(Pictures, AnOrientationAfterFillBytesCounts) {
+    Bytes filled = oriented(6, false);
+    filled.insert(filled.begin() + 2, 3, 0xFF);
+    EXPECT_EQ(read(filled).width, 16);
+}
+
+TEST_F(Pictures, OtherFormatsAndFoldersAreRejectedWithTheirNames) {
+    const std::string gif("GIF89a\2\0\2\0\x80\0\0\xFF\xFF\xFF\0\0\0,\0\0\0\0\2\0\2\0\0\2", 30),
+        targa("\0\0\2\0\0\0\0\0\0\0\0\0\2\0\2\0\x18\0\0\0\0\0\0\0\0\0\0\0\0\0", 30);
+    for (const std::string& file : {gif, targa, std::string("any text")})
+        EXPECT_EQ(reasonFor(file), "'" + path_ + "': expected a PNG, JPEG or PGM file");
+    EXPECT_NE(reasonFor("\xFF\xD8\xFF\xE1").find("the JPEG file is damaged"), std::string::npos);
+    EXPECT_NE(reasonFor("P5 1 1 0\n1").find("1 to 65535, got 0"), std::string::npos);
+    try {
+        readPicture("/");
+        ADD_FAILURE();
+    } catch (const std::runtime_error& error) {
+        EXPECT_STREQ(error.what(), "cannot read picture '/': it is a folder");
+    }
 }
 
 TEST_F(Pictures, AFileThatIsCutIsRejectedWithItsName) {

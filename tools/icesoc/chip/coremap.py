@@ -24,6 +24,8 @@ BUFFER_ALIGNMENT = 128  # size of the largest NPI burst, bytes
 # TIMEOUT of bus_crossing.
 LEAST_HZ = 3e6
 PROBE_BITS = 223
+# Identities of the firmware's other objects (sw/vehicle).
+PLATFORM_OBJECTS = {"chip", "fpga", "keys", "uav", "update"}
 
 
 @dataclass
@@ -152,6 +154,9 @@ class Chip:
                           "name=")
         core.check(known == line, f"'{core.name}' is already on line {known}; give one of the two "
                                   "another name by name=")
+        core.check(core.identity not in PLATFORM_OBJECTS,
+                   f"the identity '{core.identity}' is an object of the platform; give another one "
+                   "by identity=")
         core.check(core.identity not in self.identities,
                    f"the identity '{core.identity}' is taken")
         self.identities.add(core.identity)

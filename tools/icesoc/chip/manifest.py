@@ -14,6 +14,7 @@ from pathlib import Path
 
 from icesoc.regs.model import Block, Wrong, check
 from icesoc.util import schema
+from icesoc.util.reserved import REFUSAL, RESERVED
 
 SCHEMA = json.loads(Path(__file__).with_name("core.schema.json").read_text())
 HEADERS = ".vh", ".svh", ".inc", ".h"
@@ -80,7 +81,12 @@ def read(path):
           "(name of the folder)")
     holds(("interface" in facts) != ("registers" in facts),
           "expected one of 'interface' (a Slice file) and 'registers' (a file *.regs.json)")
-    holds("verilog" in facts or "vhdl" in facts, "expected 'verilog' or 'vhdl', a list of files")
+    holds(manifest.name not in RESERVED, f"name: '{manifest.name}' {REFUSAL}")
+    holds(facts.get("verilog") or facts.get("vhdl"),
+          "expected 'verilog' or 'vhdl', a list of files")
+    for key in FILE_LISTS:
+        twice = [file for file in facts.get(key, []) if facts[key].count(file) > 1]
+        holds(not twice, f"{key}: {twice and twice[0]} is listed twice")
     holds("servant" not in facts or "registers" in facts,
           "servant: expected no servant with 'interface', which generates it")
     for key in ("pins", "memory_bytes", "memory_port", "window"):

@@ -202,7 +202,8 @@ def by_make(goal, goals, makes):
         if name not in known:
             others = sorted({each.make for each in COMMANDS.values() if each.make
                              and name in (o.variable for o in each.options)})
-            where = f"; it is one of make {', '.join(others)}" if others else nearest(name, known)
+            where = (f"; it is one of make {', '.join(others)}" if others
+                     else nearest(name.upper(), known))
             raise Stop(f"make {' '.join(goals)} has no variable {name}{where} "
                        f"(./icesoc {of(goal)[0].name} --help lists them)", 2)
     chosen = sorted(of(goal), key=lambda each: not (each.when and os.environ.get(each.when)))

@@ -238,6 +238,7 @@ def take_observers_key(values):
 
 def make_key(path):
     """Creates a key that only its owner may read; returns False if it exists."""
+    keys.check_folder(path)
     temporary = f"{path}.{os.getpid()}"
     with open(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
         file.write(os.urandom(16).hex() + "\n")

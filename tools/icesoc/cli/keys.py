@@ -7,6 +7,7 @@ them."""
 import filecmp
 import hashlib
 import os
+import re
 import subprocess
 import tempfile
 from pathlib import Path
@@ -15,6 +16,8 @@ from icesoc.util.console import say
 from icesoc.util.errors import Stop
 from icesoc.util.lock import lock
 from icesoc.util.process import run
+
+MOST_NAME = 64  # longest name (CN) in a certificate, characters (RFC 5280, ub-common-name)
 
 
 def folder():
@@ -38,6 +41,12 @@ def rescue(built):
             say(f"{old} was moved to {new}: keys are kept outside the build folders")
 
 
+def check_folder(path):
+    """Fails unless the folder of a new file exists."""
+    if not Path(path).parent.is_dir():
+        raise Stop(f"folder '{Path(path).parent}' not found; create it first", 2)
+
+
 def make_certificate(path):
     """Creates a PEM file with a certificate (CN: the name of the file) and its private key (P-256),
     valid for ten years. Returns False if the file exists. The key of its authority is
@@ -46,8 +55,10 @@ def make_certificate(path):
     authority, signs = path.with_name("authority.pem"), path.with_name("authority.key")
     if os.path.lexists(path) or path == authority:
         return False
-    if not path.parent.is_dir():
-        raise Stop(f"folder '{path.parent}' not found; create it first", 2)
+    check_folder(path)
+    if len(path.stem) > MOST_NAME or re.search("[\ud800-\udfff]", path.stem):
+        raise Stop(f"{path.name!a}: expected at most {MOST_NAME} characters in UTF-8 before the "
+                   f"suffix, got {len(path.stem)}; they are the name in the certificate", 2)
     before = os.umask(0o077)
     try:
         with lock(path.parent), tempfile.TemporaryDirectory(dir=path.parent) as work:
@@ -87,7 +98,7 @@ def sign(name, cert, key, constraint, *by):
     settings = cert.with_name("openssl.cnf")  # the settings of the machine would allow every
                                               # certificate to sign others
     settings.write_text("[req]\ndistinguished_name = name\n[name]\n")
-    run(["openssl", "req", "-x509", "-config", settings, "-newkey", "ec", "-pkeyopt",
+    run(["openssl", "req", "-x509", "-utf8", "-config", settings, "-newkey", "ec", "-pkeyopt",
          "ec_paramgen_curve:P-256", "-nodes", "-days", "3650", "-subj", f"/CN={name}", "-addext",
          f"basicConstraints=critical,{constraint}", "-keyout", key, "-out", cert, *by],
         stderr=subprocess.DEVNULL)

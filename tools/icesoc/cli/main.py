@@ -19,8 +19,11 @@ from icesoc.util.process import hear_signals
 def surroundings():
     """Sets the environment for all programs, and changes to the folder of the tree. Returns the
     caller's folder."""
-    place, tree = os.getcwd(), os.environ.pop("ICESOC_TREE", "")  # ICESOC_TREE: a tree that a test
-                                                                  # uses instead
+    try:
+        place = os.getcwd()
+    except FileNotFoundError:
+        raise Stop("the current folder does not exist any more: cd to another one", 2) from None
+    tree = os.environ.pop("ICESOC_TREE", "")  # ICESOC_TREE: a tree that a test uses instead
     os.chdir(tree or TREE)
     place = os.getcwd() if tree else place
     # ccache and icesoc.util.fetch store files in HOME, which a timer or a container may not set.

@@ -99,7 +99,7 @@ class Option:
 
 def matching(pattern, expected, convert=str, schema=None, metavar="VALUE"):
     def read(text):
-        if not re.fullmatch(pattern, text):
+        if not re.fullmatch(pattern, text, re.A):
             raise ValueError
         return convert(text)
 
@@ -113,7 +113,7 @@ def number(low, high=None, unit="", convert=int):
     pattern = r"\d{1,18}" if convert is int else r"\d+(\.\d*)?|\.\d+"
 
     def read(text):
-        value = convert(text) if re.fullmatch(pattern, text) else None
+        value = convert(text) if re.fullmatch(pattern, text, re.A) else None
         if value is None or value < low or (high is not None and value > high):
             raise ValueError
         return value
@@ -167,7 +167,8 @@ def _flight(text):
 
 
 def _frame(text):
-    wide, high = map(int, text.split("x")) if re.fullmatch(r"\d{1,5}x\d{1,5}", text) else (0, 0)
+    wide, high = map(int, text.split("x")) if re.fullmatch(r"[0-9]{1,5}x[0-9]{1,5}",
+                                                                text) else (0, 0)
     if not (8 <= wide <= 1024 and 8 <= high <= 4096 and wide % 8 == 0):
         raise ValueError
     return text

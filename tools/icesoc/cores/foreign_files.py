@@ -60,7 +60,8 @@ def verilog_params(params):
             value = f"{max(32, 4 * len(m[1].replace('_', '')))}'h{m[1]}"
         elif re.fullmatch(r"[A-Za-z_][\w .-]*", value):
             value = f'"{value}"'
-        elif not re.fullmatch(r"[-+]?\d[\d_]*(\.\d+)?|\d*'[sS]?[bodhBODH][0-9a-fA-FxXzZ_?]+"
+        elif not re.fullmatch(r"[-+]?\d[\d_]*(\.\d+)?([eE][-+]?\d+)?"
+                              r"|\d*'[sS]?[bodhBODH][0-9a-fA-FxXzZ_?]+"
                               r'|"[^"\\\n]*"', value):
             fail(f"PARAMS: {name}: expected a number such as -3, 8'hFF or 0xFF, or a text, got "
                  f"'{value}'")

@@ -46,6 +46,16 @@ ASKED = re.compile("irq|(?<!po)(?<!pr)(?<!h)int(r|errupt)?s?(_?n)?(_?o)?$|(^|_)i
                    "alarm|attention", re.I)
 
 
+def check_pairs(option, pairs):
+    """Ends the program if a parameter or macro has no valid name, or occurs twice."""
+    names = [pair.partition("=")[0] for pair in pairs]
+    for name in names:
+        if not re.fullmatch(r"[A-Za-z_]\w*", name, re.A):
+            fail(f"{option}: expected a name, got '{name}'")
+        if names.count(name) > 1:
+            fail(f"{option}: {name} is given twice")
+
+
 class Request:
     """Arguments of the command line."""
 
@@ -63,6 +73,8 @@ class Request:
             else:
                 (self.ports if "=" in word else self.files).append(word)
         self.params, self.defines = options["PARAM:"], options["DEFINE:"]
+        check_pairs("PARAMS", self.params)
+        check_pairs("DEFINES", self.defines)
         self.library = next((o for o in options["LIBRARY="] if "=" not in o), "")
         self.members = [o.split("=", 1) for o in options["LIBRARY="] if "=" in o]
         self.clock, self.address, self.ghdl = (
@@ -92,7 +104,7 @@ class Request:
 
     def take_files(self):
         """Splits the files into sources and headers."""
-        files = [os.path.abspath(f) for f in self.files]
+        files = list(dict.fromkeys(os.path.abspath(f) for f in self.files))
         for f in files:
             if " " in f:
                 fail(f"'{f}': expected a path without spaces, because makefiles cannot have them; "

@@ -217,6 +217,10 @@ def replay(values):
     waveform of that part to OUT/wave.fst; the first time, this builds a simulator with waveforms.
     For a flight with --cpu m3, the waveform also shows task, interrupt and function.
     """
+    try:
+        FLIGHT.read(values.replay)  # the default folder is not checked before
+    except ValueError as error:
+        raise Stop(str(error), 2) from None
     span = values.given & {"from", "to"}
     if span and values.to is not None and values.to <= (getattr(values, "from") or 0):
         raise Stop(f"FROM={getattr(values, 'from')} TO={values.to}: expected FROM before TO, in "

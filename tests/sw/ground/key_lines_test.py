@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: MIT
+"""key_lines_test: change_key.py keeps the other lines of a key file, whatever bytes are in their
+comments; provide_key.py reads a file with a byte order mark."""
+import argparse
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import change_key
+import provide_key
+
+OLD, OTHER = "00112233445566778899aabbccddeeff", "ff" * 16
+
+
+class KeyLines(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.path = Path(folder.name, "fleet.key")
+
+    def write(self, content):
+        self.path.write_bytes(content)
+        self.path.chmod(0o600)
+
+    def change(self):
+        """Changes the key of vehicle 1; a function takes the place of the vehicle."""
+        with mock.patch.object(change_key, "talk", return_value=1), mock.patch("builtins.print"):
+            change_key.change(argparse.Namespace(key=str(self.path), address=1))
+        return self.path.read_bytes()
+
+    def test_other_lines_are_kept(self):
+        for comment in (b"# Jos\xe9", b"# form\x0cfeed", "# next\x85line \u2028 end".encode(),
+                        b"# carriage\rreturn", b""):
+            self.write(b"%s\n0x0001 %s\n0x0002 %s # two\n" % (comment, OLD.encode(),
+                                                             OTHER.encode()))
+            lines = self.change().split(b"\n")
+            self.assertEqual((lines[0], lines[2:]),
+                             (comment, [b"0x0002 %s # two" % OTHER.encode(), b""]))
+            self.assertNotEqual(provide_key.read_key(self.path, 1), OLD)
+            self.assertEqual(provide_key.read_key(self.path, 2), OTHER)
+
+    def test_a_byte_order_mark_is_ignored(self):
+        self.write(b"\xef\xbb\xbf" + OLD.encode() + b"\r\n")
+        self.assertEqual(provide_key.read_key(self.path, 7), OLD)
+        self.change()
+        self.assertEqual(provide_key.read_key(self.path, 7), OLD)
+        self.assertNotEqual(provide_key.read_key(self.path, 1), OLD)
+
+
+if __name__ == "__main__":
+    unittest.main()

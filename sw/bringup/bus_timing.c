@@ -39,7 +39,8 @@ static U16 pattern(U32 i) {
     return (U16)(i & 1U ? ~(0x0101UL * i) : 0x0101UL * i);
 }
 
-/* Reads a block that the chip has fetched, and returns the bits that were wrong. */
+/* Makes the chip fetch a block from the memory, reads the block with this timing, and returns the
+ * bits that were wrong in any of the reads. */
 static U32 readErrors(U32 addset, U32 datast) {
     static const Bus_Timing patient = {15, 60, 0, 0};
     Bus_Timing fast;

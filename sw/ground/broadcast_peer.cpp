@@ -25,9 +25,10 @@ bool BroadcastPeer::send(int channel, U32 now) {
     else if (program.kind() == ProgramConnection::Kind::Goodbye)
         end(channel, 1, "has ended");
     else if (program.kind() != ProgramConnection::Kind::Oneway)
-        end(channel, 0, "sent a batch, and one call at a time goes to all vehicles");
+        end(channel, 0, "sent a batch; calls to all vehicles must be sent one at a time");
     else if (!broadcast_.take(program.data(), program.size(), now))
-        end(channel, 0, "calls all vehicles, and the clock of this machine is not set");
+        end(channel, 0,
+            "calls all vehicles, but the clock of this machine is not set (it numbers such calls)");
     else {
         ++calls_;
         program.taken(now);

@@ -46,8 +46,8 @@ std::shared_ptr<Peer> Engine::get(const Settings& settings, const Log& log) {
     else if (engines.size() == 1)
         engine = engines.begin()->second.lock();
     if (!engine && settings.device.empty())
-        refuse(ENODEV, "xbee-at endpoint without -d, XBeeAT.Device not set, and not exactly "
-                       "one device in use");
+        refuse(ENODEV, "no serial port: expected option -d of the xbee-at endpoint, or property "
+                       "XBeeAT.Device, unless exactly one port is in use");
     if (!engine) {
         engine.reset(new Engine(settings, log));
         engines[settings.device] = engine;
@@ -62,8 +62,8 @@ Peer& Engine::peer(const Settings& wanted) {
     // unencrypted because of an earlier program.
     if (peer && peer->keys() != wanted.keys)
         refuse(EBUSY, "'" + device +
-                          "' is in use with other keys: all who share a vehicle give the same key "
-                          "file");
+                          "' is in use with other keys: programs that share a vehicle must use the "
+                          "same key file");
     if (failed_ && !wanted.device.empty())
         settings = wanted;
     if (peer)
@@ -71,7 +71,7 @@ Peer& Engine::peer(const Settings& wanted) {
     if (peers_.size() > mostPeers) {
         peers_.erase(wanted.target);
         refuse(EBUSY, "'" + device + "' has " + std::to_string(mostPeers) +
-                          " vehicles already, as many as a modem serves");
+                          " vehicles already, which is the limit of a modem");
     }
     Host& host = *this;
     if (wanted.target == everybody)
@@ -153,14 +153,15 @@ std::string Engine::prepareModem(const Settings& wanted) {
     if (!wanted.setUp) {
         serial_.setSpeed(wanted.baud);
     } else if (!setup.run()) {
-        return setup.trouble().empty() ? "the port '" + device + "' is lost" : setup.trouble();
+        return setup.trouble().empty() ? "serial port '" + device + "' was closed during the set-up"
+                                       : setup.trouble();
     }
     std::lock_guard<std::mutex> lock(mutex);
     longest_ = setup.encrypts() ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME;
     packets_.start(setup.isApi(), setup.escapes(), wanted.target);
     log(1, "modem ready on " + device + " after " + std::to_string((clock.nowUs() - begin) / 1000) +
                " ms" + (setup.isApi() ? ", in API mode" : "") +
-               (setup.encrypts() ? ", it encrypts" : ""));
+               (setup.encrypts() ? ", with encryption" : ""));
     return "";
 }
 
@@ -224,7 +225,7 @@ void Engine::fly(std::unique_lock<std::mutex>& lock) {
         if (stop_)
             return;
         if (!trouble.empty() && first)
-            return fail(trouble + "; the next connection tries again");
+            return fail(trouble + "; the next connection will try again");
         if (!trouble.empty())
             log(0, trouble);
         failed_ = complained_ = false;
@@ -235,9 +236,9 @@ void Engine::fly(std::unique_lock<std::mutex>& lock) {
         if (stop_ || failed_)
             return;
         log(0, "no link for " + std::to_string((clock.nowUs() - upAt_) / 1000000) +
-                   " s: is the UAV on, in reach, and " +
-                   (wanted.keys.empty() ? "without a key as this side is" : "has it this key") +
-                   "? Setting the modem up again");
+                   " s: check that the UAV is on, in range, and " +
+                   (wanted.keys.empty() ? "has no key, like this side" : "has the same key") +
+                   ". Configuring the modem again");
         downLimitUs_ = std::min(downLimitUs_ * 2, 4 * down);
     }
 }
@@ -286,7 +287,8 @@ U32 Engine::pollPeers(U32 now) {
     U32 wait = 0xFFFFFFFFu;
     for (Peer* peer : order) {
         if (!packets_.reaches(*peer, peer->hasLink()) && peer->isWanted()) {
-            log(0, "the modem on '" + device + "' has no API mode: it talks to one vehicle only");
+            log(0,
+                "the modem on '" + device + "' has no API mode, so it can reach only one vehicle");
             peer->fail();
         }
         wait = std::min(wait, peer->poll(now));

@@ -30,14 +30,14 @@ const char* const hexadecimal = "0123456789abcdefABCDEF";
 
 void checkOwner(const std::string& path, const struct stat& file) {
     if (!S_ISREG(file.st_mode) && !S_ISFIFO(file.st_mode))
-        refuse(path, " is neither a file nor a pipe");
+        refuse(path, ": expected a file or a pipe");
     if (file.st_uid != geteuid() && file.st_uid != 0)
-        refuse(path, " belongs to another user: chown it to the one who flies");
+        refuse(path, " belongs to another user: chown it to the user who runs this program");
     if (file.st_mode & 077) {
         char mode[8];
         std::snprintf(mode, sizeof mode, "%04o", file.st_mode & 07777);
-        refuse(path, std::string(" is open to others (mode ") + mode + "): chmod 600 '" + path +
-                         "', and change the key if anybody may have read it");
+        refuse(path, std::string(" can be read by other users (mode ") + mode + "): chmod 600 '" +
+                         path + "', and change the key if another user may have read it");
     }
 }
 
@@ -66,7 +66,7 @@ std::string readSecret(const std::string& path) {
     const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (fd < 0)
         refuse(path, std::string(": ") + std::strerror(errno) +
-                         "; (umask 077; openssl rand -hex 16 >FILE) makes one");
+                         "; to make a key: (umask 077; openssl rand -hex 16 >FILE)");
     std::unique_ptr<const int, void (*)(const int*)> closer(&fd, [](const int* f) { close(*f); });
     struct stat file;
     if (fstat(fd, &file) != 0)
@@ -74,7 +74,7 @@ std::string readSecret(const std::string& path) {
     checkOwner(path, file);
     pollfd waits{fd, POLLIN, 0};
     if (S_ISFIFO(file.st_mode) && poll(&waits, 1, pipeMs) == 0)
-        refuse(path, " is a pipe that nothing is written to");
+        refuse(path, " is a pipe to which no program writes");
     fcntl(fd, F_SETFL, 0);
     std::string text;
     char bytes[512];
@@ -85,7 +85,7 @@ std::string readSecret(const std::string& path) {
     if (count < 0)
         refuse(path, std::string(": ") + std::strerror(errno));
     if (text.size() > mostBytes)
-        refuse(path, " is too long for one");
+        refuse(path, " is too long for a key file");
     return text;
 }
 
@@ -109,17 +109,17 @@ KeyFile::KeyFile(const std::string& path) : path_(path) {
             good = good && isKey(w);
         const std::string where = ", line " + std::to_string(number) + ": ";
         if (!good)
-            refuse(path, where + "give [ADDRESS] KEY [NEXT], a key as 32 hexadecimal digits, an "
-                                 "address as 0x0001");
+            refuse(path, where + "expected [ADDRESS] KEY [NEXT], with keys of 32 hexadecimal "
+                                 "digits and an address such as 0x0001");
         LinkKeys& keys = keys_[address < 0 ? anyVehicle : address];
         if (!keys.empty())
-            refuse(path, where + "there is a line for this vehicle already");
+            refuse(path, where + "duplicate line for this vehicle");
         for (const std::string& w : word)
             keys.insert(keys.begin(), keyOf(w));
     }
     explicit_bzero(text.data(), text.size());
     if (keys_.empty())
-        refuse(path, " has no key in it; (umask 077; openssl rand -hex 16 >FILE) makes one");
+        refuse(path, " has no key; to make a key: (umask 077; openssl rand -hex 16 >FILE)");
 }
 
 LinkKeys KeyFile::of(int address) const {

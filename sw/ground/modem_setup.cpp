@@ -149,7 +149,7 @@ bool ModemSetup::command(const std::string& text) {
             return true;
     if (!stopped_)
         trouble_ = "the modem on '" + settings_.device + "' " +
-                   (reply_ == "ERROR" ? "refuses AT" : "does not answer to AT") + text.substr(0, 2);
+                   (reply_ == "ERROR" ? "refuses AT" : "does not answer AT") + text.substr(0, 2);
     return false;
 }
 
@@ -194,10 +194,9 @@ bool ModemSetup::find() {
                      rates[1], rates[0]})
         if (findWithoutGuard(baud) || stopped_)
             return !stopped_;
-    trouble_ =
-        "no modem answers on '" + settings_.device +
-        "': check its power and cable, the guard time (-g), or set XBeeAT.Setup=0 if it must "
-        "not be set up";
+    trouble_ = "no modem answers on '" + settings_.device +
+               "': check its power, its cable and the guard time (-g); set XBeeAT.Setup=0 if the "
+               "modem must not be configured";
     return false;
 }
 
@@ -244,7 +243,7 @@ bool ModemSetup::finishApi() {
     if (command("AP0"))
         isApi_ = escapes_ = false;
     else if (reply_ == "ERROR")
-        log_(0, trouble_ + "0 and stays in API mode, which the vehicle need not know");
+        log_(0, trouble_ + "0 and stays in API mode; this does not affect the vehicle");
     return !isApi_ || reply_ == "ERROR";
 }
 

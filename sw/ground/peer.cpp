@@ -89,7 +89,7 @@ bool Peer::sendMessage(int channel, U32 now) {
     switch (program.next(most)) {
     case ProgramConnection::Next::Senseless:
         end(channel, 0,
-            "sent a message of " + std::to_string(program.size()) + " bytes, which does not fit " +
+            "sent a message of " + std::to_string(program.size()) + " bytes, too long for " +
                 carrierName() + " (at most " + std::to_string(most) + ")");
         return false;
     case ProgramConnection::Next::None:
@@ -137,7 +137,7 @@ U32 Peer::endLate(U32 now) {
             continue;
         wait = std::min(wait, untilLate(program.lateAt(), now));
         if (!untilLate(program.lateAt(), now))
-            end(channel, 0, "waits for room longer than its time-out");
+            end(channel, 0, "has waited for room longer than its time-out");
     }
     return wait;
 }

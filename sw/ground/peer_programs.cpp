@@ -60,7 +60,7 @@ int Peer::freeChannel(int wanted, U32 now) {
     }
     if (idlest >= 0) {
         programs_[idlest].sayGoodbye(now);
-        end(idlest, 1, "is idle, and another program waits");
+        end(idlest, 1, "is idle, and another program waits for a channel");
     }
     return idlest;
 }
@@ -75,7 +75,7 @@ void Peer::placePrograms(U32 now) {
             ++program;
             continue;
         }
-        log(1, isGone ? "a program has left before it got a channel"
+        log(1, isGone ? "a program has disconnected before it got a channel"
                       : "a program is connected, channel " + std::to_string(channel));
         if (isGone)
             ::close(program->fd);
@@ -139,7 +139,8 @@ int Peer::accept() {
     if (channel < 0)
         return -1;
     if (!makePair(ends)) { // no socket can be made, so no program can reply to the UAV
-        log(0, std::string("the UAV calls, and no socket can be made: ") + std::strerror(errno));
+        log(0, std::string("cannot accept a call of the UAV: no socket can be made: ") +
+                   std::strerror(errno));
         end(channel, 1, "is refused");
         host_.wake();
         return -1;

@@ -41,8 +41,9 @@ struct EndpointOptions {
 // Checks a modem key. Error messages never contain the key.
 inline void checkModemKey(const std::string& key, const std::string& where) {
     if (key.size() > 32 || key.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos)
-        throw Ice::EndpointParseException(
-            __FILE__, __LINE__, "the AES key of " + where + " must be up to 32 hexadecimal digits");
+        throw Ice::EndpointParseException(__FILE__, __LINE__,
+                                          "the AES key of " + where +
+                                              ": expected at most 32 hexadecimal digits");
 }
 
 // Data shared by the endpoints.

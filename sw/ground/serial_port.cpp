@@ -40,10 +40,10 @@ void SerialPort::open(const std::string& device) {
     int error = fd_ < 0 ? errno : 0;
     if (!error && !isatty(fd_)) {
         error = ENOTTY;
-        why = ": it is not a terminal";
+        why = ": it is not a serial port";
     } else if (!error && fcntl(fd_, F_SETLK, &lock) != 0) {
         error = EBUSY;
-        why = ": process " + std::to_string(userOf(fd_)) + " uses it";
+        why = ": process " + std::to_string(userOf(fd_)) + " is using it";
     }
     if (!error) {
         // Exclusive use also keeps terminal programs away. Not for a pty, which would stay locked

@@ -24,7 +24,7 @@ struct Settings {
     LinkKeys keys;        // keys of the link's sessions
     // AES key, up to 32 hexadecimal digits; an empty key leaves the modem's setting unchanged
     std::string modemKey;
-    int guardMs = 1000;  // guard time that the modem has now, ms
+    int guardMs = 1000;  // current guard time of the modem, ms
     bool setUp = true;   // true: set the modem up by AT commands
     bool isApi = true;   // true: use API mode, if the modem is set up and supports it
     bool isWire = false; // true: there are no modems, and the port is wired to the vehicle's board

@@ -59,8 +59,8 @@ int VehiclePeer::onMessage(void* context, int channel, const U8* data, U32 size)
     // The link delivers in order, so holding back a message would hold back all other programs.
     if (isWanted && !program.give(data, size, now))
         e.end(channel, 0,
-              "does not read: " + std::to_string(ProgramConnection::mostUnread) +
-                  " bytes wait for it");
+              "does not read; more than " + std::to_string(ProgramConnection::mostUnread) +
+                  " bytes are waiting");
     return 0;
 }
 
@@ -76,7 +76,8 @@ void VehiclePeer::onChannel(void* context, int channel, int isOpen) {
     if (!isOpen)
         return e.leave(program);
     if (channel < ownChannels || !e.listening_) {
-        e.log(1, "the peer opened channel " + std::to_string(channel) + ", but no program listens");
+        e.log(1, "the peer opened channel " + std::to_string(channel) +
+                     ", but no program accepts calls");
         Link_closeChannel(e.link_.get(), channel);
         return;
     }
@@ -92,7 +93,7 @@ void VehiclePeer::onState(void* context, Link_State state) {
     e.log(1, "link " + std::string(names[state]) +
                  (state != LINK_STATE_UP ? ""
                   : isSecure             ? ", secure"
-                                         : ", in the clear"));
+                                         : ", not encrypted"));
     e.yielding_.sessionIs(state == LINK_STATE_UP, e.host_.clock.nowUs());
     if (state == LINK_STATE_UP)
         return;
@@ -133,7 +134,7 @@ bool VehiclePeer::send(int channel, U32 now) {
 // Logs the calls of disconnected programs, because no program can be informed.
 void VehiclePeer::reportLost() {
     if (lost_)
-        log(0, "calls of programs that have left, and may not have reached the UAV: " +
+        log(0, "calls of disconnected programs that may not have reached the UAV: " +
                    std::to_string(lost_));
     lost_ = 0;
 }
@@ -148,7 +149,7 @@ U32 VehiclePeer::withdrawLate(U32 now) {
         wait = std::min(wait, untilLate(late_[channel].front(), now));
         if (wait == 0) {
             log(0, programs_[channel].name() +
-                       " has a message that was not taken in time: the session ends");
+                       " has a message that was not sent in time: the session ends");
             Link_stop(link_.get(), now);
             Link_start(link_.get(), now);
             return 0;
@@ -190,8 +191,9 @@ void VehiclePeer::yieldOrResume(U32 now) {
     switch (yielding_.poll(connects, host_.settings.source != 0, now)) {
     case Yielding::Step::Yield:
         Link_stop(link_.get(), now);
-        log(0, "another ground with this one's address has the vehicle now: this one waits until "
-               "the vehicle calls; restart this station to take it back now");
+        log(0, "another ground station with the same address has connected to the vehicle: this "
+               "station waits until the vehicle calls it; restart this station to take the vehicle "
+               "back now");
         refusePrograms();
         break;
     case Yielding::Step::Resume:

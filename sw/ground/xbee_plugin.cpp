@@ -124,8 +124,8 @@ protected:
             return false;
         if (argument.empty())
             throw Ice::EndpointParseException(__FILE__, __LINE__,
-                                              "no argument for option '" + option +
-                                                  "' in endpoint '" + endpoint + "'");
+                                              "endpoint '" + endpoint + "': option '" + option +
+                                                  "' needs a value");
         if (option == "-d")
             o_.serial.device = argument;
         else if (option == "-k") { // the key is secret, so the message does not repeat it
@@ -145,10 +145,10 @@ private:
                     : option == 'p' ? 2
                                     : 0xFFFF;
         if (*end || value < 0 || value > most)
-            throw Ice::EndpointParseException(
-                __FILE__, __LINE__,
-                std::string("'") + argument + "' is not a value for option '-" + option +
-                    "' in endpoint '" + endpoint + "' (0.." + std::to_string(most) + ")");
+            throw Ice::EndpointParseException(__FILE__, __LINE__,
+                                              "endpoint '" + endpoint + "': -" + option +
+                                                  ": expected 0 to " + std::to_string(most) +
+                                                  ", got '" + argument + "'");
         static const std::map<char, int Settings::*> ofSerial = {
             {'b', &Settings::baud},      {'a', &Settings::target}, {'s', &Settings::source},
             {'c', &Settings::rfChannel}, {'i', &Settings::pan},    {'g', &Settings::guardMs}};

@@ -157,7 +157,7 @@ void icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr i
     Ice_Int id = Ice_InputStream_readInt(is);
     Ice_Call* call;
     int isAsynchronous = 0;
-    icec_lock(ic, ICE_LOCK_STATE); /* prevents a time-out of the call during this */
+    icec_lock(ic, ICE_LOCK_STATE); /* keeps the call from timing out meanwhile */
     call = waitingCall(ic, connection, id);
     if (call && call->callback) {
         isAsynchronous = 1;

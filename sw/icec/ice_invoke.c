@@ -201,8 +201,8 @@ Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callbac
     return ICE_OK;
 }
 
-/* Size up to which a reply's body (status, encapsulation, a result of one byte) contains nothing
- * to which a pointer could refer. */
+/* Largest body of a reply that contains nothing to which a pointer could refer: status,
+ * encapsulation, and a result of one byte. */
 #define NOTHING_KEPT 8
 
 Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status) {

@@ -72,10 +72,10 @@ typedef struct Ice_Endpoint {
     void (*close)(void* context, int connection);
     /* Starts to accept connections from peers. With `options` 0, stops accepting. */
     Ice_Status (*listen)(void* context, const char* options);
-    /* Writes an endpoint in wire format from options such as "-a 1 -p 3" (up to their end, or an
-     * unquoted colon); with `options` 0, writes the endpoint that proxies to objects of this side
-     * contain. Fails the stream with ICE_FAILED_MALFORMED if the options are not valid for this
-     * transport. */
+    /* Converts options such as "-a 1 -p 3" to an endpoint in wire format. The options end at the
+     * end of the string or at an unquoted colon. If `options` is 0, writes the endpoint of this
+     * side, which is part of every proxy to one of its objects. Fails the stream with
+     * ICE_FAILED_MALFORMED if the options are not valid for this transport. */
     void (*encode)(void* context, const char* options, Ice_OutputStreamPtr os);
     /* Makes receive return early; may be called by any task. */
     void (*wake)(void* context);

@@ -42,8 +42,8 @@ typedef struct Link Link; /* an opaque type: its fields are private */
 typedef struct Link_Config {
     const Link_Port* port;
     void* context; /* passed to the port unchanged */
-    /* time of one byte on the slowest part of the path, 1/16 us, for pacing and timers (1440 at
-     * 111,111 baud) */
+    /* time that one byte takes on the slowest part of the path, in units of 1/16 us (1440 at
+     * 111,111 baud); for pacing and timers */
     U32 byteTimeUs16;
 #ifndef LINK_MINIMAL
     U8* send; /* ring for the queue of outgoing messages */

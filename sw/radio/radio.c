@@ -18,11 +18,12 @@
 #define POLL_TICKS (OS_TICKS_PER_SEC / 100U)
 #define MODE_STEP 13U /* step ATAP of the set-up */
 
-/* API mode: each buffer holds the contents of a frame. The first byte is the type. In a sent
- * packet, the type and four more bytes precede the data. 01 ID TARGET TARGET 00 DATA... packet to
- * send 89 ID STATUS                            its result; 0: received by the target's modem 08 00
- * 'R' 'N' VALUE                     a setting, without a reply 81 SOURCE SOURCE RSSI OPTIONS
- * DATA...   received packet */
+/* API mode: each buffer holds the contents of a frame. Its first byte is the type. In a sent
+ * packet, the type and four more bytes precede the data.
+ *     01 ID TARGET TARGET 00 DATA...          packet to send
+ *     89 ID STATUS                            its result; 0: received by the target's modem
+ *     08 00 'R' 'N' VALUE                     a setting, without a reply
+ *     81 SOURCE SOURCE RSSI OPTIONS DATA...   received packet */
 #define TRANSMIT 0x01U
 #define COMMAND 0x08U
 #define STATUS 0x89U

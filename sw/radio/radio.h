@@ -51,7 +51,7 @@ typedef struct XBeeInitTypeDef {
     U16 target;  /* DL, address of the ground station's modem */
     U8 channel;  /* CH, default 0x0C */
     U16 pan;     /* ID, default 0x3332 */
-    U16 guardMs; /* guard time around +++ that the modem has now, ms; default 1000 */
+    U16 guardMs; /* current guard time around +++, ms; default 1000 */
     /* KY, AES key of the network, 16 bytes; with 0, the modem does not encrypt (EE is 0). An
      * encrypted packet carries 95 bytes instead of 100 (Link_limitFrame). */
     const U8* key;

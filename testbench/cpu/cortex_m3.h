@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// cortex_m3: a Cortex-M3: libunicorn executes the instructions; this adds exceptions, their
-// priorities, the system registers, cycles and faults. Its contract and limits: docs/simulation.md.
+// cortex_m3: models a Cortex-M3. libunicorn executes the instructions; this class adds exceptions,
+// their priorities, the system registers, cycles and faults. docs/simulation.md describes its
+// contract and its limits.
 
 #pragma once
 

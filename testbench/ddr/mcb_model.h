@@ -74,7 +74,7 @@ public:
         uint64_t rdData = 0;
     } pins;
 
-    // Clocks of the design for parts of an access.
+    // Durations of the parts of an access, in clocks of the design.
     struct Timing {
         // duration of the calibration, clocks; a real start takes startClocks
         unsigned calibration = 64;

@@ -167,7 +167,9 @@ private:
             if (s.over)
                 _exit(s.status);
             if (active && active == s.active && kill(active, 0) != 0 && errno == ESRCH && !s.over) {
-                std::fputs("icesoc-sim: the process that was gone back to has died\n", stderr);
+                std::fputs("icesoc-sim: the process of the earlier moment, to which the debugger "
+                           "went back, has ended\n",
+                           stderr);
                 _exit(1);
             }
         }

@@ -56,8 +56,8 @@ public:
             } else if (waited.count() > patience_ && !isHeld(processOf(keeper))) {
                 std::fprintf(
                     stderr,
-                    "simulated time stood still for %.0f s: process %d keeps step with it, and "
-                    "neither sleeps nor reads %s; it is waited for no longer\n",
+                    "simulated time stood still for %.0f s: process %d keeps step with it, but "
+                    "neither sleeps nor reads %s; the simulator no longer waits for it\n",
                     patience_, static_cast<int>(processOf(keeper)), status_.device);
                 dismiss(keeper);
             }

@@ -56,10 +56,11 @@ void setParameter(std::map<std::string, uint32_t>& set, const std::string& profi
     if (parameter == known.end())
         throw CLI::ValidationError("'" + text + "'", "unknown parameter " + letters);
     if (digits.empty() || *end)
-        throw CLI::ValidationError("'" + text + "'", "give it as in MY=1A2B, in hex");
+        throw CLI::ValidationError("'" + text + "'",
+                                   "expected a parameter and its value in hex, such as MY=1A2B");
     if (value < parameter->second.lowest || value > parameter->second.highest)
-        throw CLI::ValidationError("'" + text + "'", fmt::format("{} is from {:X} to {:X}", letters,
-                                                                 parameter->second.lowest,
+        throw CLI::ValidationError("'" + text + "'", fmt::format("{}: expected {:X} to {:X} (hex)",
+                                                                 letters, parameter->second.lowest,
                                                                  parameter->second.highest));
     set[letters] = static_cast<uint32_t>(value);
 }
@@ -134,53 +135,69 @@ void run(RfChannel& air, XBee& a, XBee& b, double duration) {
 
 void addSettings(CLI::App& app, const std::string& name, Settings& settings) {
     app.add_option("--" + name, settings.set,
-                   "Parameter of modem " + name + ", in hex, as MY=1 or BD=7; may be repeated")
+                   "parameter of modem " + name +
+                       " and its value in hex, such as MY=1 or BD=7; may be repeated")
         ->type_name("XX=HEX");
-    app.add_option("--link-" + name, settings.link, "Symbolic link to its pty")->type_name("PATH");
+    app.add_option("--link-" + name, settings.link,
+                   "symbolic link to create, which points to the pseudo-terminal of modem " + name)
+        ->type_name("PATH");
 }
 
 void describe(CLI::App& app, Options& o) {
     addSettings(app, "a", o.a);
     addSettings(app, "b", o.b);
-    app.add_option("--modem", o.modem, "Both modems: series 1 (s1), S2C (s2c) or XBee 3 (xb3)")
+    app.add_option("--modem", o.modem, "kind of both modems: series 1, S2C or XBee 3")
         ->check(CLI::IsMember({"s1", "s2c", "xb3"}))
         ->capture_default_str();
     auto chance = [&app](const char* option, double& value, const char* what) {
         app.add_option(option, value, what)->check(CLI::Range(0.0, 1.0))->capture_default_str();
     };
-    chance("--loss", o.weather.loss, "Residual loss of a packet");
+    chance("--loss", o.weather.loss, "probability that a packet is lost after all its tries");
     chance("--burst-begin", o.weather.burstBegin,
-           "Chance that a burst of loss begins (Gilbert-Elliott)");
-    chance("--burst-end", o.weather.burstEnd, "Chance that it ends, each packet");
-    chance("--burst-loss", o.weather.burstLoss, "Loss in a burst");
-    chance("--duplication", o.weather.duplication, "Packets that arrive twice");
-    chance("--corruption", o.weather.corruption, "Packets with a wrong byte");
-    chance("--try-loss", o.weather.tryLoss, "Loss of one try; the MAC tries again");
-    chance("--ack-loss", o.weather.ackLoss, "Loss of an acknowledgement: duplicates");
+           "probability per packet that a burst of losses begins (Gilbert-Elliott model)");
+    chance("--burst-end", o.weather.burstEnd, "probability per packet that a burst ends");
+    chance("--burst-loss", o.weather.burstLoss, "probability that a packet in a burst is lost");
+    chance("--duplication", o.weather.duplication, "probability that a packet arrives twice");
+    chance("--corruption", o.weather.corruption, "probability that a packet has a wrong byte");
+    chance("--try-loss", o.weather.tryLoss,
+           "probability that one try is lost; the MAC then tries again");
+    chance("--ack-loss", o.weather.ackLoss,
+           "probability that an acknowledgement is lost, which causes duplicates");
     chance("--interference", o.weather.interference,
-           "Share of each 20 ms in which others are heard");
+           "share of each 20 ms in which other senders occupy the channel");
     app.add_option("--distance", o.weather.distance,
-                   "Distance in free space, with fading, m; 0: no path loss")
+                   "distance in free space, m, with fading; 0 disables path loss (default)")
         ->check(CLI::Range(0.0, 1e5));
-    app.add_option("--trace", o.trace, "CSV of loss, RSSI and delay, in place of these")
+    app.add_option("--trace", o.trace,
+                   "CSV file with loss, RSSI and delay over time; replaces the options above")
         ->check(CLI::ExistingFile);
     app.add_flag("--perfect", o.weather.perfect,
-                 "Both directions at once, no collisions, modems that need no time");
-    app.add_option("--delay", o.delayMs, "Delay beyond the time on the air, ms")
+                 "no collisions, both directions at once, modems without processing time");
+    app.add_option("--delay", o.delayMs, "delay in addition to the time on the air, ms (default 0)")
         ->check(CLI::Range(0.0, 10000.0));
-    app.add_option("--boot", o.bootMs, "Boot time of the modems, ms")->check(CLI::Range(0, 5000));
-    app.add_option("--seed", o.seed, "Seed of the weather (default: SEED, or 1)");
-    app.add_option("--duration", o.duration, "Seconds until it ends by itself (0: never)")
+    app.add_option("--boot", o.bootMs, "boot time of the modems, ms")
+        ->check(CLI::Range(0, 5000))
+        ->capture_default_str();
+    app.add_option("--seed", o.seed,
+                   "seed of all random numbers (default: the environment variable SEED, or 1)");
+    app.add_option("--duration", o.duration, "run time, s; 0 runs until Ctrl-C (default)")
         ->check(CLI::Range(0.0, 1e6));
-    app.add_flag("-v,--verbose", o.verbose, "A line for each packet");
+    app.add_flag("-v,--verbose", o.verbose, "print a line for each packet");
+    app.footer("examples:\n"
+               "  icesoc-xbee --link-a /tmp/ground --link-b /tmp/uav\n"
+               "  icesoc-xbee --a MY=0 --a DL=1 --b MY=1 --b DL=0 --loss 0.05\n"
+               "  icesoc-xbee --modem s2c --distance 300 --verbose --duration 60");
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{"Two XBee 802.15.4 modems on pseudo-terminals, and the air between them.\n"
-                 "Open the printed devices as serial ports; Ctrl-C ends it and prints statistics.\n"
-                 "Modem a has address 1 and sends to 2, modem b the other way round."};
+    CLI::App app{
+        "Simulates two XBee 802.15.4 modems on pseudo-terminals, and the air between them, to\n"
+        "try any program that uses an XBee. Open the printed devices as serial ports. Ctrl-C\n"
+        "ends the simulation and prints statistics. Modem a has address 1 and sends to 2;\n"
+        "modem b has address 2 and sends to 1.",
+        "icesoc-xbee"};
     Options o;
     describe(app, o);
     CLI11_PARSE(app, argc, argv);

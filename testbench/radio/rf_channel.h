@@ -41,9 +41,10 @@ public:
             throw std::runtime_error(path + ":" + std::to_string(number) + ": " + what);
         };
         if (!file || !std::getline(file, line))
-            throw std::runtime_error(path + ": no such trace, or it is empty");
+            throw std::runtime_error(path +
+                                     ": expected a trace (CSV), got a missing or empty file");
         if (line != heading)
-            fail(std::string("the heading is not '") + heading + "'");
+            fail(std::string("expected the heading '") + heading + "'");
         while (++number, std::getline(file, line)) {
             if (line.empty() || line[0] == '#')
                 continue;
@@ -51,16 +52,16 @@ public:
             char more;
             if (std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf%c", &time, &loss, &rssi, &delay,
                             &more) != 4)
-                fail("not four numbers");
+                fail("expected four numbers");
             if (time < 0 || loss < 0 || loss > 1 || delay < 0)
-                fail("time and delay are not negative, loss is from 0 to 1");
+                fail("expected time and delay of at least 0, and a loss of 0 to 1");
             uint64_t ns = static_cast<uint64_t>(time * 1e9);
             if (!rows_.empty() && ns <= rows_.back().ns)
-                fail("time does not grow");
+                fail("expected a later time than in the row before");
             rows_.push_back({ns, loss, rssi, static_cast<uint64_t>(delay * 1e6)});
         }
         if (rows_.empty())
-            fail("no row found");
+            fail("expected at least one row");
     }
     const Row& at(uint64_t ns) const {
         auto next = std::upper_bound(rows_.begin(), rows_.end(), ns,
@@ -206,7 +207,7 @@ public:
     // docs/simulation.md.
     static uint64_t airTimeNs(size_t bytes);
 
-    // For the MACs of the modems:
+    // Functions that the MACs of the modems call:
 
     // Draws the weather for a new packet: its strength and its outcome.
     Outcome announce(const RfReceiver& from, RfPacket& packet, uint64_t now);

@@ -12,6 +12,7 @@ extern "C" {
 
 UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& modemKey, bool isSecure) {
     if (!modemKey.empty() || isSecure)
-        throw std::runtime_error("--key, --modem-key: the paper's firmware talks in the clear");
+        throw std::runtime_error(
+            "--key and --modem-key are not possible: the paper's firmware does not encrypt");
     return {PAPER_start, UAV_irqHandler, [] { return PAPER_irqEnabled() != 0; }};
 }

@@ -25,7 +25,7 @@ Frame loadFrame(const std::string& path, int width, int height) {
     frame.height = std::min(height, h / factor);
     if (frame.width < leastSide || frame.height < leastSide)
         throw std::runtime_error("'" + path + "' is " + std::to_string(w) + " x " +
-                                 std::to_string(h) + " pixels: too small, 8 x 8 at least");
+                                 std::to_string(h) + " pixels: expected at least 8 x 8");
     int left = (w - frame.width * factor) / 2, top = (h - frame.height * factor) / 2;
     for (int y = 0; y < frame.height; ++y)
         for (int x = 0; x < frame.width; ++x) {

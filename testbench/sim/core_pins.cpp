@@ -70,7 +70,7 @@ std::vector<Change> readScript(const std::string& path) {
         if (words >> std::ws; words.eof())
             continue;
         if (!(words >> ms >> name >> value) || ms < 0 || words >> more)
-            fail("a change is milliseconds, a pin as servo.fault_i, and its value");
+            fail("expected a time in ms, a pin such as servo.fault_i, and its value");
         const CorePin* pin = corePins;
         while (pin->name && (pin->isOut || name != pin->name))
             ++pin;

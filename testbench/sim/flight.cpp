@@ -97,8 +97,8 @@ std::vector<uint8_t> keyBytes(const std::string& digits) {
 std::vector<uint8_t> flashOf(const std::string& file, size_t size, const std::string& owner) {
     const std::string bytes = file.empty() ? "" : readFile(file);
     if (!file.empty() && bytes.size() != size)
-        throw std::runtime_error("'" + file + "' is not the " + std::to_string(size >> 20) +
-                                 " MiB of " + owner + " flash; make one with pack_update");
+        throw std::runtime_error("'" + file + "': expected " + std::to_string(size >> 20) +
+                                 " MiB, the size of " + owner + " flash; make it with pack_update");
     return {bytes.begin(), bytes.end()};
 }
 
@@ -220,8 +220,9 @@ void Flight::bringTrouble() {
     trouble_ = std::make_unique<Trouble>(o_.trouble);
     const auto address = static_cast<unsigned>(trouble_->address);
     if (address > o_.vehicles)
-        throw std::runtime_error("trouble '" + o_.trouble + "': there are " +
-                                 std::to_string(o_.vehicles) + " vehicles, and 0, the ground");
+        throw std::runtime_error("--trouble " + o_.trouble +
+                                 ": expected an address of 0 (the ground station) to " +
+                                 std::to_string(o_.vehicles) + " (the last vehicle)");
     const XBee* modem = nullptr;
     if (trouble_->kind == "twin") {
         callFollower(address, std::vector<uint8_t>(LINK_KEY_BYTES, 0xEE));
@@ -390,9 +391,10 @@ void Flight::report() {
         fmt::print(" times\n");
     }
     if (o_.replayed && o_.gdb < 0 && !stopSignal)
-        std::puts(o_.replayed->isWhole()
-                      ? "icesoc-sim: bit by bit the flight that was recorded"
-                      : "icesoc-sim: the recording ends here, as its simulator did");
+        std::puts(
+            o_.replayed->isWhole()
+                ? "icesoc-sim: the replay equals the recorded flight bit by bit"
+                : "icesoc-sim: the recording ends here, because its simulator was ended here");
 }
 
 int Flight::run() {

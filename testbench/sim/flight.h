@@ -21,7 +21,7 @@
 // working time.
 class Pace {
 public:
-    // `rate`: simulated seconds in one of the wall clock; 0: no limit.
+    // `rate`: simulated seconds per second of the wall clock; 0 means no limit.
     explicit Pace(double rate) : rate_(rate), anchor_(Clock::now()), begin_(anchor_) {}
     void keep(uint64_t simulatedNs) {
         if (rate_ == 0)

@@ -56,8 +56,8 @@ def demo_key(name):
     try:
         with open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
             file.write(secrets.token_hex(16) + "\n")
-        print(f"icesoc-fly: made a demo key, {path}; --key FILE uses your key, "
-              "--open flies without a key")
+        print(f"icesoc-fly: created a demo key, {path}; --key FILE selects another key, --open "
+              "flies without a key")
     except FileExistsError:
         pass
     return str(path)
@@ -67,7 +67,7 @@ def main():
     version, known = fields()
     flight = {name: field["default"] for name, field in known.items()} | arguments(known)
     if flight["open"] and flight["key"]:
-        sys.exit("icesoc-fly: --open flies without a key: leave out --open or --key")
+        sys.exit("icesoc-fly: --open and --key exclude each other: --open flies without a key")
     if not flight["open"]:
         flight["key"] = flight["key"] or demo_key("demo.key")
         if flight["vehicles"] > 1:

@@ -17,7 +17,7 @@ Stm32F2::Config configOf(uint32_t hclkHz, uint64_t seed, uint32_t oscillatorHz) 
         return {1, static_cast<uint32_t>(pinHclkHz), seed, oscillatorHz};
     if (hclkHz < pinHclkHz || hclkHz % pinHclkHz || hclkHz % 8000)
         throw std::runtime_error("HCLK of " + std::to_string(hclkHz) +
-                                 " Hz: give 0 or a multiple of " + std::to_string(pinHclkHz) +
+                                 " Hz: expected 0 or a multiple of " + std::to_string(pinHclkHz) +
                                  " Hz");
     return {static_cast<unsigned>(hclkHz / pinHclkHz), hclkHz, seed, oscillatorHz};
 }

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <iostream>
+#include <map>
 #include <regex>
 
 using nlohmann::json;
@@ -51,6 +52,28 @@ bool fits(const json& field, const json& value) {
                                                   std::regex(field["pattern"].get<std::string>())));
 }
 
+// Returns the values that a field accepts, in words.
+std::string expectedOf(const std::string& name, const json& field) {
+    static const std::map<std::string, std::string> patterns = {
+        {"modem_key", "32 hexadecimal digits"},
+        {"speed", "real, max, or a factor such as 0.25"},
+        {"trouble", "KIND:ADDRESS:START:DURATION, such as away:2:1.5:3"}};
+    if (patterns.count(name))
+        return patterns.at(name);
+    if (field.contains("enum"))
+        return fmt::format("{}", fmt::join(field["enum"].get<std::vector<std::string>>(), " or "));
+    const std::string type = field.value("type", "string");
+    if (field.contains("maximum"))
+        return field.value("minimum", json(0)).dump() + " to " + field["maximum"].dump();
+    if (field.contains("minimum"))
+        return "at least " + field["minimum"].dump();
+    return type == "boolean" ? "true or false" : type == "array" ? "a list" : "a text";
+}
+
+std::string optionOf(const std::string& name) {
+    return "--" + std::regex_replace(name, std::regex("_"), "-");
+}
+
 // Reads arguments up to "--". "--flight FILE" takes all fields from a file; later arguments
 // override single fields. Throws std::invalid_argument, which names the argument, if one is wrong.
 json flightOf(const std::vector<std::string>& words) {
@@ -69,35 +92,64 @@ json flightOf(const std::vector<std::string>& words) {
         else if (name == "flight") {
             const json described = json::parse(readFile(*++word), nullptr, false);
             if (!described.is_object())
-                throw std::invalid_argument("'" + *word +
-                                            "' is not a flight: expected a JSON "
-                                            "object");
+                throw std::invalid_argument(
+                    "'" + *word +
+                    "': expected a flight, which is a JSON object (./icesoc run writes it)");
             flight.update(described);
         } else
             flight[name] = valueOf(known[name], *(word + 1)), ++word;
     }
     flight.erase("version");
     for (const auto& [name, value] : flight.items())
-        if (!known.contains(name) || !fits(known[name], value))
-            throw std::invalid_argument(
-                fmt::format("{} = {}: {}", name, value.dump(),
-                            known.contains(name) ? known[name].dump() : "no such field"));
+        if (!known.contains(name))
+            throw std::invalid_argument("unknown field '" + name + "'; see --help");
+        else if (!fits(known[name], value))
+            throw std::invalid_argument(fmt::format(
+                "{}: expected {}, got {}", optionOf(name), expectedOf(name, known[name]),
+                value.is_string() ? "'" + value.get<std::string>() + "'" : value.dump()));
     return flight;
 }
 
 // Returns the help text, with all fields.
 std::string flightHelp() {
     std::string text =
-        "Simulates the UAV: RTL, DDR3, firmware, modems, radio. The ground's modem is a pty.\n"
-        "Usage: icesoc-sim [--flight flight.json] [--name value...] [-- COMMAND]\n"
-        "Words of COMMAND: {device} the pty, {frame} the camera's picture, {status} "
-        "counters, {guard}, {out}.\n";
+        "Usage: icesoc-sim --image PICTURE [--flight flight.json] [--name value]... [-- COMMAND]\n"
+        "\n"
+        "Simulates the UAV: RTL, DDR3, firmware, modems and radio. The modem of the ground "
+        "station\n"
+        "is a pseudo-terminal. COMMAND is the ground program; the flight ends when it ends. In "
+        "its\n"
+        "arguments, {device} is replaced by the pseudo-terminal, {frame} by the picture of the\n"
+        "camera, {status} by the file of counters, {guard} by the guard time and {out} by the "
+        "output\n"
+        "folder.\n"
+        "\n"
+        "Options:\n";
     const json known = fields();
-    for (const auto& [name, field] : known.items())
-        if (name != "version")
-            text += fmt::format("  --{:<14} {}\n", std::regex_replace(name, std::regex("_"), "-"),
-                                field.value("description", ""));
-    return text;
+    for (const auto& [name, field] : known.items()) {
+        if (name == "version")
+            continue;
+        text += fmt::format("  {:<16} {}", optionOf(name), field.value("description", ""));
+        const bool isText =
+            !field.contains("enum") && !field.contains("maximum") && !field.contains("minimum");
+        const json value = field.value("default", json());
+        const bool hasDefault =
+            !value.is_null() && value != "" && value != false && !value.is_array();
+        const std::string range = isText ? "" : expectedOf(name, field);
+        const std::string preset =
+            !hasDefault
+                ? ""
+                : "default " + (value.is_string() ? value.get<std::string>() : value.dump());
+        if (!(range + preset).empty())
+            text += " (" + range + (range.empty() || preset.empty() ? "" : "; ") + preset + ")";
+        text += "\n";
+    }
+    return text +
+           "\n"
+           "examples:\n"
+           "  icesoc-sim --image photo.png --duration 2 --open\n"
+           "  icesoc-sim --image photo.png --loss 0.05 --key uav1.key -- ./ground.py {device}\n"
+           "  icesoc-sim --flight build/run/flight.json --seed 7 -- ./ground.py {device}\n";
 }
 
 void writeWave(const Flight::Options& o) {
@@ -113,9 +165,9 @@ void writeWave(const Flight::Options& o) {
     setenv("WAVE_FROM", clocks(o.from).c_str(), 1);
     setenv("WAVE_TO", clocks(o.to).c_str(), 1);
 #else
-    throw std::runtime_error("this simulator writes no waveforms: the one in build/trace does "
-                             "(make run REPLAY=" +
-                             o.flight.value("replay", "") + " FROM=1.5 TO=1.6)");
+    throw std::runtime_error(
+        "this simulator cannot write waveforms: use the one in build/trace (make run REPLAY=" +
+        o.flight.value("replay", "") + " FROM=1.5 TO=1.6)");
 #endif
 }
 
@@ -124,9 +176,10 @@ Flight::Options recorded(const Flight::Options& now, const std::string& folder) 
     auto replayed = std::make_shared<ReplayedLine>(folder + "/flight.jsonl");
     const json& head = replayed->head();
     if (head.at("clkHz") != SocModel::clkHz)
-        throw std::runtime_error("the recorded flight has a clock of " + head.at("clkHz").dump() +
-                                 " Hz: make run REPLAY=" + folder +
-                                 " CLK_HZ=" + head.at("clkHz").dump());
+        throw std::runtime_error(
+            "this simulator has another clock than the recorded flight, which has " +
+            head.at("clkHz").dump() + " Hz: make run REPLAY=" + folder +
+            " CLK_HZ=" + head.at("clkHz").dump());
     json fields = head.at("flight"), view = now;
     for (const char* ofThisView : {"out", "gdb", "every_clock", "quiet", "from", "to"})
         fields[ofThisView] = view[ofThisView];
@@ -168,20 +221,24 @@ int main(int argc, char** argv) {
         if (!o.command.empty())
             o.command.erase(o.command.begin());
         if (o.image.empty())
-            throw std::invalid_argument("give --image, the picture for the camera");
+            throw std::invalid_argument("--image PICTURE is missing: the camera needs a picture");
         if (replay.empty() && o.flight.contains("wave"))
             throw std::invalid_argument(
-                "--wave needs --replay: a flight is recorded, then looked at");
+                "--wave needs --replay: a waveform is made from a recorded flight");
         if (o.camera && !o.pins.empty())
-            throw std::invalid_argument("--camera and --pins: both drive the inputs of cores");
+            throw std::invalid_argument(
+                "--camera and --pins exclude each other: both drive the inputs of cores");
         if (!o.trouble.empty() && o.vehicles < 2)
-            throw std::invalid_argument("--trouble needs --vehicles: it befalls one of several");
+            throw std::invalid_argument("--trouble needs --vehicles 2 or more");
         if (o.cpu == "m3" && !o.modem_key.empty())
-            throw std::invalid_argument("--modem-key needs --cpu host: the ARM binary has its own");
+            throw std::invalid_argument(
+                "--modem-key needs --cpu host: the ARM binary contains its own key");
         if (!o.flash.empty() && (o.cpu != "m3" || o.guard != 1000))
-            throw std::invalid_argument("--flash needs --cpu m3, and the modems' usual guard time");
+            throw std::invalid_argument(
+                "--flash needs --cpu m3 and the default guard time of 1000 ms");
         if (!o.fpga_flash.empty() && o.flash.empty())
-            throw std::invalid_argument("--fpga-flash needs --flash: the boot loader's checks");
+            throw std::invalid_argument(
+                "--fpga-flash needs --flash: the boot loader loads the FPGA");
         if (o.cpu != "m3" && o.gdb >= 0)
             throw std::invalid_argument(
                 o.replayed ? "--gdb: expected a flight with the ARM binary, got one with the host "

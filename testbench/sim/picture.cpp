@@ -184,7 +184,7 @@ Picture readPicture(const std::string& path) {
                                  "': expected a largest sample value of 1 to 65535, got " +
                                  std::to_string(header.white));
     if (header.bytes > file.size() - header.end) // stb_image would accept a file that is too short
-        throw std::runtime_error("picture '" + path + "' is cut: expected " +
+        throw std::runtime_error("picture '" + path + "' is truncated: expected " +
                                  std::to_string(header.bytes) + " bytes of samples, got " +
                                  std::to_string(file.size() - header.end));
     if (header.white > 255) {

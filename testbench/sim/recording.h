@@ -190,12 +190,12 @@ public:
         std::string text;
         if (!std::getline(in, text))
             throw std::runtime_error("cannot read '" + file +
-                                     "': is that where a flight was recorded?");
+                                     "': expected the folder of a recorded flight");
         size_t number = 1;
         try {
             head_ = json::parse(text);
             if (!head_.at("flight").is_object())
-                throw std::runtime_error("another version wrote it");
+                throw std::runtime_error("it was recorded by another version of the simulator");
             while (!whole_ && std::getline(in, text) &&
                    !in.eof()) { // the last line may be incomplete
                 ++number;
@@ -229,8 +229,8 @@ public:
         const json& mark = marks_[mark_++];
         if (mark.at("ns") != ns || !mark.contains(what) || mark.at(what) != value)
             throw std::runtime_error(fmt::format(
-                "this is not the flight that was recorded: it departs between {:.3f} and {:.3f} s. "
-                "Chip, firmware, simulator and key must be the same as then",
+                "the replay differs from the recorded flight between {:.3f} and {:.3f} s. Chip, "
+                "firmware, simulator and key must be the same as in the recorded flight",
                 static_cast<double>(agreedNs_) / 1e9, static_cast<double>(ns) / 1e9));
         agreedNs_ = ns;
     }

@@ -25,7 +25,8 @@ public:
     struct Firmware {
         std::function<void(const FSMC_Port*, void*)> start = [](const FSMC_Port* port, void* soc) {
             if (UAV_start(port, soc) == UAV_NO_KEY)
-                throw std::runtime_error("the vehicle was neither given a key nor opened");
+                throw std::runtime_error("the vehicle has no key: expected --key FILE, or --open "
+                                         "for a flight without a key");
         };
         std::function<void()> irqHandler = UAV_irqHandler;
         std::function<bool()> irqEnabled = [] { return UAV_irqEnabled() != 0; };

@@ -49,7 +49,8 @@ SimulatedClock::SimulatedClock(const std::string& file) {
     if (!isWhole || !isSimStatus(simulation_)) {
         munmap(at, sizeof(SimStatus));
         throw std::system_error(EINVAL, std::generic_category(),
-                                "'" + file + "' is not a simulator's file of counters");
+                                "'" + file +
+                                    "': expected a file of counters that a simulator writes");
     }
 }
 

@@ -149,9 +149,10 @@ uint64_t Stm32F2::hclk() {
                                       : hsiHz;
     const uint64_t input = source / std::max<uint64_t>(pll & 0x3F, 1);
     if ((config & 3) == 2 && (input < 950'000 || input > 2'000'000))
-        throw NotModelled("PLL with an input of " + std::to_string(input / 1000) +
-                          " kHz, which takes 0.95 to 2 MHz (RM0033, 5.3.2)");
-    const unsigned ahb = config >> 4 & 15; // values 8 and above divide: 8 by 2, 9 by 4, ...
+        throw NotModelled("PLL input of " + std::to_string(input / 1000) +
+                          " kHz: expected 0.95 to 2 MHz (RM0033, 5.3.2)");
+    const unsigned ahb =
+        config >> 4 & 15; // values of 8 and above select a divisor: 8 selects 2, 9 selects 4, ...
     return hz >> (ahb < 8 ? 0 : ahb < 12 ? ahb - 7 : ahb - 6);
 }
 

@@ -142,7 +142,7 @@ void LineKit::exchange() {
     }
 }
 
-// One clock of the FPGA's internal oscillator.
+// Runs one clock of the FPGA's internal oscillator.
 void LineKit::tick() {
     now_ += oscNs;
     if (now_ >= wires_.nextChange())

@@ -102,7 +102,7 @@ class Cases(Script):
             self.has("^corners: 1[0-9][0-9]$")
         self.use("python3", "-c", "import icesoc; icesoc.connect('uav9', 'vehicles.conf')",
                  status=None)
-        self.has("vehicle 'uav9': expected one of uav1; or add a line Vehicle.uav9=")
+        self.has("vehicle 'uav9': expected one of uav1; add a line Vehicle.uav9=")
 
     def test_call(self):
         """icesoc-call calls cores through the gateway, by radio and by a vehicle's name. Wrong

@@ -25,7 +25,7 @@ constexpr size_t mostUnconfirmed = 4;
 
 std::exception_ptr refusal(const Ice::Identity& maintained) {
     return unknown("'" + Ice::identityToString(maintained) +
-                   "' is for maintenance: call it at the endpoint of --maintenance");
+                   "' is a maintenance object: call it at the endpoint given with --maintenance");
 }
 
 } // namespace
@@ -61,7 +61,7 @@ void Forwarder::take(std::shared_ptr<Request> request) {
                     request->current.con->close(Ice::ConnectionClose::Forcefully);
                 throw Ice::UnknownException(__FILE__, __LINE__,
                                             "icesoc-gateway: '" + request->subject +
-                                                "' has too much waiting: at most " +
+                                                "' has too many waiting requests: the limit is " +
                                                 std::to_string(ClientQueues::mostBytes) + " bytes");
             }
             room_.wait(lock, [&] { return stopped_ || queues_.hasRoom(*request); });
@@ -436,14 +436,14 @@ void Forwarder::giveUp(std::chrono::milliseconds age) {
         for (const auto& request : old)
             sent_.erase(request);
     }
-    fail(old, unknown("the vehicle went to another ground meanwhile; whether it has carried this "
-                      "call out is unknown"));
+    fail(old, unknown("the vehicle has connected to another ground station; it may or may not have "
+                      "executed this call"));
 }
 
 void Forwarder::failLateRequests() {
     failWaiting(std::chrono::steady_clock::now() - wait_,
                 unknown("waited " + std::to_string(wait_.count()) +
-                        " s for the radio (--wait); the vehicle has not got this call"));
+                        " s for the radio (limit: --wait); the call was not sent to the vehicle"));
     // Calls that the vehicle answers late fill a lane. A ping shows that they have arrived.
     for (int number = 0; number < lanes; ++number) {
         Ice::Current last;

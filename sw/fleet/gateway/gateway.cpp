@@ -16,6 +16,7 @@
 #include <IceSSL/OpenSSL.h>
 #include <IceStorm/IceStorm.h>
 #include <algorithm>
+#include <cctype>
 #include <csignal>
 #include <iostream>
 #include <list>
@@ -41,7 +42,17 @@ std::string reasonOf(const Ice::Exception& e) {
         return endpoint->str;
     if (const auto* proxy = dynamic_cast<const Ice::ProxyParseException*>(&e))
         return proxy->str;
-    return e.ice_id();
+    if (const auto* endpoint = dynamic_cast<const Ice::NoEndpointException*>(&e))
+        return "expected a proxy with endpoints, got '" + endpoint->proxy + "'";
+    // The other exceptions have no text: returns the words of their name.
+    const std::string id = e.ice_id();
+    std::string words;
+    for (const char c : id.substr(id.rfind(':') + 1))
+        if (std::isupper(c))
+            words += (words.empty() ? "" : " ") + std::string(1, char(std::tolower(c)));
+        else
+            words += c;
+    return words.substr(0, words.rfind(" exception"));
 }
 
 using namespace gateway;
@@ -117,8 +128,9 @@ Take toStation(const std::shared_ptr<Ice::ObjectPrx>& station, const std::string
             try {
                 std::rethrow_exception(why);
             } catch (const Ice::SocketException& e) {
-                std::cerr << "gateway: the UAV calls, but no server listens at " + where + ": " +
-                                 reasonOf(e) + "\n";
+                std::cerr
+                    << "gateway: cannot pass on a call of the vehicle: no server listens at " +
+                           where + ": " + reasonOf(e) + "\n";
             } catch (...) {
             }
             request->failed(why);
@@ -156,10 +168,9 @@ int checkedPort(const std::shared_ptr<Ice::ObjectAdapter>& adapter) {
         const bool isHere = ip->host.compare(0, 4, "127.") == 0 || ip->host == "::1" ||
                             ip->host == "0:0:0:0:0:0:0:1" || ip->host == "localhost";
         if (!isSecure && !isHere)
-            throw std::runtime_error(
-                "'" + endpoint->toString() +
-                "' would let every machine of the network call in the clear: listen at 127.0.0.1, "
-                "or give an ssl endpoint");
+            throw std::runtime_error("'" + endpoint->toString() +
+                                     "' accepts unencrypted calls from other machines: listen at "
+                                     "127.0.0.1, or use an ssl endpoint");
     }
     return port;
 }
@@ -287,8 +298,8 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
     const auto publisher = publisherOf(ic, o.topics);
     Pages pages(o);
     if (!o.page.empty() && ic->getDefaultLocator())
-        throw std::runtime_error("--page: expected no --Ice.Default.Locator, since the ports of "
-                                 "registered vehicles change");
+        throw std::runtime_error("--page and --Ice.Default.Locator exclude each other, because the "
+                                 "ports of registered vehicles change");
     std::list<Vehicle> vehicles;
     for (const auto& [name, address] : fleetOf(o))
         vehicles.emplace_back(ic, o, rights, pages, name, address, int(vehicles.size()), publisher);
@@ -329,9 +340,12 @@ int main(int argc, char** argv) {
     const sigset_t signals = endings();
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
 
-    CLI::App app{"A stock Ice server that passes requests to the UAV: Ice programs reach its "
-                 "objects\nat a TCP port, e.g. by the proxy \"hwengine1:tcp -h 127.0.0.1 -p "
-                 "10000\"."};
+    CLI::App app{
+        "An Ice server at the ground station's modem. It forwards the calls of Ice programs to\n"
+        "the vehicle, and the vehicle's calls to a server. A program reaches an object of the\n"
+        "vehicle at a TCP port, for example with the proxy\n"
+        "\"hwengine1:tcp -h 127.0.0.1 -p 10000\".",
+        "icesoc-gateway"};
     Options o;
     addOptions(app, o);
     try {

@@ -25,15 +25,16 @@ std::string given(const std::string& text) {
         return text;
     const size_t colon = text.rfind(':');
     if (colon == std::string::npos || colon == 0)
-        throw std::runtime_error("'" + text + "': give HOST:PORT, or Ice's endpoints");
+        throw std::runtime_error(
+            "'" + text + "': expected HOST:PORT, or Ice endpoints such as \"ssl -p 10001\"");
     const std::string port = text.substr(colon + 1);
     if (port.empty() || port.find_first_not_of("0123456789") != std::string::npos ||
         port.size() > 5 || std::stoul(port) > 65535)
-        throw std::runtime_error("'" + text + "': a port is 0 to 65535");
+        throw std::runtime_error("'" + text + "': expected a port of 0 to 65535");
     std::string host = text.substr(0, colon);
     if (host.front() == '[') { // an IPv6 address in brackets, as in URLs: [::1]:10000
         if (host.back() != ']')
-            throw std::runtime_error("'" + text + "': a ] is missing");
+            throw std::runtime_error("'" + text + "': expected ] after the IPv6 address");
         host = host.substr(1, host.size() - 2);
     }
     return "tcp -h \"" + host + "\" -p " + port;
@@ -45,8 +46,8 @@ std::string readModemKey(const std::string& path) {
     key.erase(key.find_last_not_of(" \n") + 1);
     if (key.empty() || key.size() > 32 ||
         key.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos)
-        throw std::runtime_error("the modem's AES key in '" + path +
-                                 "' must be 1 to 32 hexadecimal digits");
+        throw std::runtime_error("modem key file '" + path +
+                                 "': expected 1 to 32 hexadecimal digits");
     return key;
 }
 
@@ -54,59 +55,80 @@ std::string readModemKey(const std::string& path) {
 
 void addOptions(CLI::App& app, Options& o) {
     app.add_option("-d,--device", o.device, "serial port of the modem")->required();
-    app.add_option("-b,--baud", o.baud, "baud rate (115200 is the modem's BD 7)")
+    app.add_option("-b,--baud", o.baud,
+                   "baud rate (default 115200, which is BD 7 of the modem, really 111,111)")
         ->check(CLI::IsMember({1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 250000}));
-    const auto one = app.add_option("-a,--address", o.target, "the UAV's 16-bit address")
+    const auto one = app.add_option("-a,--address", o.target,
+                                    "16-bit address of the only vehicle (default 0x0001)")
                          ->check(CLI::Range(0, 0xFFFE));
     app.add_option("--vehicle", o.vehicles,
-                   "NAME=ADDRESS, as uav7=0x0007, for each of several vehicles; their ports follow "
-                   "one another in the order of names")
+                   "NAME=ADDRESS, such as uav7=0x0007: a vehicle; repeat it for each of several "
+                   "vehicles. The first name in alphabetical order gets the port of --listen, each "
+                   "further name the next port")
         ->excludes(one);
-    app.add_option("-s,--source", o.source, "own 16-bit address")->check(CLI::Range(0, 0xFFFF));
-    app.add_option("-c,--channel", o.rfChannel, "RF channel")->check(CLI::Range(0x0B, 0x1A));
-    app.add_option("-i,--pan", o.pan, "network id")->check(CLI::Range(0, 0xFFFF));
-    app.add_option(
-        "--key", o.keyFile,
-        "file (mode 0600) with the vehicle's key, 32 hexadecimal digits, or a line "
-        "\"0x0001 KEY\" for each vehicle; /dev/fd/3: a descriptor. Without: in the clear");
+    app.add_option("-s,--source", o.source,
+                   "16-bit address of this ground station (default 0x0000)")
+        ->check(CLI::Range(0, 0xFFFF));
+    app.add_option("-c,--channel", o.rfChannel, "RF channel (default 12)")
+        ->check(CLI::Range(0x0B, 0x1A));
+    app.add_option("-i,--pan", o.pan, "network id of the modems (default 0x3332)")
+        ->check(CLI::Range(0, 0xFFFF));
+    app.add_option("--key", o.keyFile,
+                   "file (mode 0600) with the vehicle's key, 32 hexadecimal digits, or with a line "
+                   "\"0x0001 KEY\" for each vehicle; /dev/fd/3 reads descriptor 3 (default: "
+                   "no key, unencrypted)");
     app.add_option("--modem-key", o.modemKeyFile,
-                   "file (mode 0600) with the modems' AES key, up to 32 hexadecimal digits");
-    app.add_option("-g,--guard", o.guardMs, "guard time of the modem as it is, ms")
+                   "file (mode 0600) with the AES key of the modems, 1 to 32 hexadecimal digits "
+                   "(default: the modem's setting is not changed)");
+    app.add_option("-g,--guard", o.guardMs, "current guard time of the modem, ms (default 1000)")
         ->check(CLI::Range(2, 3300));
-    app.add_flag("!--no-setup", o.setUp, "the modem is set up already");
-    app.add_flag("!--transparent", o.isApi, "the modem is used in transparent mode, not API mode");
+    app.add_flag("!--no-setup", o.setUp, "do not configure the modem: it is already configured");
+    app.add_flag("!--transparent", o.isApi, "use the modem in transparent mode, not in API mode");
     app.add_flag("--wire", o.isWire,
-                 "no modems: the port is wired to the vehicle's board, and its jumper PB1 is set");
+                 "no modems: the serial port is wired to the vehicle's board, whose jumper PB1 is "
+                 "set");
     app.add_option("-l,--listen", o.listen,
-                   "HOST:PORT of this machine for clients, [::1]:PORT too; port 0: any, it is "
-                   "printed. Or Ice's endpoints, e.g. \"ssl -p 10001\"");
+                   "HOST:PORT at which clients connect, or Ice endpoints such as \"ssl -p 10001\". "
+                   "An IPv6 address is written as [::1]:PORT; port 0 selects a free port, which is "
+                   "printed (default 127.0.0.1:10000)");
     const auto station = app.add_option(
-        "--station", o.station, "HOST:PORT, or Ice's endpoints, of the server that the UAV calls");
+        "--station", o.station,
+        "HOST:PORT, or Ice endpoints, of the server that the vehicle calls (default: none)");
     app.add_option("--topics", o.topics,
-                   "proxy of IceStorm's topic manager: the UAVs' calls go to the topic 'vehicles', "
-                   "and who comes and goes")
+                   "proxy of IceStorm's topic manager; the vehicles' calls, and messages about "
+                   "vehicles that arrive and leave, are published under the topic 'vehicles'")
         ->excludes(station);
     app.add_option("--maintenance", o.maintenance,
-                   "HOST:PORT, or Ice's endpoints: the only ones at which objects for maintenance, "
-                   "such as 'keys', 'update' and 'fpga', can be reached");
+                   "HOST:PORT, or Ice endpoints, for maintenance objects such as 'keys', 'update' "
+                   "and 'fpga'; they can be reached there and nowhere else (default: none)");
     app.add_option("--page", o.page,
-                   "HOST:PORT of a web page with forms for all operations, opened by this HOST. "
-                   "Browsers call a ws endpoint, or wss with IceSSL.CertFile; without one in "
-                   "--listen, it is added");
+                   "HOST:PORT of a web page with forms for all operations. Open it under exactly "
+                   "this HOST. Browsers call a ws endpoint (wss with IceSSL.CertFile), which is "
+                   "added unless --listen has one");
     app.add_option("--origin", o.origins,
-                   "origin of another page whose browsers may call, such as "
+                   "origin of another web page that may make calls, such as "
                    "https://example.org:8443");
     app.add_option("--rights", o.rights,
-                   "JSON file: which certificate may call which identities and operations");
+                   "JSON file with rules: which certificate may call which identities and "
+                   "operations (default: every client may call everything)");
     app.add_option("--wait", o.wait,
-                   "seconds that a call waits for the radio, and then for the vehicle to take it; "
-                   "then it fails")
+                   "time-out for the radio, and then for the vehicle to receive the call, s "
+                   "(default 30)")
         ->check(CLI::Range(1, 3600));
-    app.add_option("-t,--trace", o.trace, "0 errors, 1 link and connections, 2 AT commands")
+    app.add_option("-t,--trace", o.trace,
+                   "messages: 0 errors (default), 1 also link and connections, 2 also AT commands")
         ->check(CLI::Range(0, 2));
-    app.footer("Properties of Ice are also options, e.g. --IceSSL.CertFile=gateway.p12. With "
-               "--Ice.Default.Locator\neach vehicle is in IceGrid's registry by its name, uav1 for "
-               "address 1, while it is here.");
+    app.footer(
+        "Ice properties are also options, such as --IceSSL.CertFile=gateway.p12. With\n"
+        "--Ice.Default.Locator each vehicle is registered in IceGrid under its name (uav1 for\n"
+        "address 1) while it is connected to this ground station.\n"
+        "\n"
+        "examples:\n"
+        "  icesoc-gateway -d /dev/ttyUSB0 --key uav1.key\n"
+        "  icesoc-gateway -d /dev/ttyUSB0 --key fleet.keys --vehicle uav7=0x0007 --vehicle "
+        "uav8=0x0008\n"
+        "  icesoc-gateway -d /dev/ttyUSB0 --key uav1.key --station 127.0.0.1:10100 --page "
+        "127.0.0.1:8080");
 }
 
 void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o) {
@@ -163,16 +185,20 @@ std::map<std::string, int> fleetOf(const Options& o) {
         char* end = nullptr; // strtol returns the largest long for a number that is too large
         const long address = std::strtol(number.c_str(), &end, 0);
         if (name.empty() || number.empty() || !std::isdigit(number[0]) || address > 0xFFFF || *end)
-            throw std::runtime_error("'" + text + "': give NAME=ADDRESS, as uav7=0x0007");
+            throw std::runtime_error("--vehicle: expected NAME=ADDRESS such as uav7=0x0007, got '" +
+                                     text + "'");
         // calls to all vehicles use a one-way proxy of the plugin's endpoint instead
         // (docs/fleet.md)
         if (address == XBeeAT::everybody)
-            throw std::runtime_error("'" + text + "': 0xFFFF is all vehicles, give each its own");
+            throw std::runtime_error(
+                "--vehicle " + text +
+                ": 0xFFFF means all vehicles; expected the address of one vehicle");
         for (const auto& [other, taken] : fleet)
             if (taken == address && other != name)
-                throw std::runtime_error("'" + text + "': '" + other + "' has this address");
+                throw std::runtime_error("--vehicle " + text + ": vehicle '" + other +
+                                         "' already has this address");
         if (!fleet.emplace(name, int(address)).second)
-            throw std::runtime_error("'" + name + "' is the name of two vehicles");
+            throw std::runtime_error("--vehicle: duplicate name '" + name + "'");
     }
     if (fleet.empty())
         fleet["uav" + std::to_string(o.target)] = o.target;

@@ -90,10 +90,11 @@ std::string Pages::refusal(const std::shared_ptr<Ice::Connection>& connection) c
         std::find(o_.origins.begin(), o_.origins.end(), origin) != o_.origins.end())
         return "";
     if (std::find(origins_.begin(), origins_.end(), origin) == origins_.end())
-        return "a page of " + origin + " may not call; --origin allows it";
+        return "pages from " + origin + " are not allowed to call; --origin " + origin +
+               " allows them";
     const std::string cookies = "; " + header(socket->headers, "Cookie") + ";";
     if (cookies.find("; icesoc-" + port_ + "=" + secret_ + ";") == std::string::npos)
-        return "the page is of an earlier gateway: load it again";
+        return "this page was loaded from an earlier gateway: reload it";
     return "";
 }
 
@@ -157,8 +158,8 @@ void Pages::check() {
         return;
     server_ = -1;
     throw std::runtime_error(WIFEXITED(status) && WEXITSTATUS(status) == 127
-                                 ? "--page: the program icesoc-page is missing"
-                                 : "--page: the server of the page has ended");
+                                 ? "--page: icesoc-page not found: install it next to this program"
+                                 : "--page: the server of the page (icesoc-page) has ended");
 }
 
 } // namespace gateway

@@ -31,33 +31,34 @@ bool matchesOne(const std::vector<std::string>& patterns, const std::string& tex
 Rights::Rights(const std::string& path) : isOpen_(false) {
     struct stat found{};
     if (stat(path.c_str(), &found) == 0 && !S_ISREG(found.st_mode))
-        throw std::runtime_error("the file of rights '" + path + "' is not a regular file");
+        throw std::runtime_error("rights file '" + path + "': expected a regular file");
     std::ifstream file(path);
     if (!file)
-        throw std::runtime_error("the file of rights '" + path + "' cannot be read");
+        throw std::runtime_error("cannot read rights file '" + path + "'");
     if (found.st_mode & S_IWOTH)
-        throw std::runtime_error("others may write to the file of rights '" + path +
+        throw std::runtime_error("other users may write to rights file '" + path +
                                  "': chmod o-w '" + path + "'");
     const auto refuse = [&path](const std::string& why) {
-        throw std::runtime_error(
-            "the file of rights '" + path +
-            "' must hold rules such as [{\"who\": \"CN=pilot*\", \"identities\": [\"*\"], "
-            "\"operations\": [\"*\"]}]: " +
-            why);
+        throw std::runtime_error("rights file '" + path +
+                                 "': expected rules such as [{\"who\": \"CN=pilot*\", "
+                                 "\"identities\": [\"*\"], \"operations\": [\"*\"]}]; " +
+                                 why);
     };
     try {
         const auto rules = nlohmann::json::parse(file);
         if (!rules.is_array())
-            refuse("it is not a list");
+            refuse("the file is not a list");
         for (const auto& rule : rules) {
             rules_.push_back({rule.at("who"), rule.at("identities"), rule.at("operations")});
             if (rule.size() != 3)
-                refuse("rule " + std::to_string(rules_.size()) + " has more than these");
+                refuse("rule " + std::to_string(rules_.size()) +
+                       " has more than these three members");
         }
     } catch (const nlohmann::json::parse_error& e) {
         refuse("invalid JSON at byte " + std::to_string(e.byte));
     } catch (const nlohmann::json::exception&) {
-        refuse("rule " + std::to_string(rules_.size() + 1) + " has another form");
+        refuse("rule " + std::to_string(rules_.size() + 1) +
+               " lacks one of these members, or has one of another type");
     }
 }
 

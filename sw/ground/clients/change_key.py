@@ -84,7 +84,8 @@ def alone(path):
         fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
         yield
     except BlockingIOError:
-        raise RuntimeError("another change_key is at work in the folder of '%s'" % path) from None
+        raise RuntimeError("another change_key is running in the folder of '%s': try again "
+                           "later" % path) from None
     finally:
         os.close(folder)
 
@@ -92,7 +93,8 @@ def alone(path):
 def change(args):
     args.key = os.path.realpath(args.key)  # if it is a link, its target is rewritten
     if not os.path.isfile(args.key):
-        raise RuntimeError("'%s': expected a regular file, which is rewritten" % args.key)
+        raise RuntimeError("'%s': expected a regular file, because change_key rewrites "
+                           "it" % args.key)
     with alone(args.key):
         change_alone(args)
 
@@ -107,35 +109,46 @@ def change_alone(args):
     lines[number:number + 1] = [name + " ".join(keys)]
     os.replace(write(args.key, lines), args.key)
     if not talk(args, args.key, lambda ring: ring.setNextKey(bytes.fromhex(keys[1]))):
-        raise RuntimeError("the vehicle refuses a new key: was the session in the clear?")
+        raise RuntimeError("the vehicle refuses a new key: the session is not encrypted")
     lines[number] = name + keys[1]
     new = write(args.key, lines)
     if talk(args, new, lambda ring: ring.count()) != 1:
-        raise RuntimeError("the vehicle has not taken the new key; both are in the file: try again")
+        raise RuntimeError("the vehicle has not confirmed the new key; the file has both keys: "
+                           "run this again")
     os.replace(new, args.key)
     print("change_key: vehicle 0x%04x and %s have a new key; the old key is no longer valid" % (
         args.address, args.key))
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser = argparse.ArgumentParser(
+        description=__doc__.split("\n\n")[0],
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog="examples:\n"
+               "  %(prog)s --device /dev/ttyUSB0 --key uav1.key\n"
+               "  %(prog)s --device /dev/ttyUSB0 --key fleet.keys --address 0x0007\n"
+               "  %(prog)s --device /dev/ttyUSB0 --key uav1.key --patience 180")
     parser.add_argument("--device", required=True, help="serial port of the modem")
-    parser.add_argument("--key", required=True, help="key file; it is rewritten")
-    parser.add_argument("--plugin", default=places.plugin(), help="folder of libxbeeat.so.37")
+    parser.add_argument("--key", required=True, help="key file, which is rewritten")
+    parser.add_argument("--plugin", default=places.plugin(),
+                        help="folder of libxbeeat.so.37 (default: as built or installed)")
     parser.add_argument("--slice", default=places.slice_file("Autopilot.ice"),
-                        help="Autopilot.ice")
+                        help="path of Autopilot.ice (default: as installed)")
     parser.add_argument("--address", type=lambda text: int(text, 0), default=1,
-                        help="address of the vehicle")
-    parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
-    parser.add_argument("--patience", type=int, default=60, help="time-out for an answer, s")
+                        help="address of the vehicle (default 0x0001)")
+    parser.add_argument("--guard", type=int, default=1000,
+                        help="guard time of the modem, ms (default 1000)")
+    parser.add_argument("--patience", type=int, default=60,
+                        help="time-out for a reply, s (default 60)")
     args = parser.parse_args()
     Ice.loadSlice("", ["-I" + (Ice.getSliceDir() or "."), args.slice])
     try:
         change(args)
         return 0
     except Ice.UserException as e:
-        sys.exit("change_key: %s" % ("the vehicle is in flight: it accepts a new key after landing"
-                                     if e.ice_id() == "::Autopilot::InFlight" else e))
+        if e.ice_id() == "::Autopilot::InFlight":
+            sys.exit("change_key: the vehicle is flying: it accepts no key before it has landed")
+        sys.exit("change_key: %s" % reason_of(e))
     except (Ice.Exception, provide_key.Failed, RuntimeError, OSError) as e:
         sys.exit("change_key: %s" % reason_of(e))
 

@@ -34,20 +34,30 @@ ENOUGH = 300
 
 
 def parse_arguments():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser = argparse.ArgumentParser(
+        description=__doc__.split("\n\n")[0],
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog="examples:\n"
+               "  %(prog)s flight.json --device /dev/ttyUSB0 --frame photo.png\n"
+               "  %(prog)s flight.json --device /dev/pts/3 --frame photo.png --status status\n"
+               "  %(prog)s flight.json --device /dev/ttyUSB0 --frame photo.png --trace 2")
     parser.add_argument("flight",
-                        help="flight.json: threshold, key, cores, folder of the results (./icesoc "
-                             "run writes it)")
+                        help="flight.json, the description of the flight, which ./icesoc run "
+                             "writes: threshold, key, cores, output folder")
     parser.add_argument("--device", required=True, help="serial port of the modem")
-    parser.add_argument("--plugin", default=places.plugin(), help="folder of libxbeeat.so.37")
+    parser.add_argument("--plugin", default=places.plugin(),
+                        help="folder of libxbeeat.so.37 (default: as built or installed)")
     parser.add_argument("--slice", default=places.slice_file("Autopilot.ice"),
-                        help="Autopilot.ice")
-    parser.add_argument("--frame", required=True, help="the camera's frame, to draw on")
-    parser.add_argument("--status", help="the simulator's counters")
-    parser.add_argument("--observer-device", help="the same of a second ground, which looks at all "
-                        "vehicles meanwhile")
-    parser.add_argument("--reference", help="program that computes the corners on the host")
-    parser.add_argument("--trace", type=int, default=1, help="XBeeAT.Trace: 0, 1 or 2")
+                        help="path of Autopilot.ice (default: as installed)")
+    parser.add_argument("--frame", required=True, help="picture of the camera; found corners are "
+                        "drawn into a copy")
+    parser.add_argument("--status", help="file with the counters of a simulator")
+    parser.add_argument("--observer-device", help="serial port of a second ground station, which "
+                        "watches all vehicles during the mission")
+    parser.add_argument("--reference", help="program that computes the expected corners")
+    parser.add_argument("--trace", type=int, default=1,
+                        help="messages of the plugin: 0 errors, 1 link and connections, 2 AT "
+                        "commands (default 1)")
     args = parser.parse_args()
     try:
         with open(args.flight) as file:
@@ -58,9 +68,11 @@ def parse_arguments():
         args.endpoint = "%s -d %s -a 0x0001 -s 0x0000" % (
             "serial" if args.wire else "xbee-at", args.device)
     except KeyError as error:
-        sys.exit("mission: '%s' is not a flight: the key %s is missing" % (args.flight, error))
+        sys.exit("mission: '%s': expected a flight (./icesoc run writes it); the member %s is "
+                 "missing" % (args.flight, error))
     except (OSError, ValueError, TypeError) as error:
-        sys.exit("mission: '%s' is not a flight: %s" % (args.flight, error))
+        sys.exit("mission: '%s': expected a flight (./icesoc run writes it): "
+                 "%s" % (args.flight, error))
     args.cores = [places.core(core) for core in flight["cores"]]
     return args
 
@@ -126,11 +138,11 @@ def check_against_reference(args, frame, result):
     if [result.found, best] == [want["found"], want["best"]]:
         return
     text = ("the vision core's result differs from the C++ reference: "
-            f"{result.found} corners, not {want['found']}")
+            f"{result.found} corners, expected {want['found']}")
     for number, (here, there) in enumerate(itertools.zip_longest(best, want["best"]), 1):
         if here != there:
-            text += (f"; the first that differs, by their scores, is number {number}: "
-                     f"[x, y, score] {here}, not {there}")
+            text += (f"; the first difference, in the order of scores, is number {number}: [x, y, "
+                     f"score] is {here}, expected {there}")
             break
     raise RuntimeError(text)
 
@@ -153,7 +165,8 @@ def part_of(folder):
     """Imports FOLDER/ground.py and returns the module."""
     path = os.path.join(folder, "ground.py")
     if not os.path.exists(path):
-        raise RuntimeError("the core in %s has no part in a mission: ground.py is missing" %
+        raise RuntimeError("the core in %s has no part in a mission: expected a file ground.py "
+                           "there" %
                            folder)
     spec = importlib.util.spec_from_file_location("ground_" + os.path.basename(folder), path)
     module = importlib.util.module_from_spec(spec)
@@ -164,8 +177,9 @@ def part_of(folder):
 def differences(chip):
     """Returns a text for each block that has different registers in the chip and in the
     firmware."""
-    return ["%s: its registers have the hash 0x%08X in the chip, 0x%08X in the firmware"
-            % (c.block, c.chip & 0xFFFFFFFF, c.firmware & 0xFFFFFFFF)
+    return ["%s: expected registers with hash 0x%08X, as the firmware was built for, got 0x%08X "
+            "in the chip"
+            % (c.block, c.firmware & 0xFFFFFFFF, c.chip & 0xFFFFFFFF)
             for c in chip.contracts() if c.chip != c.firmware]
 
 
@@ -179,8 +193,8 @@ def explain(communicator, args, failure):
             "chip:" + args.endpoint)))
         if found:
             text += "; ".join(["", *found]) + (
-                ": build both again from one ip/cores.list, the firmware by make firmware, the "
-                "chip by make synth-edif (docs/utilisation.md)")
+                ": rebuild both from the same ip/cores.list, the firmware with make firmware, the "
+                "chip with make synth-edif (docs/utilisation.md)")
     return text
 
 
@@ -295,7 +309,7 @@ class Mission:
                 raise RuntimeError("the UAV did not call Station.vehicleState within "
                                    f"{self.args.patience} s")
         if not self.station.alive:
-            raise RuntimeError(f"uav.isAlive answered {self.station.alive!r}")
+            raise RuntimeError(f"uav.isAlive: expected True, got {self.station.alive!r}")
 
     def check(self, result):
         if not self.args.reference:
@@ -307,8 +321,8 @@ class Mission:
             raise
         self.log.note("the result equals the C++ reference, bit by bit")
         if result.found < ENOUGH:
-            self.log.note(f"{result.found} corners leave much of the core untried: make ip-test "
-                          "IP=vision tries all of it")
+            self.log.note(f"{result.found} corners test only a part of the core: make ip-test "
+                          "IP=vision tests all of it")
 
     def fly(self):
         self.serve()
@@ -341,7 +355,8 @@ def fly(args):
     except Ice.ObjectNotExistException as e:
         sys.exit("mission: " + explain(communicator, args, e))
     except (Ice.TimeoutException, Ice.CommunicatorDestroyedException):
-        sys.exit("mission: no answer for %d s: is the UAV on, in reach, and has it the same key?" %
+        sys.exit("mission: no reply from the UAV for %d s: check that it is on, in range, and has "
+                 "the same key" %
                  args.patience)
     except (Ice.Exception, RuntimeError, OSError, subprocess.CalledProcessError) as e:
         sys.exit("mission: %s" % reason_of(e))

@@ -109,7 +109,7 @@ class Log:
             seconds = time.monotonic() - begin
             if seconds >= reported:
                 reported += 15
-                self.say("no answer to %s for %d s" % (what, seconds))
+                self.say("no reply to %s for %d s" % (what, seconds))
             if self.give_up and wait.is_over():
                 return self.give_up()
 
@@ -123,7 +123,7 @@ class Log:
         try:
             return function()
         except Ice.CommunicatorDestroyedException:  # give_up
-            outcome = " has no answer"
+            outcome = " has no reply"
             raise
         except Ice.Exception as e:
             outcome = " failed: " + type(e).__name__

@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
         const Ice::StringSeq words =
             data.properties->parseCommandLineOptions("", Ice::StringSeq(argv + 1, argv + argc));
         if (words.empty())
-            throw std::runtime_error("which object? See --help");
+            throw std::runtime_error("expected the proxy of an object; see --help");
         Ice::CommunicatorHolder ic(data);
         auto object = ic->stringToProxy(words[0]);
         std::cout << ic->proxyToString(object) << "\n";
@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
                              .count()
                       << " ms" << std::endl;
         }
-        std::cout << "it is a " << object->ice_id() << std::endl;
+        std::cout << "type: " << object->ice_id() << std::endl;
     } catch (const std::exception& e) {
         std::cerr << "ping: " << e.what() << "\n";
         return 1;

@@ -48,15 +48,16 @@ def open_secret(path):
     try:
         found = os.fstat(fd)
         if not stat.S_ISREG(found.st_mode) and not stat.S_ISFIFO(found.st_mode):
-            raise Failed("'%s' is neither a file nor a pipe" % path)
+            raise Failed("'%s': expected a file or a pipe" % path)
         if found.st_mode & 0o077:
-            raise Failed("others may read '%s': chmod 600 '%s'" % (path, path))
+            raise Failed("'%s' can be read by other users: chmod 600 '%s'" % (path, path))
         if found.st_uid not in (os.geteuid(), 0):
-            raise Failed("'%s' belongs to another user: chown it" % path)
+            raise Failed("'%s' belongs to another user: chown it to the user who runs this "
+                         "program" % path)
         if found.st_size > 65536:
-            raise Failed("'%s' is too long for a file of keys" % path)
+            raise Failed("'%s' is too long for a key file" % path)
         if stat.S_ISFIFO(found.st_mode) and not select.select([fd], [], [], PIPE_WAIT)[0]:
-            raise Failed("'%s' is a pipe that nothing is written to" % path)
+            raise Failed("'%s' is a pipe to which no program writes" % path)
         os.set_blocking(fd, True)
         return open(fd, encoding="utf-8-sig", errors="replace", newline="\n")
     except BaseException:
@@ -75,12 +76,13 @@ def read_key(path, vehicle):
                                  words)
             owner = int(found[1], 16) if found and found[1] else None
             if words and (not found or owner in keys):
-                raise Failed("'%s', line %d: give [ADDRESS] KEY [NEXT], a key as 32 hexadecimal "
-                             "digits, one line a vehicle" % (path, number))
+                raise Failed("'%s', line %d: expected [ADDRESS] KEY [NEXT], with keys of 32 "
+                             "hexadecimal digits, one line for each vehicle" % (path, number))
             if words:
                 keys[owner] = found[2].lower()
     if not keys:
-        raise Failed("'%s' has no key, 32 hexadecimal digits: openssl rand -hex 16 makes one" %
+        raise Failed("'%s' has no key: expected 32 hexadecimal digits, such as openssl rand -hex "
+                     "16 prints" %
                      path)
     key = keys.get(vehicle, None if vehicle == GROUP else keys.get(None))
     if not key:
@@ -111,44 +113,53 @@ def provide(port, command, patience):
     end = time.monotonic() + patience
     while "icesoc: key?" not in (asked := read_line(port, PAUSE)):
         if time.monotonic() > end:
-            raise Failed("no vehicle asked for a key within %d s: is it wired, and was it switched "
-                         "on in this time?" % patience)
+            raise Failed("no vehicle has asked for a key in %d s: check the wires, and switch the "
+                         "vehicle on while this program waits" % patience)
         fcntl.ioctl(port, TIOCSBRK)
         time.sleep(BREAK)
         termios.tcflush(port, termios.TCIFLUSH)
         fcntl.ioctl(port, TIOCCBRK)
     if "protection is off" in asked:
-        print("provide_key: read protection is off: anyone who opens the vehicle can read its key "
-              "(--protect switches it on)", file=sys.stderr)
+        print("provide_key: read protection is off: anyone with access to the board can read its "
+              "key (--protect sets it)", file=sys.stderr)
     os.write(port, command.encode() + b"\n")
     answer = read_line(port, 10)
     if answer != "ok":
-        raise Failed("the vehicle rejected the command: '%s'" % answer)
+        raise Failed("the vehicle has not accepted the command: expected 'ok', got '%s'" % answer)
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("--port", required=True, help="serial port that is wired to the processor")
+    parser = argparse.ArgumentParser(
+        description=__doc__.split("\n\n")[0],
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog="examples:\n"
+               "  %(prog)s --port /dev/ttyUSB0 --key uav1.key\n"
+               "  %(prog)s --port /dev/ttyUSB0 --key fleet.keys --address 0x0007 --old old.key\n"
+               "  %(prog)s --port /dev/ttyUSB0 --protect")
+    parser.add_argument("--port", required=True,
+                        help="serial port that is wired to PA9 and PA10 of the vehicle")
     what = parser.add_mutually_exclusive_group(required=True)
-    what.add_argument("--key", help="file with the key, mode 0600")
+    what.add_argument("--key", help="file with the key, mode 0600: 32 hexadecimal digits, or a "
+                      "line \"ADDRESS KEY\" for each vehicle")
     what.add_argument("--open", action="store_true",
-                      help="use no key; anyone with a radio may then call the vehicle")
+                      help="store no key: anyone with a radio can call the vehicle")
     what.add_argument("--protect", action="store_true",
-                      help="set read protection level 1, and change no key; switch the vehicle off "
-                      "and on afterwards")
-    parser.add_argument("--old", help="file with the present key of the vehicle; needed if it has "
-                        "a key and its jumper is not connected")
+                      help="store no key: set read protection level 1; switch the vehicle off and "
+                      "on afterwards")
+    parser.add_argument("--old", help="file with the current key of the vehicle; needed if the "
+                        "vehicle has a key and PC2 is not wired to ground")
     parser.add_argument("--address", type=address, default=1,
-                        help="address for the vehicle, and its line in the file (default: 0x0001)")
+                        help="address that the vehicle gets; also selects the line of the key file "
+                        "(default 0x0001)")
     second = parser.add_mutually_exclusive_group()
     second.add_argument("--ground", type=address, help="modem address of a second ground station; "
-                        "the key is for this ground station only")
-    second.add_argument("--fellow", type=address, help="modem address of another vehicle; the two "
-                        "vehicles call each other, and the key is for them only")
+                        "the key is for the link to this station only")
+    second.add_argument("--fellow", type=address, help="modem address of another vehicle; the "
+                        "key is for the link between the two vehicles only")
     second.add_argument("--group", action="store_const", dest="ground", const=GROUP,
-                        help="give the vehicle the group key, from the line 0xffff of the file")
+                        help="store the key for calls to all vehicles, from the line 0xffff")
     parser.add_argument("--patience", type=int, default=120,
-                        help="time to wait for a vehicle, s")
+                        help="time for which to wait for a vehicle, s (default 120)")
     args = parser.parse_args()
     try:
         owner = GROUP if args.ground == GROUP else args.address
@@ -173,8 +184,11 @@ def main():
                "has a fellow" if args.fellow is not None else "is open" if args.open else
                "has this key, and no other"))
         return 0
-    except (Failed, OSError, termios.error) as e:
-        sys.exit("provide_key: %s" % reason_of(e))
+    except Failed as e:
+        sys.exit("provide_key: %s" % e)
+    except (OSError, termios.error) as e:
+        file = getattr(e, "filename", None) or args.port
+        sys.exit("provide_key: %s: %s" % (file, os.strerror(e.args[0])))
     except KeyboardInterrupt:
         return 130
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """reasons: turns errors of the system and of Ice into short texts for a user."""
 import os
+import re
 import termios
 
 import Ice
@@ -16,8 +17,12 @@ def reason_of(error):
         return str(error)
     if isinstance(error, Ice.DNSException):
         return "%s: host not found" % error.host
-    for field in ("unknown", "reason"):
+    for field in ("unknown", "reason", "str"):
         if getattr(error, field, ""):
             return getattr(error, field).strip().rpartition("\n")[2]
-    number = getattr(error, "error", 0)
-    return os.strerror(number) if number else error.ice_id().rpartition(":")[2]
+    if getattr(error, "error", 0):
+        is_connecting = isinstance(error, Ice.ConnectFailedException)
+        return ("cannot connect: " if is_connecting else "") + os.strerror(error.error)
+    # The other exceptions have no text: returns the words of their name, such as "Connection lost".
+    name = error.ice_id().rpartition(":")[2].replace("Exception", "")
+    return re.sub("(?<=[a-z])(?=[A-Z])", " ", name).capitalize()

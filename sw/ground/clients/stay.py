@@ -47,7 +47,7 @@ def is_wanted(args):
         return False
     if gateway_program(args):
         return True
-    print("stay: the page makes no calls without the gateway: make run LIVE=1 builds it",
+    print("stay: no gateway, so the page cannot make calls: make run LIVE=1 builds the gateway",
           file=sys.stderr)
     return False
 

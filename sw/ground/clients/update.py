@@ -28,21 +28,22 @@ OBJECTS = {HEADER.constants["LOADER_PRODUCT"]: "update",  # names of objects by 
            HEADER.constants["FPGA_PRODUCT"]: "fpga", KEYS: "update"}
 PIECE, PIECES_ON_THE_WAY, DICTIONARY = 4096, 3, 65535
 TEXT = {
-    "foreignImage": "the package is not for this kind of vehicle, or not for its board",
+    "foreignImage": "the package is for another kind of vehicle or another board",
     "oldVersion": "the version must be greater than the confirmed version on the vehicle",
-    "wrongSignature": "it is not signed with this vehicle's keys",
+    "wrongSignature": "the package is not signed with one of the vehicle's keys",
     "damagedImage": "the received bytes do not match the signature; try again",
-    "busyNow": "another update is under way",
+    "busyNow": "another update is in progress",
     "onTrial": "the running image is not confirmed yet; the vehicle reverts within a minute",
-    "needsOther": "it needs a newer bitstream, or firmware, that was confirmed: send that first; a "
-                  "list of keys needs the list before it, and what runs signed with one of its "
-                  "keys",
-    "flashFault": "the vehicle's flash does not take it",
-    "wentBack": "the new one was started and went back: it was not confirmed in time, or crashed",
-    "refused": "the FPGA did not take it: its CRC is wrong, or it is for another device; the "
-               "golden one runs",
+    "needsOther": "the package needs a newer bitstream (or firmware) that is confirmed: send that "
+                  "first; a list of keys needs the list before it, and a running image that is "
+                  "signed with one of its keys",
+    "flashFault": "the vehicle could not write its flash",
+    "wentBack": "the new version was started, then replaced by the old one: it was not confirmed "
+                "in time, or crashed",
+    "refused": "the FPGA has not accepted the bitstream: its CRC is wrong, or it is for another "
+               "device; the golden bitstream runs",
 }
-IN_FLIGHT = "the vehicle flies: it takes no update before it has landed"
+IN_FLIGHT = "the vehicle is flying: it accepts no update before it has landed"
 
 
 class Failed(Exception):
@@ -77,7 +78,7 @@ def read_package(path):
             last = product, version
         at += HEADER.size + len(image)
     if not data:
-        raise Failed("'%s' is empty" % path)
+        raise Failed("'%s': expected a package from pack_update, got an empty file" % path)
     return parts
 
 
@@ -124,14 +125,13 @@ class Vehicle:
             try:
                 return function()
             except Ice.ObjectNotExistException:
-                raise Failed("this vehicle has no object '%s': it was not started by a boot "
-                             "loader, or its FPGA has no"
-                             " flash that the processor reaches" %
+                raise Failed("the vehicle has no object '%s': it was not started by a boot "
+                             "loader, or its processor has no access to the FPGA's flash" %
                              self.proxy.ice_getIdentity().name)
             except Ice.LocalException as e:
                 if time.monotonic() > end:
-                    raise Failed("no answer for %d s (%s): is the vehicle on, and in reach?"
-                                 % (self.patience, type(e).__name__))
+                    raise Failed("no reply from the vehicle for %d s (%s): check that it is on "
+                                 "and in range" % (self.patience, reason_of(e)))
                 time.sleep(0.2)
 
     def status(self):
@@ -179,11 +179,11 @@ def send_keys(vehicle, lists, say):
         number = HEADER.unpack(header)["version"]
         reason = vehicle.persist(lambda: vehicle.proxy.begin(header))
         if str(reason) == "oldVersion":
-            say("the vehicle has list %d of keys, or a later one" % number)
+            say("the vehicle already has list %d of keys, or a later one" % number)
             continue
         vehicle.expect(reason)
         vehicle.wait_while("preparing")
-        say("the vehicle takes what the keys of list %d sign" % number)
+        say("the vehicle now accepts packages signed with the keys of list %d" % number)
 
 
 def transfer(vehicle, header, image, say, air):
@@ -203,13 +203,13 @@ def transfer(vehicle, header, image, say, air):
             vehicle.send(image, dictionary, say)
             first, start, sent = begun
             end, sent_end = read_clock(air)
-            say("sent %d bytes in %.2f s%s; the vehicle checks them" % (
+            say("sent %d bytes in %.2f s%s; the vehicle is checking them" % (
                 len(image) - first, end - start,
                 ", %d bytes on the air" % (sent_end - sent) if sent_end else ""))
             vehicle.expect(vehicle.proxy.finish())
             return
         except Ice.LocalException as e:
-            say("the link was lost (%s): continuing" % type(e).__name__)
+            say("the link was lost (%s): continuing" % reason_of(e))
             if str(vehicle.status().phase) == "idle":
                 begin()
 
@@ -228,19 +228,21 @@ def update(vehicle, images, say, air, rehearses):
     status = vehicle.status()
     say("the vehicle runs version %d%s" % (status.running, ", on trial" if status.trial else ""))
     if status.running == version and not status.trial:
-        say("version %d is confirmed already" % version)
+        say("version %d is already confirmed" % version)
         return
     if status.running != version:
         if status.slot not in images:
-            raise Failed("the package has no image for the vehicle's free slot")
+            raise Failed("the package has no image for the vehicle's free slot: pack it again "
+                         "with pack_update")
         watch = Watch(vehicle.proxy, air)
         transfer(vehicle, *images[status.slot], say, air)
         vehicle.wait_while("checking")
         say(watch.stop())
-        say("version %d is signed and whole; it starts" % version)
+        say("version %d is complete and its signature correct; it starts" % version)
         await_start(vehicle, version)
     if rehearses:
-        say("version %d runs, and is not confirmed: within a minute it goes back" % version)
+        say("version %d runs and is not confirmed: the vehicle returns to the old version within "
+            "a minute" % version)
         while vehicle.status().running == version:
             time.sleep(1)
         say("the vehicle runs version %d" % vehicle.status().running)
@@ -250,22 +252,31 @@ def update(vehicle, images, say, air, rehearses):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
-    parser.add_argument("package", help="file from pack_update")
+    parser = argparse.ArgumentParser(
+        description=__doc__.split("\n\n")[0],
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog="examples:\n"
+               "  %(prog)s new.update --device /dev/ttyUSB0 --key uav1.key\n"
+               "  %(prog)s new.update --proxy 'update:tcp -h 127.0.0.1 -p 10001'\n"
+               "  %(prog)s new.update --device /dev/ttyUSB0 --key uav1.key --rehearse")
+    parser.add_argument("package", help="package made by pack_update")
     parser.add_argument("--device", help="serial port of the modem")
     parser.add_argument("--proxy",
-                        help="instead of --device: proxy of the object, as 'update:tcp -h host "
-                             "-p 4061'")
+                        help="proxy of the object, such as 'update:tcp -h host -p 4061'; replaces "
+                             "--device")
     parser.add_argument("--plugin", help="folder of libxbeeat.so.37 (default: as built or "
-                        "installed; not loaded with --proxy)")
-    parser.add_argument("--slice", default=places.slice_file("Update.ice"), help="Update.ice")
-    parser.add_argument("--status", help="the simulator's counters")
-    parser.add_argument("--key", default="", help="file with the link's key; without: in the clear")
-    parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")
+                        "installed; the plugin is not loaded with --proxy)")
+    parser.add_argument("--slice", default=places.slice_file("Update.ice"),
+                        help="path of Update.ice (default: as installed)")
+    parser.add_argument("--status", help="file with the counters of a simulator")
+    parser.add_argument("--key", default="", help="file with the key of the link (default: no key)")
+    parser.add_argument("--guard", type=int, default=1000,
+                        help="guard time of the modem, ms (default 1000)")
     parser.add_argument("--rehearse", action="store_true",
-                        help="confirm nothing: see it start, and go back by itself")
+                        help="do not confirm the new version: let it start, and let the vehicle "
+                        "return to the old one")
     parser.add_argument("--patience", type=int, default=120,
-                        help="time-out without a reply, s")
+                        help="time-out for a reply, s (default 120)")
     args = parser.parse_args()
     start = time.monotonic()
 
@@ -300,7 +311,8 @@ def main():
     except KeyboardInterrupt:
         return 130
     except Ice.UserException as e:
-        sys.exit("update: %s" % (IN_FLIGHT if e.ice_id() == "::Update::InFlight" else e))
+        sys.exit("update: %s" % (IN_FLIGHT if e.ice_id() == "::Update::InFlight" else
+                                reason_of(e)))
     except (Failed, Ice.Exception, OSError) as e:
         sys.exit("update: %s" % reason_of(e))
     finally:

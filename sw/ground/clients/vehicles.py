@@ -28,7 +28,7 @@ def settings_file(file):
     for path in [given] if given else map(os.path.expanduser, FILES):
         if os.path.isfile(path):
             return path
-    raise Unknown("no file lists the vehicles: expected %s; write a line such as\n"
+    raise Unknown("no file lists the vehicles: expected %s with a line such as\n"
                   "Vehicle.uav1=xbee-at -d /dev/icesoc-modem -a 0x0001" %
                   (given or " or ".join(FILES)))
 
@@ -52,7 +52,8 @@ def find(name, file=None):
     if not name and vehicles:
         raise Unknown("vehicle: expected a name, as %s lists several: %s" %
                       (path, ", ".join(sorted(vehicles))))
-    raise Unknown("vehicle '%s': expected one of %s; or add a line Vehicle.%s=... to %s" %
+    raise Unknown("vehicle '%s': expected one of %s; add a line Vehicle.%s=... to %s for another "
+                  "vehicle" %
                   (name, ", ".join(sorted(vehicles)) or "none", name or "NAME", path))
 
 

@@ -240,7 +240,7 @@ void Ice_InputStream_skipOptionals(Ice_InputStreamPtr is) {
 #ifndef ICEC_MINIMAL
 
 Ice_Bool Ice_InputStream_end(Ice_InputStreamPtr is) {
-    /* Ice before 3.3 could send one superfluous byte after the instances of classes in encoding
+    /* Before version 3.3, Ice could send one byte too many after class instances in encoding
      * 1.0. */
     Ice_Int most = is->minor == 0 ? 1 : 0;
     is->sliceFlags = 0;

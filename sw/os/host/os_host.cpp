@@ -21,8 +21,8 @@ extern "C" {
 
 namespace {
 
-// Stack size of a task on the host. The firmware's stacks are sized for a Cortex-M3; host code that
-// it calls needs more.
+// Stack size of a task on the host, bytes. The firmware's stacks are sized for a Cortex-M3; host
+// functions that the firmware calls need larger ones.
 constexpr size_t stackBytes = 256 * 1024;
 
 struct Coroutine {

@@ -36,7 +36,7 @@ uint32_t checksum(const std::vector<uint8_t>& image) {
 ElfImage::ElfImage(const std::string& path) : path_(path) {
     std::ifstream in(path, std::ios::binary);
     if (!in)
-        throw std::runtime_error("cannot read firmware '" + path + "': 'make firmware' builds it");
+        throw std::runtime_error("cannot read firmware '" + path + "'; make firmware builds it");
     std::vector<uint8_t> file((std::istreambuf_iterator<char>(in)), {});
     try {
         auto header = at<Elf32_Ehdr>(file, 0);
@@ -118,7 +118,7 @@ std::vector<uint8_t> ElfImage::movedTo(uint32_t address) const {
     const uint32_t begin = symbol("image_begin"), end = symbol("image_end");
     if (relocations_.empty())
         throw std::runtime_error("firmware '" + path_ +
-                                 "' was linked without --emit-relocs: it cannot be moved");
+                                 "' cannot be relocated: link it with --emit-relocs");
     std::vector<uint8_t> image = this->image();
     for (const Relocation& r : relocations_) {
         if (r.type == R_ARM_THM_PC22 || r.type == R_ARM_THM_JUMP24 || r.type == R_ARM_NONE)

@@ -74,9 +74,9 @@ bool readSeed(const std::string& path, Bytes& seed) {
                          read(in, seed.data(), seed.size()) == ssize_t(seed.size());
     close(in);
     if (!isFile)
-        fail("the private key '" + path + "' is not a regular file");
+        fail("the private key '" + path + "': expected a regular file");
     if (found.st_mode & 077)
-        fail("others may read the private key '" + path + "': chmod 600 '" + path + "'");
+        fail("other users may read the private key '" + path + "': chmod 600 '" + path + "'");
     if (!isWhole)
         fail("'" + path + "' is not a private key: expected " + std::to_string(seed.size()) +
              " bytes, got " + std::to_string(found.st_size));
@@ -100,8 +100,8 @@ struct Keys {
             const int why = errno;
             unlink(temporary.c_str());
             if (made)
-                std::cout << "pack_update: made a new key pair: " << path
-                          << " signs for vehicles that are filled with it\n";
+                std::cout << "pack_update: created a new key pair: " << path
+                          << " signs images for vehicles whose flash was filled with this key\n";
             else if (why != EEXIST ||
                      !readSeed(path, seed)) // another process created the file first
                 fail("cannot write the private key '" + path + "'");
@@ -247,7 +247,8 @@ void checkWhole(const std::string& path, const Bytes& file, size_t at) {
     Packets packets(file, at);
     if (!packets.toDesync())
         fail("'" + path +
-             "' is cut, or damaged: expected a bitstream up to its command DESYNC, got " +
+             "' is truncated or damaged: expected a bitstream that ends with the command DESYNC, "
+             "got " +
              std::to_string(file.size()) + " bytes without it");
     if (const size_t rest = packets.rest())
         fail("'" + path + "' has " + std::to_string(rest) +
@@ -273,7 +274,7 @@ void checkHeader(const std::string& path, const Bytes& file) {
     const size_t follow = file.size() - at - 5;
     if (number(at + 1, 4) != follow)
         fail("'" + path + "': expected " + std::to_string(number(at + 1, 4)) +
-             " bytes of bitstream, as its header counts, got " + std::to_string(follow));
+             " bytes of bitstream, as its header states, got " + std::to_string(follow));
 }
 
 // Reads a bitstream, starting SLOTS_SYNC_AT bytes before its sync word. The sync word is left out;
@@ -286,7 +287,7 @@ Bytes readBitstream(const std::string& path) {
     const auto found = std::search(file.begin(), end, std::begin(sync), std::end(sync));
     if (found == end)
         fail("'" + path +
-             "' is not a bitstream: a .bit or .bin by BitGen has a sync word, AA 99 55 66");
+             "': expected a .bit or .bin file from BitGen, got no sync word (AA 99 55 66)");
     if (!isUnchecked) {
         checkHeader(path, file);
         checkWhole(path, file, static_cast<size_t>(found - file.begin()) + sizeof sync);
@@ -377,9 +378,11 @@ void fillVehicle(const std::string& loader, const std::string& elf, uint32_t ver
 
 int main(int argc, char** argv) {
     CLI::App app{
-        "Signs what is sent to a vehicle, and fills the flash of a new one. KEYFILE is the "
-        "private key,\nwhich is created, readable only by you, if it is missing. "
-        "VERSION: 1 to 4294967294."};
+        "Signs firmware and bitstreams that are sent to a vehicle, and makes the flash contents\n"
+        "of a new vehicle. KEYFILE is the private key; if it does not exist, it is created,\n"
+        "readable only by you. VERSION is 1 to 4294967294; a vehicle only accepts a higher\n"
+        "version than its confirmed one.",
+        "pack_update"};
     std::vector<std::string> word;
     const auto add = [&](const char* name, const char* names, int least, int most, const char* what,
                          const std::function<void()>& run) {
@@ -399,37 +402,47 @@ int main(int argc, char** argv) {
     };
     add("image", "NEW.elf VERSION KEYFILE NEW.update", 4, 4, "signs firmware",
         [&] { packImage(word[0], versionOf(word[1]), word[2], word[3]); });
-    add("bitstream", "NEW.bit VERSION KEYFILE NEW.update", 4, 4, "signs the FPGA's .bit or .bin",
+    add("bitstream", "NEW.bit VERSION KEYFILE NEW.update", 4, 4,
+        "signs a bitstream of the FPGA, a .bit or .bin file",
         [&] { packBitstream(word[0], versionOf(word[1]), word[2], word[3]); });
     add("vehicle", "LOADER.elf FIRMWARE.elf VERSION KEYFILE FLASH.bin", 5, 5,
-        "fills a new vehicle's flash: boot loader, public key, a confirmed firmware",
+        "makes the flash of a new vehicle: boot loader, public key, confirmed firmware",
         [&] { fillVehicle(word[0], word[1], versionOf(word[2]), word[3], word[4]); });
     add("fpga", "GOLDEN.bit VERSION KEYFILE FLASH.bin", 4, 4,
-        "fills the FPGA's flash with the bitstream that is never replaced",
+        "makes the flash of the FPGA, with the golden bitstream, which is never replaced",
         [&] { fillFpga(word[0], versionOf(word[1]), word[2], word[3]); });
-    add("public", "KEYFILE KEY.pub", 2, 2, "writes a key's public half",
+    add("public", "KEYFILE KEY.pub", 2, 2, "writes the public key of a private key",
         [&] { savePublic(word[0], word[1]); });
     add("keys", "NUMBER KEYFILE KEY.pub [SECOND.pub] NEW.update", 4, 5,
-        "signs the next list of public keys; NUMBER: the last list's plus 1 (new vehicle: 1)", [&] {
+        "signs the next list of public keys; NUMBER is one more than that of the list before (1 "
+        "for a new vehicle)",
+        [&] {
             std::vector<Bytes> open;
             std::transform(word.begin() + 2, word.end() - 1, std::back_inserter(open), readPublic);
             save(word.back(), listOf(open, versionOf(word[0]), Keys(word[1])));
         });
     add("stamp", "FIRMWARE.elf", 1, 1,
-        "writes a firmware's checksum into its file, as the build does",
+        "writes the checksum of a firmware into its file; the build does this",
         [&] { ElfImage(word[0]).stamp(); });
-    number("--vendor", board[0], "vendor of the board, must match the vehicle's (default 1)");
-    number("--board", board[1], "type of the board, must match the vehicle's (default 1)");
+    number("--vendor", board[0],
+           "vendor of the board, which must match the vehicle's, 1 to 4294967294 (default 1)");
+    number("--board", board[1],
+           "type of the board, which must match the vehicle's, 1 to 4294967294 (default 1)");
     number("--needs", needs,
            "lowest version of the bitstream that a firmware needs, or of the firmware that a "
-           "bitstream needs (default 0: any)");
-    app.add_option("--second", second, "KEY.pub: second public key of a new vehicle");
+           "bitstream needs (default: any)");
+    app.add_option("--second", second,
+                   "file with the second public key of a new vehicle (default: none)");
     app.add_flag("--unchecked", isUnchecked,
-                 "sign a bitstream that is cut or has bytes after its end");
+                 "sign a bitstream even if it is truncated or has bytes after its end");
+    app.footer("examples:\n"
+               "  pack_update image uav.elf 7 update.key new.update\n"
+               "  pack_update bitstream chip.bit 7 update.key --needs 5 new.update\n"
+               "  pack_update vehicle loader.elf uav.elf 1 update.key flash.bin");
     app.require_subcommand(1);
     try {
         if (sodium_init() < 0)
-            fail("libsodium does not start");
+            fail("libsodium cannot be initialised");
         app.parse(argc, argv);
     } catch (const CLI::ParseError& e) {
         return app.exit(e) ? 2 : 0;

@@ -72,7 +72,7 @@ class Cases(Script):
     def simulate(self, *words, options=(), **how):
         self.ask(*self.simulator(*words, options=options), **how)
 
-    def replay(self, folder, *options, expected="bit by bit the flight that was recorded"):
+    def replay(self, folder, *options, expected="the replay equals the recorded flight bit by bit"):
         """Repeats the flight in a folder from its recording."""
         self.ask(SIMULATOR, "--out", "replay", "--replay", folder, *options)
         self.has(expected)
@@ -81,7 +81,7 @@ class Cases(Script):
         """The link is secure by default; only the user may read the recording and the key."""
         self.make("run", f"IMAGE={IMAGE}", "SIZE=96x64", f"OUT={self.out}", build=BUILD)
         self.flew(self.out)
-        self.has("121 corners leave much of the core untried: make ip-test IP=vision")
+        self.has("121 corners test only a part of the core: make ip-test IP=vision")
         # The ground waits first for the modem's set-up, then for the vehicle.
         steps = re.findall("modem ready on .* after [0-9]* ms|link connecting|link up, secure|"
                            "the UAV has .* s to answer", self.said)
@@ -143,13 +143,13 @@ class Cases(Script):
             shutil.copy("before.png", folder)
         self.replay("cut", expected="the recording ends here")
         replay = SIMULATOR, "--out", "replay", "--replay"
-        self.fails("not the flight that was recorded: it departs between", *replay, "other")
+        self.fails("the replay differs from the recorded flight between", *replay, "other")
         write("other/flight.jsonl", '{"no": "flight"}\n')
         self.fails("expected the recording of a flight, line 1", *replay, "other")
         self.fails("--out: expected a folder other than the recording's", SIMULATOR, "--replay",
                    self.out, "--out", self.out)
         self.fails("expected a flight with the ARM binary", *replay, self.out, "--gdb", "0")
-        self.fails("writes no waveforms", *replay, self.out, "--wave", "wave.fst")
+        self.fails("cannot write waveforms", *replay, self.out, "--wave", "wave.fst")
 
     def test_cores(self):
         """A mission with every core that has a part in missions."""
@@ -192,9 +192,9 @@ class Cases(Script):
         lines = (BUILD / "gen/soc_cores.c").read_text().split("hw_contracts[")[1].split("\n")[1:]
         row = 1 + next(n for n, line in enumerate(lines) if '"vision"' in line)
         self.patched("other.elf", "hw_contracts", 20 * row - 4, b"\xff" * 4)  # last word of a row
-        self.refused("no object 'hwengine1'; vision: its registers have the hash 0x.* in the chip, "
-                     "0xFFFFFFFF in the firmware: build both again from one ip/cores.list, the "
-                     "firmware by make firmware", "--cpu", "m3", "--firmware", "other.elf")
+        self.refused("no object 'hwengine1'; vision: expected registers with hash 0xFFFFFFFF, as "
+                     "the firmware was built for, got 0x.* in the chip: rebuild both from the same "
+                     "ip/cores.list", "--cpu", "m3", "--firmware", "other.elf")
 
     def pack(self, *words):
         self.ask(BUILD / "sw/update/pack_update", *words)
@@ -213,7 +213,7 @@ class Cases(Script):
         self.ask(STAND_IN, "golden.bin", "1", "10000")
         self.pack("fpga", "golden.bin", "1", "other.key", "fpga.bin")
         before = flash.read_bytes()
-        self.update(FIRMWARE, "not signed with this vehicle's key", status=None)
+        self.update(FIRMWARE, "not signed with one of the vehicle's keys", status=None)
         self.assertEqual(flash.read_bytes(), before)
         Path("fpga.bin").unlink()
         Path("cut.update").write_bytes(Path("new.update").read_bytes()[:50000])
@@ -243,8 +243,8 @@ class Cases(Script):
             file.write(Path("list.update").read_bytes())
         self.simulate(*(str(word).replace("new.update", "spare.update") for word in UPDATES),
                       options=stored)
-        self.has("runs and is confirmed", "takes what the keys of list 2 sign")
-        self.update(FIRMWARE, "not signed with this vehicle's keys", status=None)
+        self.has("runs and is confirmed", "accepts packages signed with the keys of list 2")
+        self.update(FIRMWARE, "not signed with one of the vehicle's keys", status=None)
 
     def big_and_broken(self, flash):
         """Sends 256 KiB, which fill three sectors, within 30 s of air time. Then sends firmware
@@ -258,22 +258,23 @@ class Cases(Script):
         sent = re.search(r"sent 262144 bytes in (.*)", self.said)[1]
         self.assertLessEqual(float(re.search(r"[\d.]+", sent)[0]), 30)
         self.patched("crashes.elf", "Program_run", 0, b"\xff\xde")  # UDF
-        self.update("crashes.elf", "is signed and whole; it starts", "was started and went back",
+        self.update("crashes.elf", "is complete and its signature correct; it starts",
+                    "was started, then replaced by the old one",
                     "2 software, 0 watchdog", status=None)
 
     def bitstreams(self, stored):
         """In the FPGA's flash there is no bitstream; a bitstream that the FPGA refuses; one that is
         never confirmed; and one of full size."""
-        self.update(BUILD / "firmware/uav.bin", "has a sync word, AA 99 55 66", status=None)
+        self.update(BUILD / "firmware/uav.bin", "got no sync word", status=None)
         self.ask(STAND_IN, "new.bin", "2", "10000")
         damaged = bytearray(Path("new.bin").read_bytes())
         damaged[9000] = ord("x")
         Path("damaged.bin").write_bytes(damaged)
-        self.update("damaged.bin", "the FPGA did not take it", status=None)
+        self.update("damaged.bin", "the FPGA has not accepted the bitstream", status=None)
         self.pack("bitstream", "new.bin", str(int(time.time())), self.keys / "update.key",
                   "new.update")
         self.simulate(*UPDATES, "--rehearse", options=(*stored, "--fpga-flash", "fpga.bin"))
-        self.has("runs, and is not confirmed", "the vehicle runs version 1$")
+        self.has("runs and is not confirmed", "the vehicle runs version 1$")
         self.ask(STAND_IN, "full.bin", "3")
         for bits in "new.bin", "full.bin":
             self.update(bits, "runs and is confirmed")
@@ -390,20 +391,21 @@ class Cases(Script):
         shutil.copy("mine/report.md", ".")
         os.symlink(self.out / "mine/report.md", "calls.jsonl")
         write("bad.png", "this is not a picture\n")
-        self.refused("is not a picture that can be read", image="bad.png")
+        self.refused("expected a PNG, JPEG or PGM file", image="bad.png")
         self.lacks("127.0.0.1")  # the address of a page precedes the rejected one
         for name in "report.md", "calls.jsonl":
             self.assertEqual(Path(name).read_text(), "mine\n")
         for text in '"text"', "[", "[{}]":
             write("bad.json", text)
-            self.fails("'bad.json' is not a flight", SIMULATOR, "--flight", "bad.json")
+            self.fails("'bad.json': expected a flight", SIMULATOR, "--flight", "bad.json")
             self.lacks("exception")
         flight = dict(threshold=24, loss=0, guard=20, patience=300, key="", camera=False, cores=[],
                       wire=False, vehicles=1, observer="", out=str(self.out))
         client = ["/usr/bin/python3", CLIENTS / "mission.py", "flight.json", *INTERFACE,
                   "--frame", "none", "--device"]
         write("flight.json", json.dumps(flight))
-        self.fails("'flight.json' is not a flight: the key 'live' is missing", *client, "none")
+        self.fails("'flight.json': expected a flight .*; the member 'live' is missing", *client,
+                   "none")
         write("flight.json", json.dumps({**flight, "live": False}))
         _, silent = pty.openpty()  # a port that only this test has open
         for device, said in (("/dev/no-such-port", "cannot open serial port '/dev/no-such-port'"),

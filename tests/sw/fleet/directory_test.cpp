@@ -221,7 +221,7 @@ TEST_F(Directory, AGroundThatTakesOverKeepsTheVehicleUntilItEnds) {
     EXPECT_EQ(other->stop(), 0);
     EXPECT_EQ(other->said().find("elsewhere"), std::string::npos)
         << other->said() << (home->stop(), home->said());
-    ASSERT_TRUE(home->hear("another ground with this one's address")) << home->said();
+    ASSERT_TRUE(home->hear("another ground station with the same address")) << home->said();
     ASSERT_TRUE(home->hear("uav1 is here")) << home->said();
     callOn(echo);
     EXPECT_EQ(world_.echo->twice(), 0);

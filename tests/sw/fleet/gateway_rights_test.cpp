@@ -51,7 +51,7 @@ TEST_F(Gateway, MaintenanceIsReachedAtItsOwnDoor) {
         const std::string proxy = name + (facet.empty() ? "" : " -f f");
         for (int turn = 0; turn < 2; ++turn) // in the first turn the gateway asks the object, in
                                              // the second it uses the cached answer
-            expectRefusal(call(proxy, port_), "'" + name + "' is for maintenance");
+            expectRefusal(call(proxy, port_), "'" + name + "' is a maintenance object");
         EXPECT_EQ(whyFails(call(proxy, door)), "");
         const auto oneway = ic_->stringToProxy(proxy + " -o:" + endpoint());
         std::vector<Ice::Byte> out;

@@ -247,25 +247,25 @@ TEST_F(Gateway, AOnewayThatWaitsTooLongIsNeverCarriedOut) {
 
 TEST(GatewayOptions, WrongOnesAreRefusedByName) {
     const std::pair<std::multimap<std::string, std::string>, std::string> cases[] = {
-        {{}, "it is not a terminal"},
+        {{}, "it is not a serial port"},
         {{{"-d", "/dev/no-such-port"}}, "No such file"},
-        {{{"-l", "nonsense"}}, "give HOST:PORT"},
-        {{{"-l", "127.0.0.1:70000"}}, "a port is 0 to 65535"},
+        {{{"-l", "nonsense"}}, "expected HOST:PORT"},
+        {{{"-l", "127.0.0.1:70000"}}, "expected a port of 0 to 65535"},
         {{{"-l", "[::1"}}, "[::1"},
         {{{"-a", "65536"}}, "--address"},
         {{{"--key", "/no/such/file"}}, "openssl rand -hex 16"},
         {{{"--modem-key", "/no/such/file"}}, "No such file"},
         {{{"--wait", "-5"}}, "--wait"},
-        {{{"--rights", "/no/such/file"}}, "cannot be read"},
-        {{{"-l", "0.0.0.0:0"}}, "every machine of the network"},
-        {{{"--maintenance", "tcp -p 0"}}, "every machine of the network"},
-        {{{"--vehicle", "uav7=x"}}, "give NAME=ADDRESS"},
-        {{{"--vehicle", "uav7=99999999999999999999"}}, "give NAME=ADDRESS"},
+        {{{"--rights", "/no/such/file"}}, "cannot read rights file"},
+        {{{"-l", "0.0.0.0:0"}}, "accepts unencrypted calls from other machines"},
+        {{{"--maintenance", "tcp -p 0"}}, "accepts unencrypted calls from other machines"},
+        {{{"--vehicle", "uav7=x"}}, "expected NAME=ADDRESS"},
+        {{{"--vehicle", "uav7=99999999999999999999"}}, "expected NAME=ADDRESS"},
         {{{"--vehicle", "uav8=0x0007"}, {"--vehicle", "uav7=7"}},
-         "'uav7=7': 'uav8' has this address"},
-        {{{"--vehicle", "all=0xFFFF"}}, "'all=0xFFFF': 0xFFFF is all vehicles, give each its own"},
+         "--vehicle uav7=7: vehicle 'uav8' already has this address"},
+        {{{"--vehicle", "all=0xFFFF"}}, "--vehicle all=0xFFFF: 0xFFFF means all vehicles"},
         {{{"--topics", "t:tcp -h 127.0.0.1 -p 1"}}, "refused"},
-        {{{"--station", "x"}}, "give HOST:PORT"}};
+        {{{"--station", "x"}}, "expected HOST:PORT"}};
     for (auto [options, said] : cases) {
         for (const auto& [name, value] : {std::pair("-d", "/dev/null"), {"-l", "127.0.0.1:0"}})
             if (!options.count(name))

@@ -93,7 +93,7 @@ TEST_F(EngineTest, AModemThatIsResetInFlightIsSetUpAgain) {
     close(fd);
     EXPECT_EQ(rig_.with([&] { return rig_.ground->parameter("BD"); }), 7u);
     EXPECT_EQ(rig_.with([&] { return rig_.ground->parameter("AP"); }), 1u);
-    EXPECT_TRUE(log_.has("Setting the modem up again"));
+    EXPECT_TRUE(log_.has("Configuring the modem again"));
 }
 
 TEST_F(EngineTest, AMessageThatIsTooLongEndsItsConnectionOnly) {
@@ -123,7 +123,7 @@ TEST_F(EngineTest, WhatIsLateIsWithdrawnAndItsSenderIsTold) {
     const double seconds = rig_.seconds() - begun;
     EXPECT_GE(seconds, 2.0);
     EXPECT_LT(seconds, 2.5);
-    EXPECT_TRUE(log_.has("0 the program on channel 1 has a message that was not taken in time"))
+    EXPECT_TRUE(log_.has("0 the program on channel 1 has a message that was not sent in time"))
         << log_.text();
     close(fd);
     close(other);
@@ -146,7 +146,7 @@ TEST_F(EngineTest, WhatTheLinkHasNoRoomForInTimeGoesWithItsConnection) {
     ASSERT_TRUE(rig_.until([&] { return Link_statistics(rig_.uav.link())->framesReceived > 80; }));
     writeAll(fd, message(3, 4000));
     EXPECT_TRUE(rig_.read(fd, 1).empty());
-    EXPECT_TRUE(log_.has("waits for room longer than its time-out: connection closed"))
+    EXPECT_TRUE(log_.has("has waited for room longer than its time-out: connection closed"))
         << log_.text();
     rig_.with([&] { rig_.uav.refuse = false; });
     EXPECT_TRUE(rig_.until([&] { return rig_.uav.received.size() == 2; })) << "the others' arrive";
@@ -246,7 +246,8 @@ TEST_F(EngineTest, ACallOfTheUavThatNoDescriptorIsLeftForIsRefusedAndReported) {
     ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
     EXPECT_EQ(engine->accept(), -1);
     ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &limit), 0);
-    EXPECT_TRUE(log_.has("0 the UAV calls, and no socket can be made: Too many open files"));
+    EXPECT_TRUE(
+        log_.has("0 cannot accept a call of the UAV: no socket can be made: Too many open files"));
     EXPECT_TRUE(rig_.until([&] {
         return std::count(rig_.uav.opened.begin(), rig_.uav.opened.end(), std::make_pair(3, 0)) ==
                1;
@@ -301,7 +302,7 @@ TEST_F(EngineTest, ARefusedCommandIsToldAsWhatItIs) {
     const int fd = engine->connect(0);
     EXPECT_TRUE(rig_.read(fd, 1).empty());
     close(fd);
-    EXPECT_TRUE(log_.has("refuses ATID; the next connection tries again"));
+    EXPECT_TRUE(log_.has("refuses ATID; the next connection will try again"));
     EXPECT_FALSE(log_.has("no modem answers"));
 }
 
@@ -334,7 +335,7 @@ TEST_F(EngineTest, AListenerAloneHasTheModemTriedAgain) {
     rig_.with([&] { rig_.ground->power(false, rig_.ns()); });
     auto engine = start();
     ASSERT_GE(engine->listen(), 0);
-    while (!log_.has("the next connection tries again"))
+    while (!log_.has("the next connection will try again"))
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
     rig_.with([&] { rig_.ground->power(true, rig_.ns()); });
     EXPECT_TRUE(rig_.until([&] { return rig_.uav.isUp(); }));
@@ -389,7 +390,7 @@ std::string refusal(const std::string& device) {
 TEST(Engine, ADeviceThatIsNotThereOrNoTerminalIsRefusedAndStaysAsItIs) {
     UnnamedFile file;
     EXPECT_NE(refusal("/dev/no-such-port"), "none");
-    EXPECT_NE(refusal(file.path()).find("not a terminal"), std::string::npos)
+    EXPECT_NE(refusal(file.path()).find("not a serial port"), std::string::npos)
         << refusal(file.path());
     EXPECT_EQ(lseek(file.fd(), 0, SEEK_END), 0);
 }

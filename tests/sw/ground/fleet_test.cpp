@@ -281,7 +281,8 @@ TEST_P(TwinGrounds, TheNewerOneKeepsTheVehicleAndTheOlderOneHasItAgainAfterIt) {
         EXPECT_EQ(errno, EBUSY);
     }
     EXPECT_EQ(sessions(1), made) << log_.text();
-    const std::string why = "another ground with this one's address has the vehicle";
+    const std::string why =
+        "another ground station with the same address has connected to the vehicle";
     EXPECT_TRUE(log_.has(why)) << log_.text();
     EXPECT_EQ(log_.text().find(why), log_.text().rfind(why)) << log_.text();
     newer.reset();
@@ -329,7 +330,7 @@ TEST_F(FleetTest, AModemWithoutApiModeTalksToOneVehicle) {
     const Program one(peer(1));
     answers(one.fd, 1);
     answers(Program(peer(2)).fd, -1);
-    EXPECT_TRUE(log_.has("has no API mode: it talks to one vehicle only"));
+    EXPECT_TRUE(log_.has("has no API mode, so it can reach only one vehicle"));
     answers(one.fd, 1);
 }
 

@@ -95,7 +95,7 @@ public:
         settings.random = [this] { return random(); };
         std::unique_lock<std::mutex> lock(mutex_);
         engine_ = XBeeAT::Engine::get(settings, [this](int, const std::string& text) {
-            if (text.find("tries again") != std::string::npos) // the engine has failed
+            if (text.find("will try again") != std::string::npos) // the engine has failed
                 end();
         });
         engine_->listen();

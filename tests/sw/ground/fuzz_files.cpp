@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // fuzz_files: libFuzzer target of the parser of key files, and with RIGHTS of the parser of the
-// gateway's file of rights. An input is accepted, or rejected with a proper message that contains
+// gateway's rights file. An input is accepted, or rejected with a proper message that contains
 // no key. No right is granted that the file does not contain.
 
 #ifdef RIGHTS
@@ -26,7 +26,7 @@ void expect(bool condition) {
 }
 
 #ifdef RIGHTS
-const std::string refused = "the file of rights '", why = "' must";
+const std::string refused = "rights file '", why = "': expected";
 const std::regex never("json\\.");
 
 void read(const std::string& path, const std::string& text) {

@@ -78,11 +78,11 @@ TEST_F(KeyFiles, AWrongLineIsNamedAndWhatItIsToBe) {
     for (const std::string& line :
          {a.substr(1), a + "0", a.substr(0, 31) + "g", a + " " + b + " " + a, "0x1 " + a + "1",
           "0x10000 " + a, "1 " + a, "0x " + a, std::string("0x0001")})
-        EXPECT_NE(refusal("# ours\n" + line + "\n").find("line 2: give [ADDRESS] KEY [NEXT]"),
+        EXPECT_NE(refusal("# ours\n" + line + "\n").find("line 2: expected [ADDRESS] KEY [NEXT]"),
                   std::string::npos)
             << line;
-    EXPECT_NE(refusal(a + "\n" + b).find("line 2: there is a line"), std::string::npos);
-    EXPECT_NE(refusal("").find("has no key in it"), std::string::npos);
+    EXPECT_NE(refusal(a + "\n" + b).find("line 2: duplicate line"), std::string::npos);
+    EXPECT_NE(refusal("").find("has no key;"), std::string::npos);
     EXPECT_NE(refusal(std::string(70000, ' ')).find("too long"), std::string::npos);
 }
 

@@ -56,7 +56,7 @@ class Packages(unittest.TestCase):
                        package(max(FIRMWARE, FPGA, KEYS) + 1, 5, 0, b"image")):
             with self.assertRaisesRegex(update.Failed, "expected a complete package"):
                 self.read(bytes_)
-        with self.assertRaisesRegex(update.Failed, "is empty"):
+        with self.assertRaisesRegex(update.Failed, "got an empty file"):
             self.read()
 
 

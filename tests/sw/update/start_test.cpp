@@ -391,7 +391,7 @@ TEST_F(Packing, ABitstreamThatIsCutOrHasMoreThanItsEndIsNotSigned) {
     Bytes cut = bitFile(whole); // the header still has the length of the whole bitstream
     cut.resize(cut.size() - 4);
     folder.save("short", cut);
-    refuses("bitstream short 5 key", "as its header counts");
+    refuses("bitstream short 5 key", "as its header states");
 }
 
 TEST_F(Packing, AVersionIsOfDigitsAlone) {
@@ -411,9 +411,9 @@ TEST_F(Packing, APrivateKeyIsAFileOfItsOwnersAlone) {
                            "pipe && chmod 644 open && ln -s nowhere/key dangling")
                               .c_str()),
               0);
-    refuses("bitstream whole 5 pipe", "not a regular file");
-    refuses("bitstream whole 5 folder", "not a regular file");
-    refuses("bitstream whole 5 /dev/zero", "not a regular file");
+    refuses("bitstream whole 5 pipe", "expected a regular file");
+    refuses("bitstream whole 5 folder", "expected a regular file");
+    refuses("bitstream whole 5 /dev/zero", "expected a regular file");
     refuses("bitstream whole 5 empty", "expected 32 bytes, got 0");
     refuses("bitstream whole 5 long", "expected 32 bytes, got 33");
     refuses("bitstream whole 5 open", "chmod 600");

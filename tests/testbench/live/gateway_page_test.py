@@ -107,11 +107,11 @@ class Cases(Script):
                    {"Origin": own + ".evil.example"},
                    {"Origin": "http://evil.example", "Cookie": cookie})
         for headers in refused:
-            self.assertIn("may not call", self.answer(calls, headers), headers)
+            self.assertIn("are not allowed to call", self.answer(calls, headers), headers)
         wrong = cookie[:-1] + ("0" if cookie[-1] != "0" else "1")
         for headers in {"Origin": own}, {"Origin": own, "Cookie": wrong}, \
                 {"Origin": own, "Cookie": "x" + cookie}:
-            self.assertIn("load it again", self.answer(calls, headers), headers)
+            self.assertIn("reload it", self.answer(calls, headers), headers)
         for headers in {}, {"Origin": own, "Cookie": "a=b; " + cookie}, \
                 {"Origin": "https://example.org"}:
             self.assertIn("for the radio", self.answer(calls, headers), headers)

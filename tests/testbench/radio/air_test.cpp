@@ -184,12 +184,13 @@ TEST_F(Traces, AreFollowedRowByRow) {
 
 TEST_F(Traces, ThatAreWrongAreRefusedWithTheirLine) {
     const std::string head = "time_s,loss,rssi_dbm,delay_ms\n";
-    EXPECT_EQ(fault("time,loss\n"), ":1: the heading is not 'time_s,loss,rssi_dbm,delay_ms'");
-    EXPECT_EQ(fault(head + "0,0,-50\n"), ":2: not four numbers");
+    EXPECT_EQ(fault("time,loss\n"), ":1: expected the heading 'time_s,loss,rssi_dbm,delay_ms'");
+    EXPECT_EQ(fault(head + "0,0,-50\n"), ":2: expected four numbers");
     EXPECT_EQ(fault(head + "0,2,-50,0\n"),
-              ":2: time and delay are not negative, loss is from 0 to 1");
-    EXPECT_EQ(fault(head + "1,0,-50,0\n1,0,-50,0\n"), ":3: time does not grow");
-    EXPECT_EQ(fault(head), ":2: no row found");
+              ":2: expected time and delay of at least 0, and a loss of 0 to 1");
+    EXPECT_EQ(fault(head + "1,0,-50,0\n1,0,-50,0\n"),
+              ":3: expected a later time than in the row before");
+    EXPECT_EQ(fault(head), ":2: expected at least one row");
 }
 
 } // namespace

@@ -15,7 +15,7 @@ fail() {
     cat "$work"/out >&2 || true
     exit 1
 }
-"$program" --help | grep -q 'Two XBee' || fail "--help"
+"$program" --help | grep -q 'two XBee' || fail "--help"
 for wrong in '--loss 2' '--a ZZ=1' '--a MY=G' '--a CH=1' '--b MY' '--nonsense' \
     '--trace /dev/null' "--link-a $work/none/x"; do
     # shellcheck disable=SC2086

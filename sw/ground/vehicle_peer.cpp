@@ -94,7 +94,7 @@ void VehiclePeer::onState(void* context, Link_State state) {
                  (state != LINK_STATE_UP ? ""
                   : isSecure             ? ", secure"
                                          : ", not encrypted"));
-    e.yielding_.sessionIs(state == LINK_STATE_UP, e.host_.clock.nowUs());
+    e.rival_.sessionIs(state == LINK_STATE_UP, e.host_.clock.nowUs());
     if (state == LINK_STATE_UP)
         return;
     for (ProgramConnection& program : e.programs_)
@@ -159,7 +159,7 @@ U32 VehiclePeer::withdrawLate(U32 now) {
 }
 
 void VehiclePeer::start(U32 longest, bool isApi, U32 now) {
-    yielding_.reset();
+    rival_.reset();
     Link_limitFrame(link_.get(), longest);
     Link_expectAnswers(link_.get(), isApi ? host_.settings.mostWaiting() : 0);
     Link_start(link_.get(), now);
@@ -172,40 +172,40 @@ void VehiclePeer::stop(U32 now) {
 
 // Passes bytes to the link as they arrive on the line.
 void VehiclePeer::receive(const U8* bytes, size_t size, U32 now) {
-    if (!yielding_.admits(bytes, size, now))
+    if (!rival_.admits(bytes, size, now))
         return;
-    if (yielding_.isYielded()) { // the vehicle calls
+    if (rival_.isYielded()) { // the vehicle calls
         resume(now);
-        Link_receive(link_.get(), yielding_.hello(), LINK_HEADER, now);
+        Link_receive(link_.get(), rival_.hello(), LINK_HEADER, now);
     }
     const Link_Statistics& s = *Link_statistics(link_.get());
     const U32 frames = s.framesReceived, skipped = s.bytesSkipped;
     Link_receive(link_.get(), bytes, static_cast<U32>(size), now);
     if (s.framesReceived != frames || s.bytesSkipped != skipped)
-        yielding_.heard(s.framesReceived != frames);
+        rival_.heard(s.framesReceived != frames);
 }
 
 // By itself, a vehicle only calls a ground station with address 0.
 void VehiclePeer::yieldOrResume(U32 now) {
     const bool connects = Link_state(link_.get()) == LINK_STATE_CONNECTING;
-    switch (yielding_.poll(connects, host_.settings.source != 0, now)) {
-    case Yielding::Step::Yield:
+    switch (rival_.poll(connects, host_.settings.source != 0, now)) {
+    case RivalStation::Step::Yield:
         Link_stop(link_.get(), now);
         log(0, "another ground station with the same address has connected to the vehicle: this "
                "station waits until the vehicle calls it; restart this station to take the vehicle "
                "back now");
         refusePrograms();
         break;
-    case Yielding::Step::Resume:
+    case RivalStation::Step::Resume:
         resume(now);
         break;
-    case Yielding::Step::None:
+    case RivalStation::Step::None:
         break;
     }
 }
 
 void VehiclePeer::resume(U32 now) {
-    yielding_.resume();
+    rival_.resume();
     Link_start(link_.get(), now);
 }
 

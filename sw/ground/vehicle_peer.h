@@ -5,7 +5,7 @@
 #pragma once
 
 #include "peer.h"
-#include "yielding.h"
+#include "rival_station.h"
 
 #include <memory>
 
@@ -28,7 +28,7 @@ public:
     void receive(const U8* bytes, size_t size, U32 now) override;
 
 private:
-    bool isYielded() const override { return yielding_.isYielded(); }
+    bool isYielded() const override { return rival_.isYielded(); }
     bool isReady() const override { return isUp(); }
     bool openChannel(int channel) override {
         return Link_openChannel(link_.get(), channel) == LINK_OK;
@@ -58,7 +58,7 @@ private:
     unsigned lost_ = 0;
     // times at which the messages that are in the link will be late, by channel
     std::deque<U32> late_[LINK_CHANNELS];
-    Yielding yielding_;
+    RivalStation rival_;
     std::unique_ptr<Link> link_;
     std::unique_ptr<Link_Buffers> buffers_; // buffers of link_
 };

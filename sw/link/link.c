@@ -150,7 +150,7 @@ void Link_answer(Link* link, int isDelivered, U32 nowUs) {
 
 U32 Link_randomWait(Link* link) {
     return link_chooseWait(
-        &link->pacing.contention, link->pacing.env.now, &link->pacing.env.statistics,
+        &link->pacing.backoff, link->pacing.env.now, &link->pacing.env.statistics,
         link->pacing.longest + link->pacing.env.codec->overhead <= LINK_MAX_ENCRYPTED);
 }
 

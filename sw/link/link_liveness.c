@@ -62,7 +62,7 @@ int link_pollLiveness(Link_Liveness* liveness) {
         liveness->pingsSent += env->codec->isAuthenticated;
         (void)link_sendControl(liveness->pacing, frame, LINK_KIND_BITS(LINK_KIND_PING),
                                liveness->pingsSent, 0);
-        liveness->pingAt = env->now + liveness->pacing->contention.rest / 16U +
+        liveness->pingAt = env->now + liveness->pacing->backoff.rest / 16U +
                            (silence >= LINK_PING_AFTER ? LINK_PING_EVERY : LINK_PROOF_EVERY);
     }
     return 1;

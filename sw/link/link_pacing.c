@@ -137,18 +137,18 @@ U32 link_paceByAnswer(Link_Pacing* pacing, int isDelivered, U32 silence) {
     Link_Env* env = &pacing->env;
     U32 packet = (U8)(pacing->handed - pacing->waiting--);
     U32 rest =
-        link_noteAnswer(&pacing->contention, env->now, isDelivered, silence, pacing->waiting != 0);
+        link_noteAnswer(&pacing->backoff, env->now, isDelivered, silence, pacing->waiting != 0);
     pacing->paceUntil = env->now;
     /* While the peer calls, only one packet of a stream may be ahead of a reply. The next packet is
      * handed over shortly before the radio needs it. This is not possible on a slow line (more than
      * two packets wait). */
     pacing->isHeld = 0;
-    if (pacing->waiting && pacing->mostWaiting == 2U && LINK_IS_CALLED(&pacing->contention)) {
+    if (pacing->waiting && pacing->mostWaiting == 2U && LINK_IS_CALLED(&pacing->backoff)) {
         U32 full = (U32)pacing->longest + env->codec->overhead;
         U32 ahead = full > LINK_MAX_ENCRYPTED ? LINK_HAND_OVER_US : LINK_HAND_OVER_ENCRYPTED_US;
-        if (pacing->contention.usualUs > ahead) {
+        if (pacing->backoff.usualUs > ahead) {
             pacing->isHeld = 1;
-            pacing->paceUntil += pacing->contention.usualUs - ahead;
+            pacing->paceUntil += pacing->backoff.usualUs - ahead;
         }
     }
     if (rest) {

@@ -6,7 +6,7 @@
  */
 #pragma once
 
-#include "link_contention.h"
+#include "link_backoff.h"
 #include "link_env.h"
 
 struct Link;
@@ -45,7 +45,7 @@ typedef struct Link_Pacing {
     U8 packet[LINK_MAX_FRAME]; /* packet being filled with frames */
     /* this link's list of unanswered packets, used unless the list of another link is shared */
     Link_Unanswered own;
-    Link_Contention contention;
+    Link_Backoff backoff;
 } Link_Pacing;
 
 /* Initialises a zeroed struct with a codec. There is no session yet, and the radio gives no

@@ -279,7 +279,7 @@ static int markAcked(Link_Sender* sender, U32 advance, const U8* bitmap, U32 siz
              * transmission of the fragment. If the radio reports losses, that is the first
              * transmission, and the peer has become slower. */
             elapsed = sender->pacing->env.now - f->firstAt;
-            if (sender->pacing->mostWaiting && !sender->pacing->contention.own.isStream &&
+            if (sender->pacing->mostWaiting && !sender->pacing->backoff.own.isStream &&
                 elapsed < LINK_RTO_FIRST)
                 sample(sender, elapsed);
             continue;

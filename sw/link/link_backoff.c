@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_contention: measures traffic and losses, and chooses from them how long to wait before
+ * link_backoff: measures traffic and losses, and chooses from them how long to wait before
  * sending.
  */
-#include "link_contention.h"
+#include "link_backoff.h"
 
 #include "link_config.h"
 
@@ -11,7 +11,7 @@
  * This happens if two modems start at the same time. After a loss, a side that sends little must
  * rest: twice as long after each further loss, a quarter as long after each delivered packet, and
  * longest while the peer is silent. */
-U32 link_noteAnswer(Link_Contention* c, U32 now, int isDelivered, U32 silence, int isBusy) {
+U32 link_noteAnswer(Link_Backoff* c, U32 now, int isDelivered, U32 silence, int isBusy) {
     U32 took = now - c->answeredAt;
     U32 last = LINK_REST_LAST + 4U * silence;
     int wasBusy = c->isBusy;
@@ -46,7 +46,7 @@ static void judge(Link_Traffic* traffic, U32 bytes, U32 spans) {
         traffic->before = bytes;
 }
 
-U32 link_chooseWait(Link_Contention* c, U32 now, const Link_Statistics* counts, U32 isSlow) {
+U32 link_chooseWait(Link_Backoff* c, U32 now, const Link_Statistics* counts, U32 isSlow) {
     U32 spans = (now - c->since) / LINK_SPAN;
     judge(&c->own, counts->bytesSent, spans);
     judge(&c->peers, counts->bytesReceived, spans);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// yielding: leaves a vehicle to another ground station with the same address, and resumes later.
+// rival_station: leaves a vehicle to another ground station with the same address, and resumes
+// later.
 //
 // The other ground station has the vehicle if the session of this side ended while the vehicle
 // continued to send to another one. Two ground stations that both call would take the vehicle from
@@ -16,7 +17,7 @@ extern "C" {
 
 namespace XBeeAT {
 
-class Yielding {
+class RivalStation {
 public:
     void reset() { isYielded_ = isLost_ = hearsOther_ = false; }
     bool isYielded() const { return isYielded_; }

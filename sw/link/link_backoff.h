@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_contention: congestion control on a shared channel. It measures how much both sides send and
- * what the radio loses, and decides from that how long a modem waits before it tries (RN) and how
- * long a side rests after a loss.
+ * link_backoff: back-off on a shared channel (congestion control). It measures how much both sides
+ * send and what the radio loses, and decides from that how long a modem waits before it tries (RN)
+ * and how long a side rests after a loss.
  */
 #pragma once
 
@@ -15,7 +15,7 @@ typedef struct Link_Traffic {
     U8 isStream; /* 1: the side sends a stream */
 } Link_Traffic;
 
-typedef struct Link_Contention {
+typedef struct Link_Backoff {
     Link_Traffic own, peers;
     U32 since, messages; /* start of the present span, and messages received before it */
     U32 lostAt;          /* time of the last loss, us */
@@ -28,7 +28,7 @@ typedef struct Link_Contention {
     /* share of recent packets that were lost quickly, without retries by the modem; 65,536 means
      * all */
     U32 quick;
-} Link_Contention;
+} Link_Backoff;
 
 /* Returns whether the peer calls while this side sends a stream, and sends no stream itself. */
 #define LINK_IS_CALLED(c) ((c)->isCalled && !(c)->peers.isStream)
@@ -36,7 +36,7 @@ typedef struct Link_Contention {
 /* Records the radio's result for a packet at time `now`. `silence`: time since the peer was heard,
  * us. `isBusy`: the radio has further packets. Returns the longest pause before the next packet,
  * us; 0: no pause. */
-U32 link_noteAnswer(Link_Contention* c, U32 now, int isDelivered, U32 silence, int isBusy);
+U32 link_noteAnswer(Link_Backoff* c, U32 now, int isDelivered, U32 silence, int isBusy);
 
 /* Chooses RN, as Link_randomWait returns it. `isSlow`: the modem encrypts. */
-U32 link_chooseWait(Link_Contention* c, U32 now, const Link_Statistics* counts, U32 isSlow);
+U32 link_chooseWait(Link_Backoff* c, U32 now, const Link_Statistics* counts, U32 isSlow);

@@ -68,7 +68,7 @@ bool readSeed(const std::string& path, Bytes& seed) {
         return false;
     if (in < 0)
         fail("cannot read the private key '" + path + "': " + std::strerror(errno));
-    struct stat found {};
+    struct stat found{};
     const bool isFile = fstat(in, &found) == 0 && S_ISREG(found.st_mode);
     const bool isWhole = isFile && found.st_size == off_t(seed.size()) &&
                          read(in, seed.data(), seed.size()) == ssize_t(seed.size());

@@ -204,7 +204,7 @@ TEST(PackUpdate, SaysWhatIsWrong) {
     refuses("image " FIRMWARE "uav.elf 0 key update", "expected 1 to 4294967294");
     refuses("image " FIRMWARE "loader.elf 2 key update", "--emit-relocs");
     EXPECT_EQ(folder.pack("image " FIRMWARE "uav.elf 2 key update"), 0);
-    struct stat key {};
+    struct stat key{};
     EXPECT_EQ(stat((folder.path + "/key").c_str(), &key), 0);
     EXPECT_EQ(key.st_mode & 0777, 0600u);
     ::chmod((folder.path + "/key").c_str(), 0644);

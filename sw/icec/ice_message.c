@@ -8,7 +8,9 @@
 #include <string.h>
 
 #define TYPE_AT 8
+#define COMPRESSION_AT 9 /* 0 and 1: not compressed; 2: compressed */
 #define SIZE_AT 10
+#define MAGIC_BYTES 4
 
 /* Template of a message head: "IceP", versions of protocol and encoding, type, compression,
  * size. */
@@ -22,6 +24,15 @@ void icec_beginMessage(Ice_OutputStreamPtr os, Ice_Byte type) {
 
 void icec_endMessage(Ice_OutputStreamPtr os) {
     icec_patchInt(os, SIZE_AT, os->size);
+}
+
+Ice_Int icec_messageSize(const Ice_Byte* header, int* isCompressed) {
+    Ice_InputStream is;
+    Ice_Int size;
+    Ice_InputStream_init(&is, header + COMPRESSION_AT, ICEC_HEADER - COMPRESSION_AT);
+    *isCompressed = Ice_InputStream_readByte(&is) == 2;
+    size = Ice_InputStream_readInt(&is);
+    return memcmp(header, head, MAGIC_BYTES) == 0 && size >= ICEC_HEADER ? size : -1;
 }
 
 Ice_Int icec_readHead(Ice_InputStreamPtr is) {

@@ -17,6 +17,9 @@ enum { ICEC_REQUEST, ICEC_BATCH, ICEC_REPLY, ICEC_VALIDATE, ICEC_CLOSE };
  * into the header. */
 void icec_beginMessage(Ice_OutputStreamPtr os, Ice_Byte type);
 void icec_endMessage(Ice_OutputStreamPtr os);
+/* Returns the size of a message from its header (ICEC_HEADER bytes), and whether it is compressed;
+ * -1 if the header does not begin with Ice's magic, or the size is too small. */
+Ice_Int icec_messageSize(const Ice_Byte* header, int* isCompressed);
 /* Checks and skips the header of a message of is->size bytes. Returns the type of the message,
  * which is greater than 0xFF if the message is compressed; -1 if this is not a message of IceP
  * 1.0. */

@@ -62,15 +62,12 @@ static void use(TcpEndpoint_Connection* c, int fd, Ice_Byte accepted) {
  * incomplete, or was refused and the connection continues. Returns -1 if it is malformed, or was
  * refused and the connection ends. */
 static Ice_Int frontSize(TcpEndpoint_Connection* c) {
-    Ice_InputStream is;
     Ice_Int size;
     int isCompressed;
     if (c->have < ICEC_HEADER)
         return 0;
-    Ice_InputStream_init(&is, c->data + 9, 5);
-    isCompressed = Ice_InputStream_readByte(&is) == 2;
-    size = Ice_InputStream_readInt(&is);
-    if (memcmp(c->data, "IceP", 4) != 0 || size < ICEC_HEADER)
+    size = icec_messageSize(c->data, &isCompressed);
+    if (size < 0)
         return -1;
     if (size <= ICE_MESSAGE_MAX && !isCompressed)
         return size <= c->have ? size : 0;

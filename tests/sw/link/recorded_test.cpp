@@ -12,6 +12,7 @@
 // when only the order of random numbers or the times of sending have changed; then the old code
 // and the new one must be seen to talk to each other.
 
+#include "ice_messages.h"
 #include "link_pair.h"
 
 #include <cstdlib>
@@ -29,18 +30,11 @@ struct Packet {
 using Packets = std::vector<Packet>;
 
 const Bytes key = {3, 1, 4, 1, 5, 9, 2, 6, 5, 3, 5, 8, 9, 7, 9, 3};
+using IceMessages::message;
 constexpr uint64_t start = 0xFFFF0000u, length = 4'000'000;
 
 std::string fileOf(const std::string& kind) {
     return RECORDED "/link-" + std::to_string(LINK_VERSION) + "-" + kind + ".txt";
-}
-
-// Returns an Ice message: header, then the body.
-Bytes message(uint8_t type, Bytes body) {
-    Bytes m = {'I', 'c', 'e', 'P', 1, 0, 1, 0, type, 0, 0, 0, 0, 0};
-    m.insert(m.end(), body.begin(), body.end());
-    m[10] = static_cast<uint8_t>(m.size());
-    return m;
 }
 
 // Messages of a side. Ice's heads are compressed: requests of the ground and replies of the

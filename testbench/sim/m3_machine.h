@@ -37,7 +37,7 @@ public:
         // address of the vehicle, as the factory sets it
         uint32_t address = 1;
         // peers that the vehicle serves in addition to its ground station
-        std::vector<SimulatedBoard::Peer> peers = {};
+        std::vector<SimulatedBoard::OtherPeer> peers = {};
         // value written to uav_transparent, in the same way as guardMs
         bool isTransparent = false;
     };

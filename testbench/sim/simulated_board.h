@@ -30,16 +30,16 @@ public:
         use();
         UAV_provide(address, key.empty() ? nullptr : key.data());
     }
-    // A peer that the vehicle serves besides its first ground station.
-    struct Peer {
-        int ground; // role: UAV_OBSERVER, UAV_VEHICLE or UAV_GROUP
+    // A peer that the vehicle serves in addition to its first ground station.
+    struct OtherPeer {
+        int role; // UAV_OBSERVER, UAV_VEHICLE or UAV_GROUP
         uint32_t address;
         std::vector<uint8_t> key;
     };
-    void providePeers(const std::vector<Peer>& peers) {
+    void providePeers(const std::vector<OtherPeer>& peers) {
         use();
-        for (const auto& [ground, address, key] : peers)
-            UAV_providePeer(ground, address, key.empty() ? nullptr : key.data());
+        for (const auto& [role, address, key] : peers)
+            UAV_providePeer(role, address, key.empty() ? nullptr : key.data());
     }
     Words words{};
 

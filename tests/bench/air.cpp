@@ -78,16 +78,16 @@ private:
     unsigned sent_ = 0, received_ = 0; // pictures
 };
 
-class World : public ModemPair<End> {
+class AirPair : public ModemPair<End> {
 public:
-    World(const RfWeather& weather, Mode mode, uint64_t seed = testSeed())
+    AirPair(const RfWeather& weather, Mode mode, uint64_t seed = testSeed())
         : ModemPair(weather, seed, 2, mode) {}
 };
 
 Figures figures("The radio link on a half-duplex air with the modems' own limits.");
 
 // Returns the bytes per second that arrive at both modems together during this time.
-double flow(World& w, bool both, uint64_t seconds) {
+double flow(AirPair& w, bool both, uint64_t seconds) {
     const uint64_t start = w.now;
     w.until(
         [&] {
@@ -138,7 +138,7 @@ void goodput(const std::string& what, const RfWeather& weather, Mode mode, bool 
     double rate = 0;
     uint64_t acks = 0;
     for (unsigned run = 0; run < runs; ++run) {
-        World w(weather, mode, testSeed() + 10 * run);
+        AirPair w(weather, mode, testSeed() + 10 * run);
         rate += flow(w, both, figures.brief ? 1 : 20) / runs;
         acks += w.a.statistics().acksSent + w.b.statistics().acksSent;
     }
@@ -171,7 +171,7 @@ void allWeather(Mode mode) {
 
 // Makes `count` calls, each with a message of `size` bytes that is echoed. Returns the times in ms,
 // sorted.
-std::vector<double> callTimes(World& w, U32 size, int count) {
+std::vector<double> callTimes(AirPair& w, U32 size, int count) {
     std::vector<double> times;
     const std::vector<U8> message(size, 1);
     w.b.echoSize = size;
@@ -191,7 +191,7 @@ void roundTrips(Mode mode) {
     const U32 overhead = mode == Keyed ? LINK_SECURE_OVERHEAD : LINK_OVERHEAD;
     const U32 packet = mode == Encrypted ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME;
     const U32 longest = packet - overhead - 1 - (mode == Keyed ? 0 : LINK_CHECK);
-    World w(RfWeather(), mode);
+    AirPair w(RfWeather(), mode);
     for (U32 size : {1u, 5u, 10u, 20u, 40u, 60u, 80u, longest, 94u}) {
         const auto times = callTimes(w, size, 31);
         const double median = times[times.size() / 2];
@@ -210,7 +210,7 @@ void roundTrips(Mode mode) {
 void peers(Mode mode) {
     const bool isSigned = mode == Keyed;
     const double ms = floorMs(isSigned ? 58 : 45, isSigned ? 35 : 22, mode == Encrypted);
-    World w(RfWeather(), mode);
+    AirPair w(RfWeather(), mode);
     const auto times = callTimes(w, 3, 31); // setParameterA(short) takes 3 bytes
     const double own = times[times.size() / 2];
     figures.add(std::string("round trip of a command ") + names[mode] + ", limit: MAVLink 2", own,
@@ -224,7 +224,7 @@ void headOfLine(Mode mode) {
         weather.loss = loss;
         double median[2] = {0, 0}, late = 0; // late: time that one call in twenty exceeds
         for (bool isBusy : {false, true}) {
-            World w(weather, mode);
+            AirPair w(weather, mode);
             w.b.feed = isBusy;
             const auto times = callTimes(w, 1, 201);
             median[isBusy] = times[times.size() / 2];

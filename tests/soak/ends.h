@@ -5,11 +5,11 @@
 
 #pragma once
 
+#include "../support/delivery_check.h"
 #include "ice_messages.h"
 #include "modem_pair.h"
 #include <array>
 #include <fmt/format.h>
-#include <unordered_map>
 
 using Bytes = std::vector<uint8_t>;
 
@@ -36,51 +36,32 @@ public:
     U32 number() const { return next_; }
     int channel() const { return static_cast<int>(next_ % LINK_CHANNELS); }
     void sent() {
-        outstanding_.emplace(next_++, false);
-        hasCome_.push_back(false);
+        check_.sent(channel(), next_, next());
+        ++next_;
         ++totals_.sent;
     }
     void report(uint32_t id, Link_Outcome outcome) {
-        auto it = outstanding_.find(id);
-        if (it == outstanding_.end())
-            fault("reported twice, or never sent", id);
-        if (outcome == LINK_DELIVERED && !it->second)
-            fault("reported delivered, and it was not", id);
+        throwFault(check_.reported(id, outcome == LINK_DELIVERED));
         ++(outcome == LINK_DELIVERED ? totals_.delivered : totals_.unknown);
-        outstanding_.erase(it);
     }
     // Forgets the messages that are in transit when the power fails: the program cannot know their
     // outcome.
     void forget() {
-        totals_.unknown += outstanding_.size();
-        outstanding_.clear();
+        for (int channel = 0; channel < LINK_CHANNELS; ++channel)
+            totals_.unknown += check_.forget(channel);
     }
-    // Checks a message for its receiver. It must be the next or a later message of this mail and
-    // channel, complete, and not delivered to the receiver's rival. Returns false otherwise.
-    bool arrived(int channel, const Bytes& bytes, bool isRival) {
-        uint32_t& expected = expected_[isRival][channel];
-        uint32_t id = expected;
-        while (id < next_ && bytes != message(id))
-            id += LINK_CHANNELS;
-        if (id >= next_ || hasCome_[id])
-            return false;
-        hasCome_[id] = true;
-        auto it = outstanding_.find(id);
-        if (it != outstanding_.end())
-            it->second = true;
-        // The sender must not count a skipped message as in transit.
-        for (; expected < id; expected += LINK_CHANNELS)
-            if (outstanding_.count(expected))
-                fault("was skipped", expected);
-        expected += LINK_CHANNELS;
-        ++totals_.received;
-        return true;
+    // Checks a message for its receiver. Returns the fault: it may belong to another mail.
+    std::string arrived(int channel, const Bytes& bytes, bool isRival) {
+        const std::string fault = check_.arrived(channel, bytes, isRival);
+        totals_.received += fault.empty();
+        return fault;
     }
-    bool isQuiet() const { return outstanding_.empty(); }
+    bool isQuiet() const { return check_.isQuiet(); }
 
 private:
-    [[noreturn]] void fault(const std::string& what, uint32_t id) const {
-        throw Fault(fmt::format("from 0x{:04x} to 0x{:04x}: message {} {}", from_, to_, id, what));
+    void throwFault(const std::string& fault) const {
+        if (!fault.empty())
+            throw Fault(fmt::format("from 0x{:04x} to 0x{:04x}: {}", from_, to_, fault));
     }
     // Returns a message; its bytes are determined by sender, receiver and number.
     Bytes message(uint32_t id) const {
@@ -103,10 +84,8 @@ private:
 
     const int from_, to_;
     Totals& totals_;
-    uint32_t next_ = 0, expected_[2][LINK_CHANNELS] = {{0, 1, 2, 3}, {0, 1, 2, 3}};
-    std::vector<bool> hasCome_;                      // each message
-    std::unordered_map<uint32_t, bool> outstanding_; // messages not reported yet -> whether they
-                                                     // have arrived
+    uint32_t next_ = 0; // number of the next message
+    DeliveryCheck check_;
 };
 
 // A vehicle or a ground station, and its program. It knows the messages that others send only in
@@ -198,12 +177,18 @@ private:
     int onMessage(size_t peer, int channel, const U8* data, U32 size) override {
         if (isBusy_)
             return 1;
-        for (Mail* mail : in_[peer])
-            if (mail && mail->arrived(channel, Bytes(data, data + size), isRival_))
+        std::string faults;
+        for (Mail* mail : in_[peer]) {
+            if (!mail)
+                continue;
+            const std::string fault = mail->arrived(channel, Bytes(data, data + size), isRival_);
+            if (fault.empty())
                 return 0;
-        throw Fault(fmt::format("{}: a message from 0x{:04x} is wrong, a duplicate, out of order, "
-                                "or for another vehicle with this address",
-                                modem.name(), target(peer)));
+            faults += (faults.empty() ? "" : "; from the rival: ") + fault;
+        }
+        throw Fault(
+            fmt::format("{}, from 0x{:04x}: {}", modem.name(), target(peer),
+                        faults.empty() ? "it is for another vehicle with this address" : faults));
     }
 
     Random& random_;

@@ -7,10 +7,10 @@
 //
 //   SOAK_BYTES=10000000 build/main/tests/hdl/test_modem_soak     (default 30000)
 
+#include "../../support/environment.h"
 #include "VModem.h"
 #include "modem_rig.h"
 #include <algorithm>
-#include <cstdlib>
 #include <iostream>
 
 namespace {
@@ -18,9 +18,8 @@ namespace {
 class ModemSoak : public ModemRig<VModem, 500> {
 protected:
     static constexpr double bitClocks = 2e6 / 111111;
-    uint64_t wanted() const {
-        const char* text = std::getenv("SOAK_BYTES");
-        return text && *text ? std::strtoull(text, nullptr, 10) : 30'000;
+    static uint64_t wanted() {
+        return static_cast<uint64_t>(numberFromEnvironment("SOAK_BYTES", 30'000));
     }
     void hold(bool level, double clocks) {
         noise_ = !level; // the modem is silent, so its line is high

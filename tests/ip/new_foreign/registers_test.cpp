@@ -6,7 +6,7 @@
 #include "Vmy_port_slot.h"
 #include "Vmy_requests_slot.h"
 #include "core_slot.h"
-#include "pair.h"
+#include "icec_pair.h"
 #include <gmock/gmock.h>
 #include <optional>
 extern "C" {

@@ -3,6 +3,7 @@
 // crowd_test: programs at one engine that do not read, that send more than the link carries, or
 // that disconnect. Also heartbeats for a program that closes silent connections, in simulated time.
 
+#include "../../support/delivery_check.h"
 #include "program_connection.h"
 #include "wire.h"
 #include <gtest/gtest.h>
@@ -90,13 +91,19 @@ TEST_F(Crowd, WhatAProgramHasWrittenArrivesAlthoughItLeaves) {
     wire_.echo = false;
     Program program(engine_->connect(0));
     constexpr unsigned count = 3000;
-    const Bytes oneway = message(1);
-    for (unsigned i = 0; i < count; ++i)
+    DeliveryCheck delivery;
+    for (unsigned i = 0; i < count; ++i) {
+        const Bytes oneway = message(static_cast<uint8_t>(i));
         program.send(oneway);
+        delivery.sent(0, i, oneway);
+    }
+    wire_.onMessage = [&](int channel, const Bytes& oneway) {
+        EXPECT_EQ(delivery.arrived(channel, oneway), "");
+    };
     size_t most = 0; // greatest number of bytes in transit between the program and the peer
     ASSERT_TRUE(wire_.until([&] {
         program.write();
-        most = std::max(most, program.written - wire_.received[0] * oneway.size());
+        most = std::max(most, program.written - wire_.received[0] * message(1).size());
         return program.unwritten() == 0;
     }));
     program.leave();

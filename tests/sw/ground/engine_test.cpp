@@ -2,11 +2,11 @@
 //
 // engine_test: tests the ground's engine on a pty with a modem.
 
+#include "../../support/environment.h"
 #include "engine.h"
 #include "rig.h"
 #include "wire.h"
 #include <csignal>
-#include <cstdlib>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -131,8 +131,9 @@ TEST_F(EngineTest, WhatIsLateIsWithdrawnAndItsSenderIsTold) {
     rig_.with([&] { rig_.uav.refuse = false; });
     const int next = engine->connect(1, 2000);
     echoes(next, 3);
-    rig_.with(
-        [&] { EXPECT_EQ(rig_.uav.received, decltype(rig_.uav.received)(1, {1, message(3)})); });
+    rig_.with([&] {
+        EXPECT_EQ(rig_.uav.received, decltype(rig_.uav.received)(1, {1, message(3)}));
+    });
     close(next);
 }
 
@@ -344,8 +345,7 @@ TEST_F(EngineTest, AListenerAloneHasTheModemTriedAgain) {
 // BYTES=10000000 from the line, and noise from a program for every 64 KiB: nothing hangs or
 // crashes, and afterwards the link works.
 TEST(Engine, RandomBytesFromTheLineAndFromProgramsAreSurvived) {
-    const char* more = std::getenv("BYTES");
-    const size_t total = more ? std::strtoul(more, nullptr, 0) : 10'000'000;
+    const auto total = static_cast<size_t>(numberFromEnvironment("BYTES", 10'000'000));
     Wire wire;
     Random random(testSeed());
     auto engine = wire.engine();

@@ -79,13 +79,13 @@ private:
 };
 
 // The surroundings of one input: the wire, the peer's link, programs, time.
-class World : private LinkEnd {
+class Surroundings : private LinkEnd {
 public:
-    World(const uint8_t* data, size_t size) : at_(data), end_(data + size) {
+    Surroundings(const uint8_t* data, size_t size) : at_(data), end_(data + size) {
         begin();
         Link_start(link(), now);
     }
-    ~World() override { close(serial); }
+    ~Surroundings() override { close(serial); }
     void run() {
         XBeeAT::Settings settings;
         settings.device = "fuzz";
@@ -230,7 +230,7 @@ private:
     std::atomic<Stage> stage_{Stage::Begins};
 };
 
-World* world;
+Surroundings* world;
 
 } // namespace
 
@@ -277,7 +277,7 @@ void SerialPort::drop() {
 } // namespace XBeeAT
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-    World here(data, size);
+    Surroundings here(data, size);
     world = &here;
     here.run();
     return 0;

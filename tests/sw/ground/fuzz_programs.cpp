@@ -34,9 +34,9 @@ void expect(bool condition) {
         std::abort();
 }
 
-class World {
+class FuzzedConnection {
 public:
-    explicit World(bool isServer) {
+    explicit FuzzedConnection(bool isServer) {
         expect(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, ends_) == 0);
         if (isServer) {
             stream_.call();
@@ -47,9 +47,9 @@ public:
         }
         validatesComeThrough_ = isServer;
     }
-    ~World() { close(ends_[1]); }
-    World(const World&) = delete;
-    World& operator=(const World&) = delete;
+    ~FuzzedConnection() { close(ends_[1]); }
+    FuzzedConnection(const FuzzedConnection&) = delete;
+    FuzzedConnection& operator=(const FuzzedConnection&) = delete;
 
     void step(int what, size_t n, const U8* bytes, size_t left) {
         if (what == 2 || what == 3) {
@@ -163,7 +163,7 @@ private:
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     if (size == 0)
         return 0;
-    World world((data[0] & 1) != 0);
+    FuzzedConnection world((data[0] & 1) != 0);
     for (size_t at = 1; at + 2 <= size;) {
         const int what = data[at] & 7;
         const size_t n = data[at + 1];

@@ -13,6 +13,7 @@
 #include <cerrno>
 #include <chrono>
 #include <fcntl.h>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <poll.h>
@@ -119,6 +120,7 @@ public:
     bool echo = true;
     bool open[LINK_CHANNELS] = {};
     unsigned openings[LINK_CHANNELS] = {}, received[LINK_CHANNELS] = {}; // messages
+    std::function<void(int channel, const Bytes& message)> onMessage = [](int, const Bytes&) {};
 
 private:
     bool transmit(const U8* frame, U32 size) override {
@@ -129,6 +131,7 @@ private:
         if (echo && Link_send(link(), channel, data, size, 0) == LINK_FULL)
             return false;
         ++received[channel];
+        onMessage(channel, Bytes(data, data + size));
         return true;
     }
     void onChannel(int channel, bool isOpen) override {

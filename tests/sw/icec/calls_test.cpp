@@ -3,7 +3,7 @@
 // calls_test: tests calls between two communicators: servants, facets, one-way calls, batches,
 // contexts, sizes, asynchronous calls.
 
-#include "pair.h"
+#include "icec_pair.h"
 
 extern "C" {
 #include "ice_private.h"

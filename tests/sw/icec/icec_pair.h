@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// pair: two communicators joined by the loop-back transport, or one communicator that gets messages
-// as bytes; and a servant that the tests control.
+// icec_pair: two communicators joined by the loop-back transport, or one communicator that gets
+// messages as bytes; and a servant that the tests control.
 
 #pragma once
 
@@ -109,9 +109,9 @@ inline void callAsync(Ice_ObjectPrx& prx, const char* operation, Ice_Status& sta
     ASSERT_EQ(Ice_ObjectPrx_invokeAsync(&prx, done, &status), ICE_OK);
 }
 
-class Pair : public ::testing::Test {
+class IcecPair : public ::testing::Test {
 protected:
-    Pair() : here_(std::make_unique<Side>()), there_(std::make_unique<Side>()) {
+    IcecPair() : here_(std::make_unique<Side>()), there_(std::make_unique<Side>()) {
         here_->loop.join(there_->loop);
         add("thing");
         prx_ = here().proxy("thing:loop");
@@ -135,7 +135,7 @@ private:
 };
 
 // A suite with tests in several files.
-class Calls : public Pair {};
+class Calls : public IcecPair {};
 
 using namespace IceMessages;
 

@@ -5,7 +5,7 @@
 // connections that end, calls back on them, time-outs, heartbeats, the properties for adapters and
 // proxies, and addresses of names.
 
-#include "pair.h"
+#include "icec_pair.h"
 #include <dlfcn.h>
 #include <netdb.h>
 #include <netinet/in.h>
@@ -42,7 +42,7 @@ std::string written(const Ice_ObjectPrx& prx) {
     return line;
 }
 
-class Manual : public Pair {};
+class Manual : public IcecPair {};
 
 TEST_F(Manual, AProxyTellsIdentityAndFacet) {
     Ice_ObjectPrx prx = here().proxy("\"cat/a name\" -f side:loop -c 1");

@@ -2,11 +2,11 @@
 //
 // minimal_test: tests calls of the minimal run time, and requests that it refuses.
 
-#include "pair.h"
+#include "icec_pair.h"
 
 namespace {
 
-class Minimal : public Pair {};
+class Minimal : public IcecPair {};
 
 TEST_F(Minimal, ParametersThatLackAndResultsThatDoNotFitAreUnknownLocalExceptions) {
     servant_.run = [](const Ice_Current&, Ice_InputStreamPtr is, Ice_OutputStreamPtr) {

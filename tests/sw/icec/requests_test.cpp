@@ -3,7 +3,7 @@
 // requests_test: tests calls, and messages as bytes: answered, malformed, refused or skipped. Full
 // and minimal run time must behave alike.
 
-#include "pair.h"
+#include "icec_pair.h"
 
 namespace {
 

@@ -3,7 +3,7 @@
 // tasks_test: one communicator used by several threads, over tcp: simultaneous calls, with and
 // without a receiving task, and replies sent by a task other than the operation's.
 
-#include "pair.h"
+#include "icec_pair.h"
 
 #include <atomic>
 #include <condition_variable>

@@ -3,7 +3,7 @@
 // tcp_test: tests IceC's tcp transport with many peers at once, with silent, dead or greedy peers,
 // and with peers that close a silent connection (Ice 3.8).
 
-#include "pair.h"
+#include "icec_pair.h"
 
 #include <arpa/inet.h>
 #include <atomic>
@@ -38,18 +38,18 @@ sockaddr_in local(int port) {
 }
 
 // A peer that is not an Ice program: a socket, and the bytes written to it.
-class Peer {
+class RawSocket {
 public:
-    explicit Peer(int port) : fd_(socket(AF_INET, SOCK_STREAM, 0)) {
+    explicit RawSocket(int port) : fd_(socket(AF_INET, SOCK_STREAM, 0)) {
         sockaddr_in at = local(port);
         fcntl(fd_, F_SETFL, O_NONBLOCK);
         (void)!connect(fd_, reinterpret_cast<sockaddr*>(&at), sizeof at);
     }
-    explicit Peer(int listener, bool) : fd_(accept(listener, nullptr, nullptr)) {
+    explicit RawSocket(int listener, bool) : fd_(accept(listener, nullptr, nullptr)) {
         fcntl(fd_, F_SETFL, O_NONBLOCK);
     }
-    Peer(const Peer&) = delete;
-    ~Peer() { close(fd_); }
+    RawSocket(const RawSocket&) = delete;
+    ~RawSocket() { close(fd_); }
     bool isConnected(int ms) {
         pollfd wait{fd_, POLLOUT, 0};
         int error = 1;
@@ -136,7 +136,7 @@ protected:
     }
     // Sends a ping and waits for its reply; skips heartbeats in between. Returns false after a
     // time-out.
-    static bool ping(Peer& peer, int ms = 3000) {
+    static bool ping(RawSocket& peer, int ms = 3000) {
         if (!peer.isConnected(ms) || !peer.send(request(7, requestBody("thing", "ice_ping"))))
             return false;
         for (;;) {
@@ -161,10 +161,10 @@ protected:
 };
 
 TEST_F(Tcp, AHundredClientsAtOnceAreServed) {
-    std::deque<Peer> peers;
+    std::deque<RawSocket> peers;
     for (int i = 0; i < 100; ++i)
         peers.emplace_back(port());
-    for (Peer& peer : peers)
+    for (RawSocket& peer : peers)
         ASSERT_TRUE(peer.isConnected(100)) << "the system keeps them until they are accepted";
     serve();
     while (!peers.empty()) { // peers that have been served disconnect, so that others can connect
@@ -174,7 +174,7 @@ TEST_F(Tcp, AHundredClientsAtOnceAreServed) {
 }
 
 TEST_F(Tcp, AMessageMayComeByteByByte) {
-    Peer peer(port());
+    RawSocket peer(port());
     ASSERT_TRUE(peer.isConnected(1000));
     for (int turn = 0; turn < 2; ++turn)
         for (Ice_Byte byte : request(7, requestBody("thing", "ice_ping"))) {
@@ -195,7 +195,7 @@ TEST_F(Tcp, AClientThatNeverReadsStopsNobodyForLong) {
     };
     tcp_->sendMs = 200;
     serve();
-    Peer greedy(port()), other(port());
+    RawSocket greedy(port()), other(port());
     ASSERT_TRUE(greedy.isConnected(1000));
     Clock::time_point begin = Clock::now();
     while (greedy.send(request(1, requestBody("thing", "much"))) && msSince(begin) < 3000)
@@ -206,12 +206,12 @@ TEST_F(Tcp, AClientThatNeverReadsStopsNobodyForLong) {
 TEST_F(Tcp, ANewPeerDisplacesTheOneThatHasBeenIdleLongest) {
     tcp_->idleMs = 100;
     serve();
-    std::deque<Peer> idle;
+    std::deque<RawSocket> idle;
     for (int i = 0; i < ICE_CONNECTIONS; ++i) {
         idle.emplace_back(port());
         ASSERT_TRUE(ping(idle.back()));
     }
-    Peer other(port());
+    RawSocket other(port());
     EXPECT_TRUE(ping(other, 2000));
     EXPECT_EQ(idle[0].receive(1000), message(4, {})) << "CloseConnection: it may come again";
     EXPECT_TRUE(ping(idle[1])) << "no other connection was closed";
@@ -220,7 +220,7 @@ TEST_F(Tcp, ANewPeerDisplacesTheOneThatHasBeenIdleLongest) {
 TEST_F(Tcp, APeerThatHasBeenServedMakesRoomAtOnce) {
     tcp_->idleMs = 3600000;
     serve();
-    std::deque<Peer> peers;
+    std::deque<RawSocket> peers;
     for (int i = 0; i < 5 * ICE_CONNECTIONS; ++i) {
         peers.emplace_back(port());
         ASSERT_TRUE(ping(peers.back(), 20000)) << i;
@@ -236,7 +236,7 @@ Bytes tooLong(Ice_Int id) {
 
 TEST_F(Tcp, ARequestThatIsTooLongIsAnsweredWithTheLimitsName) {
     serve();
-    Peer peer(port());
+    RawSocket peer(port());
     ASSERT_TRUE(ping(peer));
     ASSERT_TRUE(peer.send(tooLong(9)));
     Bytes reply = peer.receive(20000);
@@ -253,11 +253,12 @@ TEST_F(Tcp, ARequestThatIsTooLongIsAnsweredWithTheLimitsName) {
 TEST_F(Tcp, WhatIsRefusedWithoutAnAnswerIsLoggedAndEndsTheConnection) {
     ::testing::internal::CaptureStderr();
     serve();
-    Peer oneway(port()), batch(port()), compressed(port());
+    RawSocket oneway(port()), batch(port()), compressed(port());
     Bytes calls = {200, 0, 0, 0}, one = requestBody("thing", "ice_ping");
     while (calls.size() < 9000)
         calls.insert(calls.end(), one.begin(), one.end());
-    const std::pair<Peer*, Bytes> cases[] = {{&oneway, tooLong(0)}, {&batch, message(1, calls)}};
+    const std::pair<RawSocket*, Bytes> cases[] = {{&oneway, tooLong(0)},
+                                                  {&batch, message(1, calls)}};
     for (const auto& [peer, bytes] : cases) {
         ASSERT_TRUE(ping(*peer));
         ASSERT_TRUE(peer->send(bytes));
@@ -288,7 +289,7 @@ TEST_F(Tcp, APeerWhoseOperationIsUnderWayIsNotDisplaced) {
         return ICE_LATER;
     };
     serve();
-    std::deque<Peer> peers;
+    std::deque<RawSocket> peers;
     peers.emplace_back(port());
     ASSERT_TRUE(peers[0].isConnected(1000));
     ASSERT_TRUE(peers[0].send(request(3, requestBody("thing", "slow"))));
@@ -307,7 +308,7 @@ TEST_F(Tcp, AConnectionWithoutCallsCarriesHeartbeats) { // with Ice 3.8, a conne
                                                         // heartbeats would be closed
     tcp_->heartbeatMs = 50;
     serve();
-    Peer peer(port());
+    RawSocket peer(port());
     ASSERT_TRUE(ping(peer));
     for (int i = 0; i < 10; ++i)
         ASSERT_EQ(peer.receive(20000), message(3, {})) << i;
@@ -321,7 +322,7 @@ TEST_F(Tcp, AServerThatCutsSilentConnectionsKeepsThisOne) {
     Ice_ObjectPrx prx = proxy(listener);
     const auto ping = [&] { EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx), ICE_OK); };
     std::thread first(ping);
-    Peer peer(listener.fd, true);
+    RawSocket peer(listener.fd, true);
     peer.send(message(3, {}));
     peer.send(replyTo(peer.receive(20000)));
     first.join();
@@ -343,7 +344,7 @@ TEST_F(Tcp, ACallWhoseReplyIsCutIsLostAndTheNextOneConnectsAgain) {
     Listener listener;
     std::thread server([&] {
         for (int i = 0; i < calls; ++i) { // the reply arrives truncated at any point, or complete
-            Peer peer(listener.fd, true);
+            RawSocket peer(listener.fd, true);
             peer.send(message(3, {}));
             const Bytes reply = replyTo(peer.receive(20000));
             peer.send({reply.begin(), reply.begin() + 6 + i});
@@ -358,7 +359,7 @@ TEST_F(Tcp, ACallWhoseReplyIsCutIsLostAndTheNextOneConnectsAgain) {
 
 TEST_F(Tcp, APeerThatIsGoneWithoutAWordIsLookedFor) {
     serve();
-    Peer peer(port());
+    RawSocket peer(port());
     ASSERT_TRUE(ping(peer));
     stop();
     int on = 0;

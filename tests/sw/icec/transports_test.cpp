@@ -3,7 +3,7 @@
 // transports_test: tests a communicator with two transports at once: tcp, and the loop between two
 // communicators. Built with ICE_TRANSPORTS=2.
 
-#include "pair.h"
+#include "icec_pair.h"
 
 extern "C" {
 #include "tcp_endpoint.h"
@@ -160,10 +160,9 @@ TEST_F(Transports, ABusyOneDoesNotKeepTheOtherFromBeingHeard) {
     EXPECT_EQ(callBy(byTcp_), TCP);
     Ice_ObjectPrx oneway = byTcp_;
     Ice_ObjectPrx_ice_oneway(&oneway);
-    const Bytes heartbeat = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 3, 0, 14, 0, 0, 0};
     there_->loop.inject(ICE_EVENT_OPENED, 1);
     for (int i = 0; i < 500; ++i)
-        there_->loop.inject(ICE_EVENT_MESSAGE, 1, heartbeat);
+        there_->loop.inject(ICE_EVENT_MESSAGE, 1, IceMessages::validate()); // a heartbeat
     int polls = 0;
     for (; polls < 5; ++polls) // now it is the loop's turn to be polled
         EXPECT_EQ(Ice_Communicator_poll(&there_->ic, 0), ICE_OK);

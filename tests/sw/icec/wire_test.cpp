@@ -3,7 +3,7 @@
 // wire_test: tests messages as bytes that only the full run time supports, proxies as strings, and
 // streams.
 
-#include "pair.h"
+#include "icec_pair.h"
 #include <cstdio>
 #include <limits>
 

@@ -130,10 +130,10 @@ private:
 };
 
 // A ground station (a) and a vehicle (b), unless a test states otherwise.
-class Pair {
+class LinkPair {
 public:
-    explicit Pair(uint64_t seed, const Bytes& key = {}, const Layer& ofA = layer,
-                  const Layer& ofB = layer, U32 sideA = LINK_GROUND | 1, U32 sideB = 1)
+    explicit LinkPair(uint64_t seed, const Bytes& key = {}, const Layer& ofA = layer,
+                      const Layer& ofB = layer, U32 sideA = LINK_GROUND | 1, U32 sideB = 1)
         : a(ofA, now, seed * 2 + 1, key, sideA), b(ofB, now, seed * 2 + 2, key, sideB) {}
 
     void setWeather(const Weather& weather) { a.weather = b.weather = weather; }

@@ -81,10 +81,9 @@ TEST_P(LinkLayer, AChannelThatNobodyHasOpenedIsRefused) {
 // Random bytes arrive during a session, between messages: nothing fails, and the link continues.
 // BYTES sets their number for the full layer.
 TEST_P(LinkLayer, TenMillionRandomBytesAreSurvived) {
-    const char* given = std::getenv("BYTES");
-    const unsigned long bytes = isMinimal() || GetParam().hasKey ? 1'000'000
-                                : given                          ? std::strtoul(given, nullptr, 0)
-                                                                 : 10'000'000;
+    const double most = numberFromEnvironment("BYTES", 10'000'000);
+    const auto bytes =
+        static_cast<unsigned long>(isMinimal() || GetParam().hasKey ? 1'000'000 : most);
     ASSERT_TRUE(connect());
     b.start();
     Bytes noise(isMinimal() ? 1000 : 10'000);
@@ -334,7 +333,7 @@ TEST(FullLayer, LinksOverOneRadioShareWhatMayWaitForItsAnswers) {
 }
 
 TEST(FullLayer, TheQueueHasAReserveForShortMessages) {
-    Pair pair(testSeed());
+    LinkPair pair(testSeed());
     ASSERT_TRUE(pair.connect());
     ASSERT_EQ(pair.a.open(0), LINK_OK);
     EXPECT_EQ(pair.a.send(0, Bytes(LINK_MAX_MESSAGE), 0), LINK_OK);
@@ -353,7 +352,7 @@ TEST(FullLayer, TheQueueHasAReserveForShortMessages) {
 
 // If answers arrive faster than modems can send them, the path is a wire, which needs no turns.
 TEST(FullLayer, OverAWireACallWaitsForNoTurn) {
-    Pair pair(testSeed());
+    LinkPair pair(testSeed());
     pair.setWeather({0, 0, 0, 0});
     ASSERT_TRUE(pair.connect());
     pair.a.open(0);

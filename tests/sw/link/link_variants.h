@@ -5,6 +5,8 @@
 
 #pragma once
 
+#include "../../support/delivery_check.h"
+#include "../../support/environment.h"
 #include "ice_messages.h"
 #include "link_pair.h"
 #include <algorithm>
@@ -49,12 +51,12 @@ inline const Layer& loadLayer(const std::string& name) {
     return *static_cast<const Layer*>(dlsym(library, "layer"));
 }
 
-class Variants : public ::testing::TestWithParam<Variant>, public Pair {
+class Variants : public ::testing::TestWithParam<Variant>, public LinkPair {
 protected:
     Variants()
-        : Pair(testSeed() * 1000 + GetParam().seed,
-               Bytes(GetParam().hasKey ? LINK_KEY_BYTES : 0, 0x5A), loadLayer(GetParam().a),
-               loadLayer(GetParam().b)) {}
+        : LinkPair(testSeed() * 1000 + GetParam().seed,
+                   Bytes(GetParam().hasKey ? LINK_KEY_BYTES : 0, 0x5A), loadLayer(GetParam().a),
+                   loadLayer(GetParam().b)) {}
 
     static bool isMinimal() { return GetParam().b.find("minimal") == 0; }
 
@@ -102,21 +104,19 @@ protected:
     // message may overtake a message on another channel.
     static void check(const Messages& sent, const Side& sender, const Side& receiver) {
         ASSERT_EQ(sender.outcomes.size(), sent.size()) << "messages not reported";
-        auto order = [](int channel) { return isMinimal() ? 0 : channel; };
-        std::deque<Messages::value_type> received[LINK_CHANNELS];
-        for (auto& message : receiver.received)
-            received[order(message.first)].push_back(message);
-        for (size_t i = 0; i < sent.size(); ++i) {
-            auto& here = received[order(sent[i].first)];
-            const bool arrived = !here.empty() && here.front() == sent[i];
-            if (arrived)
-                here.pop_front();
-            if (sender.outcomes.at(static_cast<U32>(i)) == LINK_DELIVERED) {
-                EXPECT_TRUE(arrived) << "message " << i << " was reported delivered";
-            }
+        DeliveryCheck delivery;
+        auto stream = [](int channel) { return isMinimal() ? 0 : channel; };
+        for (U32 id = 0; id < sent.size(); ++id) {
+            delivery.sent(stream(sent[id].first), id, sent[id].second);
+            if (sender.outcomes.at(id) != LINK_DELIVERED)
+                (void)delivery.reported(id, false);
         }
-        for (auto& left : received)
-            EXPECT_TRUE(left.empty()) << left.size() << " messages doubled, wrong or out of order";
+        for (auto& [channel, message] : receiver.received)
+            EXPECT_EQ(delivery.arrived(stream(channel), message), "");
+        for (auto& [id, outcome] : sender.outcomes)
+            if (outcome == LINK_DELIVERED) {
+                EXPECT_EQ(delivery.reported(id, true), "");
+            }
     }
     void checkBoth() {
         check(sentA, a, b);

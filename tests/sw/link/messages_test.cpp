@@ -50,9 +50,9 @@ INSTANTIATE_TEST_SUITE_P(Tags, CallBytes,
                                            Variant{"full", "full", true},
                                            Variant{"tag4", "tag4", true}));
 
-class Heads : public ::testing::Test, public Pair {
+class Heads : public ::testing::Test, public LinkPair {
 protected:
-    Heads() : Pair(testSeed()) {}
+    Heads() : LinkPair(testSeed()) {}
     void SetUp() override {
         ASSERT_TRUE(connect());
         ASSERT_EQ(a.open(0), LINK_OK);

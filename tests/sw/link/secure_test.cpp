@@ -65,8 +65,7 @@ protected:
 
 // HOSTILE=10000000 sends that number of hostile packets.
 TEST_P(Attacked, NothingHostileIsAcceptedAndNothingLegalLostOrDoubled) {
-    const char* more = std::getenv("HOSTILE");
-    const uint64_t most = (more ? std::strtoull(more, nullptr, 10) : 60000) / 2;
+    const auto most = static_cast<uint64_t>(numberFromEnvironment("HOSTILE", 60'000) / 2);
     ASSERT_TRUE(connect());
     for (size_t messages = 20; hostile_ < most; messages += 20)
         ASSERT_TRUE(attackedTraffic(messages, 600'000'000)) << hostile_ << " hostile packets";
@@ -545,11 +544,11 @@ void PrintTo(const Meeting& m, std::ostream* out) {
     *out << std::hex << m.sideA << "_" << m.sideB;
 }
 
-class Meetings : public ::testing::TestWithParam<Meeting>, public Pair {
+class Meetings : public ::testing::TestWithParam<Meeting>, public LinkPair {
 protected:
     Meetings()
-        : Pair(testSeed(), Bytes(LINK_KEY_BYTES, 0x5A), loadLayer("full"), loadLayer("full"),
-               GetParam().sideA, GetParam().sideB) {}
+        : LinkPair(testSeed(), Bytes(LINK_KEY_BYTES, 0x5A), loadLayer("full"), loadLayer("full"),
+                   GetParam().sideA, GetParam().sideB) {}
 };
 
 TEST_P(Meetings, OnlyAGroundAndTheVehicleThatItMeansMakeASession) {

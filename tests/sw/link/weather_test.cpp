@@ -165,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(Vehicles, InTheClear,
 TEST(Goodput, MeetsItsTargets) {
     const double targets[][2] = {{0, 0.83}, {0.01, 0.81}, {0.1, 0.68}, {0.3, 0.42}};
     for (auto& [loss, target] : targets) {
-        Pair pair(testSeed());
+        LinkPair pair(testSeed());
         ASSERT_TRUE(pair.connect());
         pair.setWeather({loss, 0, 0});
         pair.a.open(0);

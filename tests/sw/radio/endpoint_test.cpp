@@ -71,7 +71,7 @@ protected:
                           static_cast<Ice_Int>(message.size()));
     }
 
-    Pair pair_{testSeed()};
+    LinkPair pair_{testSeed()};
     Ice_Communicator ic_;
     XBeeATEndpoint endpoint_;
     Ice_Byte buffer_[ICE_MESSAGE_MAX];
@@ -189,7 +189,7 @@ TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnIts
 }
 
 TEST_F(RadioEndpoint, ASecondGroundHasConnectionsOfItsOwn) {
-    Pair other(testSeed() + 1);
+    LinkPair other(testSeed() + 1);
     XBeeATEndpoint_addPeer(&endpoint_, 1, other.b.link(), 0x00F0);
     ASSERT_TRUE(pair_.connect() && other.connect());
     const auto connectTo = [&](Ice_Byte address) {

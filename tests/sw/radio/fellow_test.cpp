@@ -23,7 +23,7 @@ using Key = std::vector<U8>;
 struct Craft;
 
 // The vehicles and ground stations, and their common time, which advances while one of them waits.
-struct World {
+struct Simulation {
     void step();
     void run(U32 times) {
         while (times--)
@@ -54,7 +54,7 @@ struct End : LinkProgram {
 // A vehicle or a ground station: a communicator with three links, the last one as small as the
 // vehicle's link to another vehicle.
 struct Craft {
-    Craft(World& w, U16 address) : world(w), random(testSeed() + w.crafts.size()) {
+    Craft(Simulation& w, U16 address) : world(w), random(testSeed() + w.crafts.size()) {
         static const XBeeATEndpoint_Port port = {
             [](void*) {},
             [](void*) {},
@@ -147,7 +147,7 @@ struct Craft {
         Ice_Object object{};
         unsigned calls = 0;
     };
-    World& world;
+    Simulation& world;
     Random random;
     static constexpr int fellow = 2;
     End ends[3];
@@ -175,7 +175,7 @@ void End::onChannel(int channel, bool isOpen) {
     XBeeATEndpoint_onChannel(&craft->endpoint, first + channel, isOpen);
 }
 
-void World::step() {
+void Simulation::step() {
     ++ms;
     for (Craft* craft : crafts)
         craft->advance();
@@ -186,7 +186,7 @@ void World::step() {
 }
 
 // Vehicles 5 and 7 (5 acts as the ground station), and the two ground stations of 5.
-struct Team : World {
+struct Team : Simulation {
     explicit Team(const Key& key = {}, const Key& keyOf7 = {}) {
         five.meets(seven, 7, Craft::fellow, true, key, LINK_GROUND | 7);
         seven.meets(five, 5, Craft::fellow, false, keyOf7.empty() ? key : keyOf7, 7);

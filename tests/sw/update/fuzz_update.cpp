@@ -53,9 +53,9 @@ void sign(Slots_Header& header) {
     std::memcpy(header.signature, &sum, sizeof sum);
 }
 
-class Vehicle {
+class FuzzedVehicle {
 public:
-    Vehicle(const uint8_t* data, size_t size) : at_(data), end_(data + size) {
+    FuzzedVehicle(const uint8_t* data, size_t size) : at_(data), end_(data + size) {
         layout_ = {0x1000, 0x800, 0x400, SLOTS_READY, SLOTS_TRUE, 0, size ? *at_++ & 1U : 0U};
         if (layout_.hasGolden) {
             layout_.readyAt = SLOTS_IMAGE_AT + SLOTS_SYNC_AT;
@@ -78,7 +78,7 @@ public:
     }
 
 private:
-    static Vehicle& of(void* context) { return *static_cast<Vehicle*>(context); }
+    static FuzzedVehicle& of(void* context) { return *static_cast<FuzzedVehicle*>(context); }
     Bytes take(size_t count) {
         count = std::min(count, static_cast<size_t>(end_ - at_));
         at_ += count;
@@ -192,7 +192,7 @@ private:
         expect(isState || offset + count <= running || offset >= running + layout_.bytes);
     }
     static int erase(void* context, U32 offset) {
-        Vehicle& self = of(context);
+        FuzzedVehicle& self = of(context);
         self.mayWrite(offset, self.layout_.sectorBytes);
         std::fill_n(&self.flash_[offset], self.layout_.sectorBytes, uint8_t{0xFF});
         return 1;
@@ -228,6 +228,6 @@ private:
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-    Vehicle(data, size).run();
+    FuzzedVehicle(data, size).run();
     return 0;
 }

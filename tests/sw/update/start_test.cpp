@@ -48,7 +48,7 @@ struct VehicleFolder {
     std::string path = FOLDER + std::to_string(getpid());
 };
 
-class Vehicle : public ::testing::Test {
+class StartingVehicle : public ::testing::Test {
 protected:
     void fill(const std::string& more = "") {
         ASSERT_EQ(
@@ -66,7 +66,7 @@ protected:
     Stm32F2 chip{fsmc, [this] { return now(); }, {}};
 };
 
-class Loader : public Vehicle {
+class Loader : public StartingVehicle {
 protected:
     // Writes a complete update into the second slot.
     void receive(int version, const char* key = "key", const char* more = "") {
@@ -216,7 +216,7 @@ constexpr uint32_t frameWords = 2000;
 const uint32_t slot = Slots_at(&slots_fpga, 1), multiBoot = slot + SLOTS_IMAGE_AT,
                golden = Slots_at(&slots_fpga, 0) + SLOTS_IMAGE_AT;
 
-class FpgaStart : public Vehicle {
+class FpgaStart : public StartingVehicle {
 protected:
     FpgaStart() {
         folder.save("golden.bin", standInBitstream(1, frameWords));

@@ -26,11 +26,11 @@ Image makeImage(uint32_t version, uint32_t slot, uint32_t size = imageBytes,
 }
 
 // The flash and its power supply, and the firmware that boots from the flash.
-class Vehicle : public Updated {
+class FlashedVehicle : public Updated {
 public:
     // State left by a programmer, at its first start: slot 0 has a confirmed image, slot 1 other
     // data.
-    explicit Vehicle(uint32_t version = 1, uint64_t seed = 1)
+    explicit FlashedVehicle(uint32_t version = 1, uint64_t seed = 1)
         : Updated(chunk), flash_(
                               memory.data(), [this] { return now_; }, seed),
           port{&slots_firmware,
@@ -94,7 +94,7 @@ public:
     Slots_Port port;
 
 private:
-    static Vehicle& of(void* context) { return *static_cast<Vehicle*>(context); }
+    static FlashedVehicle& of(void* context) { return *static_cast<FlashedVehicle*>(context); }
     int control(uint32_t value) {
         flash_.write(Stm32Flash::Keyr, 0x45670123);
         flash_.write(Stm32Flash::Keyr, 0xCDEF89AB);
@@ -143,15 +143,15 @@ TEST(Signature, IsEd25519AsInRfc8032) {
 }
 
 TEST(Update, ANewImageIsTriedAndStaysWhenItIsConfirmed) {
-    Vehicle().expectTriedAndConfirmed();
+    FlashedVehicle().expectTriedAndConfirmed();
 }
 
 TEST(Update, AnImageThatIsNotConfirmedIsTriedOnce) {
-    Vehicle().expectTriedOnce();
+    FlashedVehicle().expectTriedOnce();
 }
 
 TEST(Update, WhatIsNotForThisVehicleLeavesItUntouched) {
-    Vehicle vehicle(5);
+    FlashedVehicle vehicle(5);
     const Bytes before = vehicle.memory;
     Image foreign = makeImage(6, 1), unsignedOne = makeImage(6, 1), otherKey = makeImage(6, 1);
     foreign.header.product ^= 1;
@@ -178,7 +178,7 @@ TEST(Update, WhatIsNotForThisVehicleLeavesItUntouched) {
 }
 
 TEST(Update, ItsCounterpartMustRunAndBeConfirmed) {
-    Vehicle vehicle;
+    FlashedVehicle vehicle;
     Image image = makeImage(2, 1);
     image.header.needs = 5;
     ours.sign(image.header);
@@ -198,7 +198,7 @@ TEST(Update, ItsCounterpartMustRunAndBeConfirmed) {
 // The newest image is damaged, and the power is cut at each operation that replaces it.
 TEST(Update, NoLossOfPowerLowersTheConfirmedVersion) {
     for (uint64_t cut = 1; cut < 12; ++cut) {
-        Vehicle vehicle(5);
+        FlashedVehicle vehicle(5);
         vehicle.updateTo(6);
         vehicle.memory[Slots_at(&slots_firmware, 1) + SLOTS_IMAGE_AT + 99] ^= 1;
         EXPECT_EQ(vehicle.boot(), 5u);
@@ -214,7 +214,7 @@ TEST(Update, NoLossOfPowerLowersTheConfirmedVersion) {
 }
 
 TEST(Update, NoHeaderOfWhichABitWasChangedIsTaken) {
-    Vehicle vehicle;
+    FlashedVehicle vehicle;
     for (size_t bit = 0; bit < 8 * sizeof(Slots_Header); ++bit) {
         Image image = makeImage(2, 1);
         reinterpret_cast<uint8_t*>(&image.header)[bit / 8] ^= static_cast<uint8_t>(1 << bit % 8);
@@ -224,7 +224,7 @@ TEST(Update, NoHeaderOfWhichABitWasChangedIsTaken) {
 }
 
 TEST(Update, WithoutAKeyNothingIsTaken) {
-    Vehicle vehicle;
+    FlashedVehicle vehicle;
     std::fill_n(vehicle.memory.begin() + SLOTS_KEYS_AT + offsetof(Slots_Header, digest),
                 SLOTS_DIGEST_BYTES, uint8_t{0xFF});
     EXPECT_EQ(vehicle.begin(makeImage(2, 1)), RECEIVER_UNSIGNED);
@@ -233,7 +233,7 @@ TEST(Update, WithoutAKeyNothingIsTaken) {
 // The first key is lost. The second one signs an image, and a list that replaces the lost key by a
 // third.
 TEST(Update, TheSecondKeySignsImagesAndTheNextList) {
-    Vehicle vehicle;
+    FlashedVehicle vehicle;
     vehicle.updateTo(2, second);
     EXPECT_EQ(vehicle.take(second.list(2, third, second)), RECEIVER_OK);
     EXPECT_EQ(vehicle.boot(), 2u);
@@ -245,7 +245,7 @@ TEST(Update, TheSecondKeySignsImagesAndTheNextList) {
 }
 
 TEST(Update, AListIsSignedByTheOneBeforeAndCountsUpByOne) {
-    Vehicle vehicle;
+    FlashedVehicle vehicle;
     EXPECT_EQ(vehicle.take(ours.list(2, third, second)), RECEIVER_OK);
     const Bytes before = vehicle.memory;
     const uint64_t operations = vehicle.operations();
@@ -266,7 +266,7 @@ TEST(Update, AListIsSignedByTheOneBeforeAndCountsUpByOne) {
 }
 
 TEST(Update, NoListStopsWhatRuns) {
-    Vehicle vehicle;
+    FlashedVehicle vehicle;
     const Slots_Header list = second.list(2, third, second);
     EXPECT_EQ(vehicle.take(list), RECEIVER_NEEDS_OTHER); // the firmware is signed with our key
     vehicle.receive(makeImage(2, 1, imageBytes, second));
@@ -274,7 +274,7 @@ TEST(Update, NoListStopsWhatRuns) {
     EXPECT_EQ(vehicle.boot(), 2u);
     EXPECT_EQ(vehicle.take(list), RECEIVER_ON_TRIAL);
     EXPECT_EQ(Receiver_confirm(&vehicle.receiver), RECEIVER_OK);
-    Vehicle other; // its bitstream is signed with our key
+    FlashedVehicle other; // its bitstream is signed with our key
     vehicle.receiver.counterpart = &other.receiver;
     EXPECT_EQ(vehicle.take(list), RECEIVER_NEEDS_OTHER);
     other.receiver.isOnTrial = 1;
@@ -289,7 +289,7 @@ TEST(Update, WhereverThePowerIsCutAListCountsOrTheOneBefore) {
     constexpr unsigned words = sizeof(Slots_Header) / 4 + 1;
     Random random(testSeed());
     for (uint64_t first = 1; first <= words; ++first) {
-        Vehicle vehicle(1, testSeed() * 1000 + first);
+        FlashedVehicle vehicle(1, testSeed() * 1000 + first);
         vehicle.updateTo(2, second);
         const Slots_Header list = second.list(2, third, second);
         for (const uint64_t cut : {first, uint64_t{1} + random.below(words)}) {
@@ -312,7 +312,7 @@ TEST(Update, WhereverThePowerIsCutAListCountsOrTheOneBefore) {
 }
 
 TEST(Update, ADamagedOrCutImageIsNotStarted) {
-    Vehicle vehicle;
+    FlashedVehicle vehicle;
     Image image = makeImage(2, 1);
     EXPECT_EQ(vehicle.begin(image), RECEIVER_OK);
     EXPECT_EQ(Receiver_write(&vehicle.receiver, 0, image.bytes.data(), chunk), RECEIVER_OK);
@@ -327,7 +327,7 @@ TEST(Update, ADamagedOrCutImageIsNotStarted) {
 }
 
 TEST(Update, PiecesComeInOrderAndInWords) {
-    Vehicle vehicle;
+    FlashedVehicle vehicle;
     const Image image = makeImage(2, 1);
     const uint8_t* bytes = image.bytes.data();
     EXPECT_EQ(Receiver_write(&vehicle.receiver, 0, bytes, 4), RECEIVER_NOT_BEGUN);
@@ -342,7 +342,7 @@ TEST(Update, PiecesComeInOrderAndInWords) {
 }
 
 TEST(Update, ItGoesOnWhereTheLossOfPowerLeftIt) {
-    Vehicle vehicle;
+    FlashedVehicle vehicle;
     const Image image = makeImage(2, 1);
     EXPECT_EQ(vehicle.begin(image), RECEIVER_OK);
     EXPECT_EQ(Receiver_write(&vehicle.receiver, 0, image.bytes.data(), 768), RECEIVER_OK);
@@ -356,7 +356,7 @@ TEST(Update, ItGoesOnWhereTheLossOfPowerLeftIt) {
 }
 
 TEST(Update, AnOlderImageThatWasNeverTriedIsNotStarted) {
-    Vehicle vehicle(5);
+    FlashedVehicle vehicle(5);
     std::fill_n(vehicle.memory.begin() + Slots_at(&slots_firmware, 1), slots_firmware.bytes,
                 uint8_t{0xFF});
     vehicle.put(1, makeImage(4, 1));
@@ -385,7 +385,7 @@ TEST(Update, AnImageWithARecordedHeaderIsStarted) {
     std::memcpy(header.data(), &image.header, header.size());
     EXPECT_EQ(header, recorded);
 
-    Vehicle vehicle;
+    FlashedVehicle vehicle;
     std::fill_n(vehicle.memory.begin() + Slots_at(&slots_firmware, 1), slots_firmware.bytes,
                 uint8_t{0xFF});
     vehicle.put(1, image);
@@ -396,14 +396,14 @@ TEST(Update, AnImageWithARecordedHeaderIsStarted) {
 }
 
 TEST(Update, WhereverThePowerIsCutThereIsAnImageThatBoots) {
-    Vehicle whole;
+    FlashedVehicle whole;
     whole.updateTo(2);
     const uint64_t all = whole.operations();
     ASSERT_GT(all, imageBytes / 4);
     // Some of these cuts happen during the trial of the new image.
     cutAtEach(
-        2, all, all, [](uint64_t seed) { return Vehicle(1, seed); },
-        [](Vehicle& vehicle) { return vehicle.receiver.running == 1; });
+        2, all, all, [](uint64_t seed) { return FlashedVehicle(1, seed); },
+        [](FlashedVehicle& vehicle) { return vehicle.receiver.running == 1; });
 }
 
 } // namespace

@@ -23,9 +23,9 @@ constexpr Key oldKey = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16},
 constexpr U32 address = 0x1234;
 
 // A vehicle (b) with its key slots, and a ground station (a) with a key file.
-class Vehicle : public Pair {
+class KeyedVehicle : public LinkPair {
 public:
-    explicit Vehicle(uint64_t seed) : Pair(seed) {
+    explicit KeyedVehicle(uint64_t seed) : LinkPair(seed) {
         UAV_useBoard(&board, this);
         UAV_provide(address, oldKey.data());
         bootVehicle();
@@ -77,12 +77,12 @@ public:
     int keys = 0;
 
 private:
-    static Vehicle& self(void* context) { return *static_cast<Vehicle*>(context); }
+    static KeyedVehicle& self(void* context) { return *static_cast<KeyedVehicle*>(context); }
     static constexpr UAV_Board board = {
         [](void*) -> U32 { return 4; },
         [](void* c, U32 word) -> U32 { return self(c).words.at(word); },
         [](void* c, U32 word, U32 value) {
-            Vehicle& v = self(c);
+            KeyedVehicle& v = self(c);
             v.isDead = v.isDead || v.stores++ == v.cutAfter;
             if (!v.isDead)
                 v.words.at(word) = value;
@@ -90,7 +90,7 @@ private:
 };
 
 TEST(Keys, AVehicleHasAKeyOrIsOpenOrNeither) {
-    Vehicle vehicle(1);
+    KeyedVehicle vehicle(1);
     EXPECT_EQ(UAV_countKeys(0), 1);
     EXPECT_FALSE(UAV_isOpen());
     UAV_provide(address, nullptr);
@@ -102,7 +102,7 @@ TEST(Keys, AVehicleHasAKeyOrIsOpenOrNeither) {
 }
 
 TEST(Keys, TheFirstGroundsAddressIsNeitherKeptNorTheFlightState) {
-    Vehicle vehicle(1);
+    KeyedVehicle vehicle(1);
     for (const int isFlying : {0, 1}) {
         UAV_setFlying(isFlying);
         EXPECT_EQ(UAV_addressOf(0), 0u) << "flying: " << isFlying;
@@ -112,7 +112,7 @@ TEST(Keys, TheFirstGroundsAddressIsNeitherKeptNorTheFlightState) {
 }
 
 TEST(Keys, ASlotThatWasSpoiltIsEmpty) {
-    Vehicle vehicle(1);
+    KeyedVehicle vehicle(1);
     for (U32 bit = 0; bit < 5 * 32; ++bit) {
         vehicle.words[bit / 32] ^= 1u << bit % 32;
         EXPECT_EQ(UAV_countKeys(0), 0) << bit;
@@ -123,7 +123,7 @@ TEST(Keys, ASlotThatWasSpoiltIsEmpty) {
 
 // A member of the group could send any sequence number.
 TEST(Keys, AHighNumberDoesNotSilenceCallsToAll) {
-    Vehicle vehicle(1);
+    KeyedVehicle vehicle(1);
     const auto opens = [](const Key& key, U32 number) {
         U8 packet[LINK_MAX_FRAME] = {};
         return UAV_openBroadcast(packet, Link_sealBroadcast(packet, 5, key.data(), number)) == 5;
@@ -146,7 +146,7 @@ TEST(Keys, AHighNumberDoesNotSilenceCallsToAll) {
 }
 
 TEST(Keys, TheGroupsKeyOpensEachCallOnceAndGoesWithANewVehiclesKey) {
-    Vehicle vehicle(1);
+    KeyedVehicle vehicle(1);
     const auto opens = [](const Key& key, U32 number) {
         U8 packet[LINK_MAX_FRAME] = {};
         return UAV_openBroadcast(packet, Link_sealBroadcast(packet, 5, key.data(), number)) == 5;
@@ -170,7 +170,7 @@ TEST(Keys, TheGroupsKeyOpensEachCallOnceAndGoesWithANewVehiclesKey) {
 }
 
 TEST(Keys, OneFollowsAnotherAndTheOldOneOpensNothing) {
-    Vehicle vehicle(testSeed());
+    KeyedVehicle vehicle(testSeed());
     EXPECT_EQ(vehicle.change(), std::vector<Key>{newKey});
     EXPECT_FALSE(vehicle.hasKey(oldKey));
     EXPECT_FALSE(vehicle.meets({oldKey}, 5'000'000));
@@ -181,7 +181,7 @@ TEST(Keys, OneFollowsAnotherAndTheOldOneOpensNothing) {
 }
 
 TEST(Keys, ASecondGroundHasKeysOfItsOwn) {
-    Vehicle vehicle(testSeed());
+    KeyedVehicle vehicle(testSeed());
     EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), UAV_NO_PEER);
     UAV_providePeer(UAV_OBSERVER, 0xF0, nullptr);
     EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), UAV_NO_PEER)
@@ -200,7 +200,7 @@ TEST(Keys, ASecondGroundHasKeysOfItsOwn) {
 }
 
 TEST(Keys, OfTwoVehiclesTheOneWithTheLowerAddressHasTheGroundsPart) {
-    Vehicle vehicle(testSeed());
+    KeyedVehicle vehicle(testSeed());
     for (U32 fellow : {address - 1, address + 1}) {
         UAV_providePeer(UAV_VEHICLE, fellow, foreignKey.data());
         EXPECT_EQ(UAV_addressOf(UAV_VEHICLE), fellow);
@@ -225,7 +225,7 @@ TEST(Keys, OfTwoVehiclesTheOneWithTheLowerAddressHasTheGroundsPart) {
 }
 
 TEST(Keys, AGroundWithoutTheKeyIsRefused) {
-    Vehicle vehicle(testSeed());
+    KeyedVehicle vehicle(testSeed());
     EXPECT_FALSE(vehicle.meets({}, 5'000'000)) << "without a key";
     EXPECT_FALSE(vehicle.meets({foreignKey}, 5'000'000));
     EXPECT_FALSE(UAV_setNextKey(0, vehicle.b.link(), newKey.data())) << "without a session";
@@ -233,7 +233,7 @@ TEST(Keys, AGroundWithoutTheKeyIsRefused) {
 }
 
 TEST(Keys, ASessionUnderTheOldKeyKeepsBoth) {
-    Vehicle vehicle(testSeed());
+    KeyedVehicle vehicle(testSeed());
     vehicle.change(2);
     vehicle.bootVehicle();
     EXPECT_EQ(vehicle.keys, 2);
@@ -245,7 +245,7 @@ TEST(Keys, ASessionUnderTheOldKeyKeepsBoth) {
 }
 
 TEST(Keys, TheKeyInUseAgainIsNoChangeAndAnotherNextKeyReplacesTheFirst) {
-    Vehicle vehicle(testSeed());
+    KeyedVehicle vehicle(testSeed());
     ASSERT_TRUE(vehicle.meets({oldKey}));
     EXPECT_TRUE(UAV_setNextKey(0, vehicle.b.link(), oldKey.data()));
     EXPECT_EQ(UAV_countKeys(0), 1);
@@ -257,7 +257,7 @@ TEST(Keys, TheKeyInUseAgainIsNoChangeAndAnotherNextKeyReplacesTheFirst) {
 
 TEST(Keys, AGroundThatGivesUpKeepsAKeyThatWorks) {
     for (int steps = 0; steps <= 3; ++steps) {
-        Vehicle vehicle(testSeed());
+        KeyedVehicle vehicle(testSeed());
         const std::vector<Key> file = vehicle.change(steps);
         vehicle.bootVehicle();
         EXPECT_TRUE(vehicle.meets(file)) << steps;
@@ -267,7 +267,7 @@ TEST(Keys, AGroundThatGivesUpKeepsAKeyThatWorks) {
 TEST(Keys, PowerThatFailsAtAnyWordLeavesAKeyThatWorks) {
     bool wasCut = true;
     for (unsigned cut = 0; wasCut; ++cut) {
-        Vehicle vehicle(testSeed());
+        KeyedVehicle vehicle(testSeed());
         vehicle.cutAfter = vehicle.stores + cut;
         const std::vector<Key> file = vehicle.change();
         wasCut = vehicle.isDead;

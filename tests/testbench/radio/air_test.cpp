@@ -3,14 +3,14 @@
 // air_test: tests the properties of the air: one direction at a time, processing time of the modem,
 // retries by RR, fading, interference, recorded traces. Sources of the figures: docs/simulation.md.
 
-#include "pair.h"
+#include "two_modems.h"
 #include <cstdio>
 #include <fstream>
 #include <unistd.h>
 
 namespace {
 
-class TrueAir : public Pair {
+class TrueAir : public TwoModems {
 protected:
     TrueAir() { perfect = false; }
     // Keeps a modem's input buffer full, as CTS allows.

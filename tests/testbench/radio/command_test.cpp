@@ -3,11 +3,11 @@
 // command_test: tests command mode and every command of the XBee model, and its API frames, with
 // and without escapes. The bytes follow the manual's examples.
 
-#include "pair.h"
+#include "two_modems.h"
 
 namespace {
 
-class Commands : public Pair {
+class Commands : public TwoModems {
 protected:
     void SetUp() override {
         power();
@@ -57,7 +57,7 @@ const Sequence sequences[] = {
      "OK\r1\rERROR\r",
      ""}};
 
-class Sequences : public Pair, public ::testing::WithParamInterface<Sequence> {};
+class Sequences : public TwoModems, public ::testing::WithParamInterface<Sequence> {};
 
 TEST_P(Sequences, BeginAndEndCommandMode) {
     power(GetParam().set);
@@ -69,7 +69,7 @@ TEST_P(Sequences, BeginAndEndCommandMode) {
 }
 INSTANTIATE_TEST_SUITE_P(CommandMode, Sequences, ::testing::ValuesIn(sequences));
 
-using CommandMode = Pair;
+using CommandMode = TwoModems;
 TEST_F(CommandMode, OkWaitsUntilReceivedDataHasDrained) {
     power();
     lineA.paused = true; // the host's line is slow
@@ -189,7 +189,7 @@ TEST_F(Commands, ALiteralRateIsKeptAsTheNearest) {
     EXPECT_EQ(command("ATBD"), "1B207\r") << "111,111";
 }
 
-class Api : public Pair, public ::testing::WithParamInterface<uint32_t> {
+class Api : public TwoModems, public ::testing::WithParamInterface<uint32_t> {
 protected:
     bool escapes() const { return GetParam() == 2; }
     Bytes framed(Bytes contents) const {

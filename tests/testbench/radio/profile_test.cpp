@@ -3,7 +3,7 @@
 // profile_test: tests the differences between the modems that the model imitates: rates, ranges of
 // parameters, flow control, and sizes of packets.
 
-#include "pair.h"
+#include "two_modems.h"
 
 using namespace std::string_literals;
 
@@ -25,7 +25,7 @@ const Modem modems[] = {
     {"s2c", "OK\r", "OK\r", "OK\r", "OK\r", "ERROR\r", "ERROR\r", "0\r", 115200, 109, 114, 101},
     {"xb3", "OK\r", "OK\r", "OK\r", "OK\r", "OK\r", "OK\r", "0\r", 115200, 109, 114, 101}};
 
-class Profiles : public Pair, public ::testing::WithParamInterface<Modem> {
+class Profiles : public TwoModems, public ::testing::WithParamInterface<Modem> {
 protected:
     void SetUp() override { profile = GetParam().name; }
 };

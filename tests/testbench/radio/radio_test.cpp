@@ -3,14 +3,14 @@
 // radio_test: tests the modem's radio side and the air: addresses, time, tries, encryption,
 // weather.
 
-#include "pair.h"
+#include "two_modems.h"
 #include <openssl/evp.h>
 
 namespace {
 
-using Addresses = Pair;
-using Mac = Pair;
-class Encryption : public Pair {
+using Addresses = TwoModems;
+using Mac = TwoModems;
+class Encryption : public TwoModems {
 protected:
     // Encrypts one block with the key 000102..0F.
     static Bytes aes(const Bytes& block) {
@@ -26,7 +26,7 @@ protected:
         return out;
     }
 };
-using Air = Pair;
+using Air = TwoModems;
 
 TEST_F(Addresses, ChannelNetworkAndAddressMustAgree) {
     for (auto& [letters, value] : Settings{{"CH", 0x0D}, {"ID", 0x1111}, {"MY", 3}}) {
@@ -114,7 +114,7 @@ struct Tries {
         *out << "RR" << t.rr << "_MM" << t.mm;
     }
 };
-class MacTries : public Pair, public ::testing::WithParamInterface<Tries> {};
+class MacTries : public TwoModems, public ::testing::WithParamInterface<Tries> {};
 TEST_P(MacTries, AreFourTimesRRAndOneMore) {
     power({{"RR", GetParam().rr}, {"MM", GetParam().mm}});
     air.weather.tryLoss = 1;

@@ -3,13 +3,13 @@
 // serial_test: tests the modem's serial side: baud rate and its tolerance, packetizing, buffers,
 // flow control, reset.
 
-#include "pair.h"
+#include "two_modems.h"
 
 namespace {
 
-using Packetizing = Pair;
-using Buffers = Pair;
-using Reset = Pair;
+using Packetizing = TwoModems;
+using Buffers = TwoModems;
+using Reset = TwoModems;
 
 TEST_F(Packetizing, APacketLeavesAfterROOfSilenceOrAtOnceWithRO0OrAHundredBytes) {
     const struct {

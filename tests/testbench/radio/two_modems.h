@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// pair: two modems, `a` at address 1 and `b` at address 2, the air between them, and their hosts.
+// two_modems: two modems, `a` at address 1 and `b` at address 2, the air between them, and their
+// hosts.
 
 #pragma once
 
@@ -11,7 +12,7 @@
 #include <memory>
 #include <utility>
 
-class Pair : public ::testing::Test {
+class TwoModems : public ::testing::Test {
 protected:
     using Settings = std::map<std::string, uint32_t>;
     using Bytes = std::vector<uint8_t>;

@@ -5,6 +5,7 @@
 // COMPARE_MS=1000 compares one second of the flight. In a second flight every core works, and the
 // camera pins change.
 
+#include "../../support/environment.h"
 #include "VSoc___024root.h"
 #include "core_pins.h"
 #include "driver_port.h"
@@ -13,7 +14,6 @@
 #include "modem_regs.h"
 #include "quiet_span.h"
 #include "uav_machine.h"
-#include <cstdlib>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -47,8 +47,7 @@ struct Plan {
 
 // Returns the time of a flight that is compared, ns.
 uint64_t comparedNs() {
-    const char* text = std::getenv("COMPARE_MS");
-    return static_cast<uint64_t>(1e6 * (text ? std::atof(text) : 40));
+    return static_cast<uint64_t>(1e6 * numberFromEnvironment("COMPARE_MS", 40));
 }
 
 // Makes the camera's sensor send frames: at first one each millisecond, then one while a call waits
@@ -240,8 +239,8 @@ TEST(Quiet, TheMemoryIsReadyInItsClock) {
 }
 
 // Two chips with the same input; one of them evaluates each clock.
-struct Pair {
-    Pair() {
+struct TwoChips {
+    TwoChips() {
         slow.evaluateAll(true);
         for (SocModel* soc : {&quick, &slow}) {
             soc->reset(true);
@@ -262,9 +261,9 @@ struct Pair {
 // A platform that waits for the memory to be ready does not change, and continues as soon as the
 // memory is ready.
 TEST(Quiet, WhatWaitsForTheMemoryGoesWhenItIsReady) {
-    Pair pair;
+    TwoChips pair;
     for (SocModel* soc : {&pair.quick, &pair.slow}) {
-        Pair::write(*soc);
+        TwoChips::write(*soc);
         passUntil(*soc, McbModel::startClocks);
     }
     for (unsigned clock = 0; clock < 200; ++clock) {
@@ -276,11 +275,11 @@ TEST(Quiet, WhatWaitsForTheMemoryGoesWhenItIsReady) {
 }
 
 TEST(Quiet, AMemoryThatHungGoesOnInItsClock) {
-    Pair pair;
+    TwoChips pair;
     auto written = [](SocModel& soc) {
         passUntil(soc, 2 * McbModel::startClocks);
         soc.memory().hang(true);
-        Pair::write(soc);
+        TwoChips::write(soc);
         passUntil(soc, 3 * McbModel::startClocks);
         soc.memory().hang(false);
         while (!soc.memory().wordsWritten && soc.cycles() < 4 * McbModel::startClocks)

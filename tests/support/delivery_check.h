@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+//
+// delivery_check: the promise of the link, checked for messages from one program to another: each
+// arrives unchanged, at most once and in order, and those reported as delivered have arrived.
+
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+// Functions that return text return the fault, or an empty string if the promise is kept.
+class DeliveryCheck {
+public:
+    using Bytes = std::vector<uint8_t>;
+
+    // Records a message that is sent. Messages of one stream arrive in the order of these calls.
+    // `id`: number of the message, unique among those without a report.
+    void sent(int stream, uint32_t id, const Bytes& message) {
+        Stream& s = streams_[stream];
+        s.messages.push_back({id, digestOf(message)});
+        waiting_[id] = {stream, s.forgotten + s.messages.size() - 1};
+        if (s.messages.size() > kept && !waiting_.count(s.messages.front().id)) {
+            s.messages.pop_front();
+            ++s.forgotten;
+        }
+    }
+
+    // Checks a message that arrived at a receiver. Receivers that share an address each get their
+    // messages in order, but no message arrives at both.
+    std::string arrived(int stream, const Bytes& message, int receiver = 0) {
+        Stream& s = streams_[stream];
+        const uint64_t digest = digestOf(message);
+        const size_t next = s.nextOf(receiver), end = s.messages.size();
+        for (size_t at = next; at < end; ++at)
+            if (s.messages[at].digest == digest && !s.messages[at].hasArrived)
+                return take(s, at, receiver);
+        for (size_t at = 0; at < end; ++at)
+            if (s.messages[at].digest == digest)
+                return s.fault(at,
+                               s.messages[at].hasArrived ? "is a duplicate" : "is out of order");
+        return "a message is wrong";
+    }
+    // Checks a message that contains its number.
+    std::string arrived(int stream, uint32_t id, const Bytes& message, int receiver = 0) {
+        Stream& s = streams_[stream];
+        size_t at = s.messages.size();
+        while (at && s.messages[at - 1].id != id)
+            --at;
+        if (!at)
+            return "message " + std::to_string(id) + " was never sent";
+        if (s.messages[--at].digest != digestOf(message))
+            return s.fault(at, "is wrong");
+        if (s.messages[at].hasArrived)
+            return s.fault(at, "is a duplicate");
+        if (at < s.nextOf(receiver))
+            return s.fault(at, "is out of order");
+        return take(s, at, receiver);
+    }
+
+    // Checks a report of the sender: the message was delivered, or its outcome is unknown.
+    std::string reported(uint32_t id, bool isDelivered) {
+        const auto found = waiting_.find(id);
+        if (found == waiting_.end())
+            return "message " + std::to_string(id) + " was reported twice, or never sent";
+        const auto [stream, number] = found->second;
+        waiting_.erase(found);
+        Stream& s = streams_[stream];
+        const size_t at = number - s.forgotten;
+        return isDelivered && !s.messages[at].hasArrived
+                   ? s.fault(at, "was reported delivered, but has not arrived")
+                   : "";
+    }
+    // Expects no report for the messages of a stream that have none: their sender has restarted.
+    // Returns their number.
+    size_t forget(int stream) {
+        size_t count = 0;
+        for (auto it = waiting_.begin(); it != waiting_.end();) {
+            const bool is = it->second.first == stream;
+            count += is;
+            it = is ? waiting_.erase(it) : std::next(it);
+        }
+        return count;
+    }
+
+    uint64_t arrivals() const { return arrivals_; }
+    bool isQuiet() const { return waiting_.empty(); } // true if all messages are reported
+
+private:
+    static constexpr size_t kept = 10'000; // messages of a stream that are remembered
+
+    struct Message {
+        uint32_t id;
+        uint64_t digest;
+        bool hasArrived = false;
+    };
+    struct Stream {
+        std::deque<Message> messages;
+        size_t forgotten = 0;       // number of earlier messages
+        std::map<int, size_t> next; // number of the first message that may arrive, by receiver
+
+        size_t nextOf(int receiver) {
+            const size_t number = next[receiver];
+            return number > forgotten ? number - forgotten : 0;
+        }
+        std::string fault(size_t at, const char* what) const {
+            return "message " + std::to_string(messages[at].id) + " " + what;
+        }
+    };
+
+    // FNV-1a, 64 bits.
+    static uint64_t digestOf(const Bytes& message) {
+        uint64_t digest = 0xCBF29CE484222325u ^ message.size();
+        for (uint8_t byte : message)
+            digest = (digest ^ byte) * 0x100000001B3u;
+        return digest;
+    }
+    // A message may be skipped only if its sender knows that its outcome is unknown.
+    std::string take(Stream& s, size_t at, int receiver) {
+        s.messages[at].hasArrived = true;
+        ++arrivals_;
+        for (size_t skipped = s.nextOf(receiver); skipped < at; ++skipped)
+            if (waiting_.count(s.messages[skipped].id) && !s.messages[skipped].hasArrived)
+                return s.fault(skipped, "was skipped");
+        s.next[receiver] = s.forgotten + at + 1;
+        return "";
+    }
+
+    std::map<int, Stream> streams_;
+    std::unordered_map<uint32_t, std::pair<int, size_t>> waiting_; // stream and number of the
+                                                                   // messages without a report
+    uint64_t arrivals_ = 0;
+};

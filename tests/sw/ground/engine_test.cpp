@@ -131,9 +131,8 @@ TEST_F(EngineTest, WhatIsLateIsWithdrawnAndItsSenderIsTold) {
     rig_.with([&] { rig_.uav.refuse = false; });
     const int next = engine->connect(1, 2000);
     echoes(next, 3);
-    rig_.with([&] {
-        EXPECT_EQ(rig_.uav.received, decltype(rig_.uav.received)(1, {1, message(3)}));
-    });
+    rig_.with(
+        [&] { EXPECT_EQ(rig_.uav.received, decltype(rig_.uav.received)(1, {1, message(3)})); });
     close(next);
 }
 

@@ -40,9 +40,7 @@ public:
         modem_->advance(rig_.ns());
         frames_.feed(
             line_.received.data(), line_.received.size(),
-            [this](int, const uint8_t* data, size_t size) {
-                take({data, data + size});
-            },
+            [this](int, const uint8_t* data, size_t size) { take({data, data + size}); },
             [](const Rig::Bytes&) {});
         line_.received.clear();
     }

@@ -57,7 +57,7 @@ apt-get install -y -qq --no-install-recommends g++ libzeroc-ice-dev cmake ninja-
 g++ -DICE_CPP11_MAPPING -o ping /usr/share/doc/icesoc-ground/examples/ping.cpp -lIce++11 -pthread
 user $simulate --out ping.out -- ./ping 'hwengine1:xbee-at -d {device} -a 1 -g 20' 1 >log ||
     { cat log && fail "no answer by the plugin"; }
-grep "it is a ::Autopilot" log
+grep "type: ::Autopilot" log
 
 step "a project by CMake, called by stock ZeroC Ice"
 user cmake -S "$here/project/server" -B build -G Ninja >/dev/null

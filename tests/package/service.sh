@@ -80,7 +80,7 @@ bash by_service "$here" "$simulator" >log 2>&1 || {
     fail "no answer by the service"
 }
 grep "^corners: 1" log
-grep "it is a ::Autopilot" log
+grep "type: ::Autopilot" log
 grep "^icesoc-call: true" log
 grep "^isAlive: True" log
 grep "^strict" log

@@ -73,19 +73,19 @@ refused 'wrong.rdl:2: error: regfile is not part of the flat subset' \
 refused 'wrong.rdl:1: error: arrays are not' 'addrmap a { reg { field {} b; } x[4]; };'
 refused 'parameters are not part of the flat subset' \
     'addrmap a { reg t #(longint N = 1) { field {} b; }; };'
-refused "'N' is not a number" 'addrmap a { reg { field {} b[N:0]; } x; };'
+refused 'expected a number, got N' 'addrmap a { reg { field {} b[N:0]; } x; };'
 refused "got 'the end'" 'addrmap a { reg { field {} b; } x;'
 refused 'x: expected a word from 0 to 15, got 16' 'addrmap a { reg { field {} b; } x @ 0x34; };'
 refused 'x has no field' 'addrmap a { reg { } x; };'
 refused 'x.b is at bits 39 to 0' 'addrmap a { reg { field {} b[40]; } x; };'
 refused 'expected an addrmap' '// nothing\n'
 refused 'regwidth: expected' 'addrmap a { reg { regwidth = 0x 16; field {} b; } x; };'
-refused "'2'b3' is not a number" "addrmap a { reg { field {} b = 2'b3; } x; };"
+refused "expected a number, got 2'b3" "addrmap a { reg { field {} b = 2'b3; } x; };"
 refused 'an addrmap of the file has no name' 'addrmap { reg { field {} b; } x; };'
 refused 'two addrmaps have one name' \
     'addrmap a { reg { field {} b; } x; }; addrmap A { reg { field {} b; } x; };'
 refused 'expected a name, got' 'addrmap { reg { field {} b; } x; } "../a";'
-refused 'x.b: duplicate name' 'addrmap a { reg { field {} b; field {} b; } x; };'
+refused 'b: duplicate name, first on line 1' 'addrmap a { reg { field {} b; field {} b; } x; };'
 refused 'has no address' 'addrmap A_PAGES { reg { field {} b; } x; };
     addrmap top { addrmap { reg { field {} b; } x; } A; };'
 refused "expected text in UTF-8" "\\0377"

@@ -30,7 +30,7 @@ with Ice.initialize(["--Ice.Default.InvocationTimeout=300000"]) as communicator:
     assert proxy.ice_id() == "::Autopilot::HwProcessingEngine", proxy.ice_id()
 EOF
 wait $first || { cat "$out/cpp" && exit 1; }
-grep -q 'it is a ::Autopilot::HwProcessingEngine' "$out/cpp"
+grep -q 'type: ::Autopilot::HwProcessingEngine' "$out/cpp"
 kill -INT $gateway
 wait $gateway
 grep -q 'messages out' "$out/gateway"

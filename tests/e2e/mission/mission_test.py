@@ -323,7 +323,7 @@ class Cases(Script):
         key = "00112233445566778899AABBCCDDEEFF"
         self.simulate(PING, f"{DEVICE}-k {key} -p 2 -g {{guard}} -t 300000", "3",
                       options=("--modem-key", key))
-        self.has("it is a ::Autopilot::HwProcessingEngine", "-a 0x1 .*-p 2")
+        self.has("type: ::Autopilot::HwProcessingEngine", "-a 0x1 .*-p 2")
         self.lacks(key)
 
     def test_new_key(self):

@@ -187,7 +187,8 @@ class Client:
                           "is it on, in reach, and has it the same key?", SILENT,
                           "Ice.TimeoutException") from None
         except Ice.LocalException as error:
-            raise Failure(f"cannot reach {self.target.place}: {reason_of(error)}", SILENT,
+            raise Failure(f"cannot reach {self.target.place}: "
+                          f"{reason_of(error).removeprefix('cannot connect: ')}", SILENT,
                           error.ice_id().lstrip(":").replace("::", ".")) from None
 
     def thrown(self, error):

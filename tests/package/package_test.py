@@ -129,7 +129,7 @@ class Cases(Script):
         self.use("icesoc-sim", "--image", IMAGE, "--size", "96x64", "--guard", "20", "--out",
                  "flight", "--", "bash", "calls.sh", "{device}")
         self.has('^{"result": true}$', '"found": 1[0-9][0-9],', "^calls 3, failures 0, min ",
-                 "icesoc-gateway: error: xbee-at: cannot open serial port .* uses it",
+                 "icesoc-gateway: error: xbee-at: cannot open serial port .* is using it",
                  "^gateway: error: cannot use /dev/pts/.*: Device or resource busy$",
                  f"^gateway: error: cannot listen at .*{port}.*: Address already in use$")
         self.use("icesoc-call", "--list", "hwengine1")

@@ -266,7 +266,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.regress("--plan")  # a program that is not built may contain any test
         append(plan, '"It has no test" = ""\n')
         self.regress("--plan", 2)
-        self.has("plan.toml: It has no test: not")
+        self.has("plan.toml: It has no test: expected")
         append(plan, "It is none\n")
         self.regress("--plan", 2)
         self.has("plan.toml: .*line 6")

@@ -175,7 +175,7 @@ class Cases(Script):
                            ("G::Points c:max:0", "expected a maximum of 1 to 65535"),
                            ("G::Points c:least:1", "has no effect here")):
             write("limits/mesh.limits", line)
-            self.slice2c(words, int("nothing" not in said), said)
+            self.slice2c(words, int("no effect" not in said), said)
 
     def dependencies(self):
         self.slice2c("--depend -Islice slice/Top.ice", 0, "slice/Lib/Base.ice",

@@ -102,7 +102,7 @@ TEST_F(EngineTest, AMessageThatIsTooLongEndsItsConnectionOnly) {
     echoes(good, 1);
     writeAll(bad, message(2, 9000));
     EXPECT_TRUE(rig_.read(bad, 1).empty());
-    EXPECT_TRUE(log_.has("does not fit the radio link"));
+    EXPECT_TRUE(log_.has("too long for the radio link"));
     echoes(good, 3);
     close(good);
     close(bad);

@@ -18,8 +18,6 @@ import termios
 import time
 import tty
 
-from reasons import reason_of
-
 # numbers from Linux' ioctl_tty(2); termios of Python 3.11 lacks both
 TIOCSBRK, TIOCCBRK = 0x5427, 0x5428
 GROUP = 0xFFFF  # address that key files use for the group key

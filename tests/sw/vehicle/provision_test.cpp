@@ -171,7 +171,8 @@ TEST_F(Provision, TheGroundsProgramGivesIt) {
     std::ofstream(file + ".wrong") << digits << "\n\xff\n";
     ::chmod((file + ".wrong").c_str(), 0600);
     const std::string senseless = std::string("/usr/bin/python3 ") + PROVIDE_KEY + " --key " +
-                                  file + ".wrong --port /dev/null 2>&1 | grep -q 'line 2: give'";
+                                  file +
+                                  ".wrong --port /dev/null 2>&1 | grep -q 'line 2: expected'";
     EXPECT_EQ(std::system(senseless.c_str()), 0);
     const std::string group = std::string("/usr/bin/python3 ") + PROVIDE_KEY + " --key " + file +
                               " --port /dev/null --group 2>&1 | grep -q 'no line.* 0xffff'";
@@ -189,12 +190,14 @@ TEST_F(Provision, TheGroundsProgramGivesIt) {
     }
     usleep(1'000'000); // no prompt: the program holds a break on the line
     std::string line;
-    for (int tries = 0; tries < 60 && line.find('\n') == std::string::npos; ++tries) {
+    // The vehicle asks more often than every 0.5 s, which is the time for which the program listens
+    // between two breaks.
+    for (int tries = 0; tries < 300 && line.find('\n') == std::string::npos; ++tries) {
         const std::string asked = start();
         ASSERT_EQ(write(port, asked.data(), asked.size()), ssize_t(asked.size()));
         pollfd wanted = {port, POLLIN, 0};
         char bytes[64];
-        if (poll(&wanted, 1, 1000) > 0)
+        if (poll(&wanted, 1, 300) > 0)
             line.append(bytes,
                         static_cast<size_t>(std::max<ssize_t>(0, read(port, bytes, sizeof bytes))));
     }

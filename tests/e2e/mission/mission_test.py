@@ -350,7 +350,7 @@ class Cases(Script):
         self.has(" 0 packets on the air")
         self.simulate(TREE / "tests/e2e/mission/gateway.sh", BUILD, "{device}", "{guard}",
                       self.out, "--wire", options=["--wire"])
-        self.refused("without modems and air: leave out --loss", "--wire", "--loss", "0.1")
+        self.refused("without modems and radio: leave out --loss", "--wire", "--loss", "0.1")
 
     def test_fleet(self):
         """Four vehicles share one modem, and the first one runs the host build of the firmware;

@@ -93,7 +93,8 @@ remove low_pass >/dev/null
     { echo 'rm-ip keeps the core, or takes another line' && exit 1; }
 rm -r "$work/ip/taker"
 for wrong in '' missing template ../bus; do
-    ! remove "$wrong" 2>"$work/log" && grep -q 'expected the name of a core\|ip/.* not found' "$work/log" ||
+    ! remove "$wrong" 2>"$work/log" &&
+        grep -q 'expected the name of a core\|ip/.* not found' "$work/log" ||
         { echo "rm-ip takes '$wrong'" && exit 1; }
 done
 # Uncommitted work is kept, unless forced.

@@ -171,7 +171,7 @@ class Cases(Script):
         self.lacks("G_F_b", "limits/mesh.h")
         self.slice2c("--depend -Ilimits limits/user.ice", 0, "limits/mesh.limits")
         for line, said in (("G::Point c:max:2", "mesh.limits:1:1: error: 'G::Point' is not def"),
-                           ("\nG::Points # 7", "mesh.limits:2:1: error: 'G::Points': expected meta"),
+                           ("\nG::Points # 7", "mesh.limits:2:1: error: 'G::Points': expected m"),
                            ("G::Points c:max:0", "expected a maximum of 1 to 65535"),
                            ("G::Points c:least:1", "has no effect here")):
             write("limits/mesh.limits", line)

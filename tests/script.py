@@ -77,7 +77,8 @@ class Script(unittest.TestCase):
 
     def make(self, *words, tree=TREE, build="build", **how):
         """Runs a command with make, as a user does, in the whole tree or in a small tree of the
-        test. The files that it would build and install exist already, unless `build` is None."""
+        test. The files that the command would build and install exist already, unless `build`
+        is None."""
         ours = {
             name: value
             for name, value in os.environ.items()

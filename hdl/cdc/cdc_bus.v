@@ -92,7 +92,7 @@ module cdc_bus #(
             assert (dst_data_o == (left == 2'd2 ? older : newer));
         end
         assert (left == 2'd0 || clocks + {2'd0, edge_of_clk} <= 3'd3 || (clocks == 3'd3 && handed));
-        // The word of the source is stable from its edge to the next edge.
+        // src_data_o is the last word written; it only changes at an edge that writes a word.
         if (known || new_write)
             assert (src_data_o == (new_write ? was_data : newer));
         // The copy of the last word is stable until the next word arrives.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// vision_servant_test: tests HwProcessingEngine, computed by the core, through the FSMC driver.
+// vision_servant_test: tests HwProcessingEngine through the FSMC driver; the core computes the
+// results.
 
 #include "Vvision_slot.h"
 #include "core_slot.h"

@@ -80,8 +80,8 @@ void markEnd(Preprocessed& p, const std::string& file) {
 // libmcpp's limit for a line, including lines joined to it by a backslash, bytes
 constexpr size_t longestLine = 65500;
 
-// Returns an error message that names the line, in `file` or in an included file, that exceeds
-// libmcpp's limit.
+// Returns an error message that names the line that exceeds libmcpp's limit, in `file` or in an
+// included file.
 std::string tooLongLine(const std::filesystem::path& file, const std::vector<std::string>& options,
                         std::set<std::filesystem::path>& seen) {
     std::ifstream in(file, std::ios::binary);

@@ -64,7 +64,7 @@ static void reportStuck(U32 line, int high) {
                     "a short to ground, or another part that drives it");
 }
 
-/* `found` is not 0 if the tester answers. It can then later detect an inverter in a line that it
+/* `found` is not 0 if the tester answers; the tester can then detect an inverter in a line that it
  * drives. */
 static void testStuck(U32 found) {
     U8 down[LINES], up[LINES];

@@ -58,8 +58,8 @@ std::shared_ptr<Peer> Engine::get(const Settings& settings, const Log& log) {
 Peer& Engine::peer(const Settings& wanted) {
     std::lock_guard<std::mutex> lock(mutex);
     std::unique_ptr<Peer>& peer = peers_[wanted.target];
-    // A peer with other keys is a separate peer, so a program with a key never communicates
-    // unencrypted because of an earlier program.
+    // Programs with other keys are refused. Otherwise a program with a key could share the
+    // unencrypted peer of an earlier program.
     if (peer && peer->keys() != wanted.keys)
         refuse(EBUSY, "'" + device +
                           "' is in use with other keys: programs that share a vehicle must use the "

@@ -20,7 +20,7 @@ namespace XBeeAT {
 namespace {
 
 constexpr U32 never = 0xFFFFFFFFu;
-constexpr U32 lookUs = 50000; // interval of the searches for a free channel while programs wait, us
+constexpr U32 lookUs = 50000; // us between searches for a free channel while programs wait
 
 } // namespace
 
@@ -128,7 +128,7 @@ void Peer::openWanted(U32 now) {
 }
 
 // Ends the connections of programs whose messages have waited too long for room. Returns the time
-// until the next check, us.
+// in us until the next check.
 U32 Peer::endLate(U32 now) {
     U32 wait = never;
     for (int channel = 0; channel < LINK_CHANNELS; ++channel) {

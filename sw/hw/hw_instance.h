@@ -15,8 +15,8 @@ typedef struct Hw_Instance {
     Ice_ObjectPtr servant;
     Hw_Status (*start)(const Hw_Port* port, void* context);
     void (*interrupt)(void);
-    /* Replies to calls that are done or have timed out. Returns the time until it must be called
-     * again even without an event, ms, or HW_NEVER. */
+    /* Replies to calls that are done or have timed out. Returns the time in ms until it must be
+     * called again even without an event, or HW_NEVER. */
     U32 (*poll)(U32 nowMs);
 } Hw_Instance;
 

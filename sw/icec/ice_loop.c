@@ -115,10 +115,10 @@ static int keepTimes(Ice_CommunicatorPtr ic, Ice_Int* waitMs) {
     }
 }
 
-/* Number of events after which a busy transport gives the turn to the other transports. */
+/* Number of events after which a busy transport passes the turn to the next transport. */
 #define TURN_EVENTS 32
 
-/* Receives from the transport that has the turn. If nothing arrives, the next transport gets the
+/* Receives from the transport whose turn it is. If nothing arrives, it is the next transport's
  * turn. */
 static Ice_Status receive(Ice_CommunicatorPtr ic, Ice_Byte* in, Ice_Int timeoutMs,
                           Ice_Event* event) {
@@ -140,9 +140,9 @@ static Ice_Status receive(Ice_CommunicatorPtr ic, Ice_Byte* in, Ice_Int timeoutM
 #define SERVE (-1) /* value for timeoutMs: until shutdown is called */
 #define POLL_MS 1000
 
-/* Handles at most one event of the transport that has the turn. The calling task has the role of
- * the receiver. Returns ICE_TIMEOUT without an event, ICE_LIMIT if ICE_NESTING is reached, and
- * ICE_CONNECTION_CLOSED at the end of SERVE. */
+/* Handles at most one event of the transport whose turn it is. The calling task acts as the
+ * receiver. Returns ICE_TIMEOUT if no event arrived, ICE_LIMIT if ICE_NESTING is reached, and
+ * ICE_CONNECTION_CLOSED when SERVE ends. */
 static Ice_Status receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     Ice_Event event;
     Ice_Status status;

@@ -39,7 +39,8 @@ void icec_writeFacet(Ice_OutputStreamPtr os, const Ice_String* facet);
 void icec_readFacet(Ice_InputStreamPtr is, Ice_String* facet);
 void icec_skipStrings(Ice_InputStreamPtr is, U32 count);
 
-/* Identity, facet and operation of a request, as bytes. Replies with some failures repeat them. */
+/* Identity, facet and operation of a request, as bytes. Replies that report certain failures repeat
+ * these three fields. */
 typedef struct Icec_Target {
     const Ice_Byte* data;
     Ice_Int size;

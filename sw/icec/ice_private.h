@@ -22,7 +22,8 @@ U32 icec_nowMs(Ice_CommunicatorPtr ic);
 /* Makes the receiving task return early from its wait. */
 void icec_wake(Ice_CommunicatorPtr ic);
 
-/* Characters that separate words in proxies and endpoints as strings, as in Ice. */
+/* Characters that separate words in the string form of proxies and endpoints; the same as in
+ * Ice. */
 #define ICEC_SPACES " \t\n\r"
 
 /* Returns the options after the name of a transport, and sets `transport`. Returns 0 if the text

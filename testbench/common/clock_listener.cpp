@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// clock_listener: adds the number of the model's clock to the message of a failed assertion, and
-// prints it when the program is aborted.
+// clock_listener: adds the model's current clock cycle to the message of a failed assertion, and
+// prints that cycle if the program is aborted.
 
 #include "tell_on_abort.h"
 #include <cstdio>

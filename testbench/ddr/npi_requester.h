@@ -89,7 +89,7 @@ public:
         return true;
     }
 
-    // If this is requested, records accepted requests in their order.
+    // If this is requested, records accepted requests in order.
     struct Accepted {
         uint32_t address;
         unsigned words;
@@ -166,7 +166,7 @@ private:
         bool raised = false, willing = false, popping = false;
         uint32_t next = 0; // address of a sequential stream
         uint64_t since = 0;
-        std::deque<Expected> expected; // expected words of reads, in their order
+        std::deque<Expected> expected; // expected words of reads, in order
     };
 
     bool roomFor(const Port& port, const Request& r) const { // rule 3

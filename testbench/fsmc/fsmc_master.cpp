@@ -197,9 +197,9 @@ void FsmcMaster::addressPhase(const Access& access, uint16_t value, uint8_t lane
         complain(access.name + ": NWAIT went active after the strobe");
 }
 
-// Advances the data phase by at most the given time, to two HCLK cycles before its end. NWAIT is
-// sampled four HCLK before the end; the phase ends four HCLK after NWAIT is released. Returns the
-// remaining HCLK cycles.
+// Advances the data phase until at most two HCLK cycles of the phase remain, and returns this
+// number. With NWAIT enabled, the pin is sampled four HCLK cycles before the end of the phase, and
+// the phase ends four HCLK cycles after NWAIT is released.
 unsigned FsmcMaster::waitPhase(const Access& access) {
     if (!(access.bank->bcr & bcrAsyncWait)) {
         unsigned left = access.timing.datast < 2 ? access.timing.datast : 2;

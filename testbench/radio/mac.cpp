@@ -11,7 +11,7 @@ namespace {
 constexpr uint64_t backoffUnitNs = 320'000;
 constexpr uint64_t ackWaitNs = 864'000; // macAckWaitDuration: 54 symbols after the frame, ns
 constexpr unsigned longestBackoff = 5, mostBackoffs = 4; // macMaxBE, macMaxCSMABackoffs
-// wait for an acknowledgement before the next round (RR), ns
+// ns to wait for an acknowledgement before the next round (RR)
 constexpr uint64_t roundNs = 200'000'000;
 constexpr uint32_t roundSpreadUs = 48'000; // longest random extra wait, us
 

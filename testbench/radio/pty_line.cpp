@@ -18,7 +18,7 @@
 namespace {
 
 constexpr uint64_t pollNs = 500'000; // interval between reads of the pty, ns
-// interval between reads if the program counts its bytes, so that none is late, ns
+// ns between reads if the program counts its bytes, so that no byte is late
 constexpr uint64_t countedPollNs = 100'000;
 // number of reads without result after which bytes that were counted, but not moved by the kernel,
 // are considered read

@@ -214,7 +214,7 @@ bool M3Machine::runTo(uint64_t instructions) {
     return why != CortexM3::Stop::Breakpoint;
 }
 
-// Carries out the order given to this copy, which is at `from`.
+// Carries out an order in a woken copy. `from` is the place of the copy.
 CortexM3::Stop M3Machine::follow(const Checkpoints::Order& order, uint64_t from) {
     using Order = Checkpoints::Order;
     cpu().breakpoints.clear();

@@ -183,7 +183,7 @@ uint64_t QuietSpan::untilEvent(const Counters& now, uint64_t most, bool passesTi
 // false if they have changed in an unknown way.
 bool QuietSpan::learn(const Counters& now) {
     const uint8_t rx = (now.rx - before_.rx) & lastTick, tx = (now.tx - before_.tx) & lastTick;
-    if (!isFixed_) { // this is the clock after the image was taken
+    if (!isFixed_) { // this is the first clock after the image was taken
         uint32_t timerStep = now.timer - before_.timer;
         step_ = (now.phase - before_.phase) & phaseMask;
         timerRuns_ = timerStep == 1;

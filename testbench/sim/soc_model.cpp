@@ -96,7 +96,7 @@ void SocModel::pay() {
     uint64_t left = span_.pass(owed_);
     memory_.pass(owed_ - left);
     owed_ = 0;
-    if (left) // the chip is in a tick of the baud rate: clocks cannot be added to its state
+    if (left) // a tick of the baud rate has begun: the remaining clocks cannot be skipped
         quiet_ = 0;
     for (cycles_ -= left; left; --left)
         evaluate();

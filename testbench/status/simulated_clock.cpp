@@ -17,7 +17,7 @@
 namespace {
 
 constexpr uint32_t shortestUs = 50; // shortest interval between two reads of simulated time, us
-// longest interval while simulated time waits for this program, us
+// us; longest interval while simulated time waits for this program
 constexpr uint32_t longestUs = 500;
 constexpr uint64_t endOfTime = ~uint64_t(0);
 

@@ -176,7 +176,7 @@ MISTAKES = {
     "--size: expected WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8, got '333x111'",
     "./icesoc run --image nofile": "cannot read '",
     "./icesoc run --jobs 0": "--jobs: expected a whole number, at least 1, got '0'",
-    "./icesoc run fir": "run takes no 'fir'",
+    "./icesoc run fir": "run: unexpected argument 'fir' (./icesoc run --help)",
     "./icesoc run --seed": "expected one argument",
     "./icesoc run --seed \u0663": "--seed: expected a whole number, at least 0, got '\u0663'",
     "./icesoc run --size \u0669\u0666x64": "--size: expected WIDTHxHEIGHT",
@@ -193,10 +193,11 @@ MISTAKES = {
     "./icesoc check fresh --packages nope": "--packages: expected an existing folder",
     "./icesoc run --wire=yes": "--wire: expected no value, got 'yes'",
     "./icesoc run --again tools/icesoc/cli/flight.schema.json":
-    "is not a flight: expected version 4",
+    "is not a flight file: version: expected 4, got none",
     "./icesoc contract": "contract: expected a command: diff, from-rdl",
     "./icesoc contract dif": "contract has no command 'dif'; did you mean diff?",
-    "./icesoc bench --only airr": "unknown bench 'airr': expected one of simulator, air",
+    "./icesoc bench --only airr":
+    "--only: expected the name of a bench, got 'airr'; did you mean air? Known: simulator, air, ",
     "./icesoc nightly --steps nothing --built": "unknown step 'nothing': expected one of kept, ran",
     "make -s rnu": "unknown target 'make rnu'; did you mean run?",
     "make -s run LOS=1": "make run has no variable LOS; did you mean LOSS?",
@@ -220,7 +221,7 @@ MISTAKES = {
     "./icesoc contract diff nowhere": "unknown commit BASE=nowhere",
     "./icesoc core remove fri": "ip/fri not found; did you mean fir?",
     "./icesoc core new Fir --lang vhdl": "expected words of small letters and digits",
-    "make -s run PROBE=fir.go=1": "PROBE='fir.go=1' is a trigger of a probe: give --cores probe",
+    "make -s run PROBE=fir.go=1": "PROBE='fir.go=1' needs a probe core: add --cores probe",
     "make -s run OUT=/proc/none": "OUT='/proc/none': expected a folder",
     "make -s run UPDATE=/none CPU=m3": "cannot read '/none'",
     "make -s run PINS=/none": "cannot read '/none'",
@@ -260,7 +261,8 @@ class Mistakes(Work):
         for wrong in ("run LOSS=7", "run SIZE=1x1", "run IMAGE=none", "run SEED=-1",
                       "run CORES=nobody", "run PROBE=u_fir.sent=1", "run APP=minimal",
                       "run THRESHOLD=300", "ip-test IP=fri", "synth DESIGN=scs", "test LABEL=rlt",
-                      "regress NAME=Brust", "mutants BLOCK=busses", "contract-diff BASE=nowhere"):
+                      "regress NAME=Brust", "mutants BLOCK=busses", "bench ONLY=airr",
+                      "contract-diff BASE=nowhere"):
             status, text = ask("make", "-s", *wrong.split(), ICESOC_TREE=str(self.work / "tree"))
             self.assertEqual(status, 2, wrong)
             self.assertNotIn("set up", text, wrong)

@@ -59,7 +59,7 @@ class Cases(Script):
         tutorial.follow(WORK / "page.md", WORK, execute, "cd icesoc", brief)
 
     def test_right(self):
-        """The steps of a page are executed in their order."""
+        """The steps of a page are executed in order."""
         self.follow(PAGE)
         self.assertEqual((WORK / "greeting").read_text(), "hello, radio\n")
         self.assertTrue((WORK / "log").exists())

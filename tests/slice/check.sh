@@ -4,7 +4,7 @@
 #        [ghdl]
 # Checks the output of slice2c for a Slice file. The expected results are at the end of the file:
 # messages of the compiler after `//> `; and after `//= ` lines of the generated header, then lines
-# of the server's C, or lines of the registers, each in their order. The source line and the caret
+# of the server's C, or lines of the registers, each in order. The source line and the caret
 # of a message are only compared if the file contains them. UPDATE_GOLDENS=1 rewrites the messages.
 #
 # golden: the generated C has no warnings.

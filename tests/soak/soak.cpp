@@ -268,15 +268,14 @@ int main(int argc, char** argv) {
     bool attacked = false;
     app.add_option("--minutes", minutes, "duration in wall-clock minutes")
         ->check(CLI::PositiveNumber);
-    app.add_option("--messages", messages,
-                   "number of messages after which it stops instead, however long that takes");
+    app.add_option("--messages", messages, "number of messages to send, instead of --minutes");
     app.add_option("--seconds", seconds, "duration in simulated seconds, instead of --minutes");
     app.add_option("--seed", seed, "seed of all random numbers (default: $SEED, or 1)");
-    app.add_option("--vehicles", vehicles, "how many")->check(CLI::Range(1, 32));
+    app.add_option("--vehicles", vehicles, "number of vehicles")->check(CLI::Range(1, 32));
     app.add_option("--grounds", grounds, "number of ground stations; each calls all vehicles")
         ->check(CLI::Range(1, 8));
     app.add_flag("--attacked", attacked,
-                 "by a modem that has no key, as several vehicles always are; the others have");
+                 "attack with a modem without keys; always on with several vehicles or grounds");
     CLI11_PARSE(app, argc, argv);
     const auto start = Clock::now();
     Soak soak(seed, attacked, vehicles, grounds);

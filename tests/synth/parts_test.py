@@ -340,7 +340,7 @@ class Baseline(unittest.TestCase):
         run = self.row.main
         self.assertEqual(baseline.state_of(run, "abc", None), "measured now")
         run.wanted, run.figures = False, None
-        older = self.accepted | {"sources": ""}  # accepted before the file contained this key
+        older = self.accepted | {"sources": ""}  # accepted before this key existed
         for hash, accepted, state in (
                 ("abc", self.accepted, "as accepted"), ("other", self.accepted, "changed since"),
                 ("abc", None, "never measured here"), ("abc", older, "never measured here")):

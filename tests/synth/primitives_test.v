@@ -89,7 +89,7 @@ module primitives_test;
     task latency(input integer port, input integer clocks);
         begin
             {a, b, d, c, pcin, carryin} = {18'd3, 18'd5, 18'd7, 48'd11, 48'd13, 1'b0};
-            opmode = port == 4 ? 8'b00010101 : 8'b00011101; // Z is PCIN or C, X the product with D
+            opmode = port == 4 ? 8'b00010101 : 8'b00011101; // Z is PCIN or C; X is A * (D + B)
             edges(6);
             held = p1;
             case (port)
@@ -102,9 +102,9 @@ module primitives_test;
                 6: opmode[7] = 1;
             endcase
             edges(clocks - 1);
-            check(p1 == held, "a register less than UG389's");
+            check(p1 == held, "fewer registers than in UG389");
             edges(1);
-            check(p1 != held, "a register more than UG389's");
+            check(p1 != held, "more registers than in UG389");
         end
     endtask
     task dsp_registers;

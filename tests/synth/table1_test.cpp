@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// table1_test: the netlist of Table I's content replaces the chip: its processor writes and reads
+// table1_test: the netlist of Table I's blocks replaces the chip: its processor writes and reads
 // memory and registers, has the modem set up from its factory settings, and packets go both ways.
 
 #include "map_regs.h"

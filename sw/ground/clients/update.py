@@ -51,7 +51,7 @@ class Failed(Exception):
 
 
 def read_package(path):
-    """Returns the parts of a package in their order, as pairs. A pair is "keys" and the lists; or
+    """Returns the parts of a package in order, as pairs. A pair is "keys" and the lists; or
     the name of the object that receives an image, and a dictionary with (header, image) for each
     offset in flash."""
     with open(path, "rb") as f:

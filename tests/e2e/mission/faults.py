@@ -339,7 +339,7 @@ def main():
     for name in "source", "build", "out":
         parser.add_argument(name)
     parser.add_argument("--seed", type=int, default=1, help="the first")
-    parser.add_argument("--seeds", type=int, default=1, help="how many")
+    parser.add_argument("--seeds", type=int, default=1, help="number of seeds")
     parser.add_argument("--moments", type=int, default=1, help="moments per fault and seed")
     parser.add_argument("--jobs", type=int, default=1, help="missions at a time")
     parser.add_argument("--deaths", type=float, default=LONGEST,

@@ -38,7 +38,7 @@ NAMES = """struct % { int a; };|struct S# { int %; };|enum % { x# };|enum E# { %
 
 
 def said(compiler, file, work="out"):
-    """Returns the exit status of a compiler, and {line: messages in their order}."""
+    """Returns the exit status of a compiler, and {line: messages in order}."""
     words = [compiler, "--output-dir", work, file.name]
     words += ["--underscore"] * ("Underscore" in file.name)
     run = subprocess.run(words, cwd=file.parent, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,

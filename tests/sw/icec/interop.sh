@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # interop: command -- command ...
 #
-# Runs the commands in their order. Each command prints its port, which becomes the last argument of
+# Runs the commands in order. Each command prints its port, which becomes the last argument of
 # the next command. Ends with the exit status of the last command. If the first command is ended by
 # the last one, its exit status counts instead.
 set -eu

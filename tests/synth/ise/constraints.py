@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """constraints: finds paths and pads of the chip without a constraint.
 
-Usage: constraints.py SOURCE GENERATED WORK, three folders. Every path of chip.v, flattened, with
-MIG's core as a cell, from pad or clock to clock, to pad and to an asynchronous reset needs a
+Usage: constraints.py SOURCE GENERATED WORK, three folders. chip.v is flattened, with MIG's
+core as a cell. Every path from a pad or clock to a clock, a pad or an asynchronous reset needs a
 PERIOD, an OFFSET, a FROM:TO, a MAXDELAY or a TIG. Every pad, except the pads of MIG, needs a
 standard and a place. Then each statement is removed in turn; it is reported as superfluous if
 nothing is missing without it. Exit status 1 if anything is reported, or if merge_ucf.py renames the

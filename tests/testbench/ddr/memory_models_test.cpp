@@ -77,12 +77,13 @@ TEST_F(Mcb, ReadsWhatWasWrittenWithItsMask) {
 
 TEST_F(Mcb, ReadLatencyIsTheSumOfItsParts) {
     command(read, 0, 1);
-    // 6 clocks into the controller; then in memory clocks tRCD 6, CL 6, burst 4: these 16 memory
-    // clocks are 4 clocks; 5 clocks out
+    // Latency in clocks: 6 into the controller, 4 in the memory (tRCD 6 + CL 6 + burst 4 = 16
+    // memory clocks), 5 back out.
     EXPECT_EQ(waitForWord() + 1, 6u + 4 + 5);
     pop();
     command(read, 0, 1);
-    EXPECT_EQ(waitForWord() + 1, 6u + 3 + 5) << "a row hit: CL 6 and burst 4 are 3 clocks";
+    EXPECT_EQ(waitForWord() + 1, 6u + 3 + 5)
+        << "a row hit: CL 6 + burst 4 = 10 memory clocks, 3 clocks";
 }
 
 // AR36413, 2: the write waits for the end of the read data, 2 cycles, and 1 at the pins.

@@ -183,7 +183,7 @@ TEST_F(Wire, RepliesHaveTheModemsRateAndBDChangesAfterTheOK) {
     step(now_ + 3'000'000);
     ASSERT_TRUE(modem_->inCommandMode());
     step(now_ + 2'000'000);
-    send("ATBD7\rATCN\r", 57600); // both answers OK have the old rate
+    send("ATBD7\rATCN\r", 57600); // both "OK" answers are sent at the old rate
     step(now_ + 3'000'000);
     EXPECT_NEAR(modem_->baud(), 111111, 1);
     // 'K' and 'O' have edges one bit apart, so the shortest distance is the time of a bit.

@@ -26,7 +26,7 @@ class Refused(Stop):
 
 
 def short(value):
-    """Returns a value in short form for a message."""
+    """Returns a value, shortened for a message."""
     text = value if isinstance(value, str) else json.dumps(value, default=repr)
     text = text.encode("utf-8", "replace").decode().replace("\n", " ")
     text = text if len(text) <= 60 else text[:57] + "..."

@@ -237,7 +237,7 @@ def render(template, **values):
 
 def objects_of(chip, registers, slices):
     """Returns the objects of the cores as JSON: identity, Slice files, register description.
-    registers: register file by folder; slices: pairs of folder and Slice file."""
+    registers: maps a folder to its *.regs.json; slices: pairs of folder and Slice file."""
     return json.dumps([
         {"identity": core.identity, "core": core.name, "registers": registers[core.folder],
          "slice": [file for folder, file in slices if folder == core.folder],

@@ -94,6 +94,14 @@ def has_label(text, values):
         return False
 
 
+@expecting("the name of a bench")
+def benches(values=None):
+    """Returns the benches of the tree."""
+    listed = Path("tests/bench/CMakeLists.txt")
+    text = listed.read_text() if listed.is_file() else ""
+    return re.findall(r"^ *icesoc_bench\((\w+)", text, re.M)
+
+
 @expecting("a block with seeded bugs, or block/bug")
 def seeded(values=None):
     """Returns the blocks with seeded bugs, and each bug as block/name."""

@@ -109,9 +109,10 @@ class Command:
         given, left = parse(rest)
         names = [name for action in parser._actions for name in action.option_strings]
         for word in left:
-            what = f"has no option {word.partition('=')[0]}" if word.startswith(
-                "-") else f"takes no '{word}'"
-            raise Stop(f"{self.name} {what}{nearest(word.partition('=')[0], names)}", 2)
+            what = f" has no option {word.partition('=')[0]}" if word.startswith(
+                "-") else f": unexpected argument '{word}'"
+            raise Stop(f"{self.name}{what}{nearest(word.partition('=')[0], names)} "
+                       f"({self.program} --help)", 2)
         return self.values(vars(given), None, place)
 
     def values(self, given, makes, place):

@@ -67,8 +67,8 @@ FIELDS = [
     Option("open", SWITCH, "fly without a key, unencrypted"),
     Option("observer", KEY_FILE, "with --vehicles: file with the keys of a second ground station; "
                                  "default: demo keys", ""),
-    Option("vehicles", number(1, 32), "number of vehicles on one channel; all but the first run "
-                                      "the ARM binary", 1),
+    Option("vehicles", number(1, 32), "number of vehicles on one channel; every vehicle except the "
+                                      "first runs the ARM binary", 1),
     Option("update", FILE, "firmware (ELF) or bitstream (.bit, .bin) to send to the vehicle "
                            "instead of flying the mission", ""),
     Option("clk-hz", COUNT, "clock of the simulated chip in Hz", 100000000),
@@ -140,7 +140,8 @@ def wrong(flight):
     """Returns the first error of a description against the schema, or an empty text. Options that
     only the simulator has are not accepted."""
     if not isinstance(flight, dict) or flight.get("version") != VERSION:
-        return f"expected version {VERSION}"
+        got = flight.get("version") if isinstance(flight, dict) else None
+        return f"version: expected {VERSION}, got {'none' if got is None else json.dumps(got)}"
     own = schema()
     own["properties"] = {name: own["properties"][name] for name in own["required"]}
     return "; ".join(problems(flight, own, limits))
@@ -159,7 +160,7 @@ def read(path):
         raise Stop(f"the flight '{path}': expected JSON in UTF-8, got invalid or too deeply "
                    "nested text", 2) from None
     if found := wrong(flight):
-        raise Stop(f"'{path}' is not a flight: {found}", 2)
+        raise Stop(f"'{path}' is not a flight file: {found}", 2)
     return flight
 
 
@@ -190,7 +191,7 @@ def complete(values):
     if values.camera and "camera" not in values.cores:
         values.cores = [*values.cores, "camera"]
     if values.probe and "probe" not in values.cores:
-        raise Stop(f"PROBE='{values.probe}' is a trigger of a probe: give --cores probe "
+        raise Stop(f"PROBE='{values.probe}' needs a probe core: add --cores probe "
                    "(CORES=probe)", 2)
     build = BuildFolder(values.build, values)
     for at, core in enumerate(values.cores):
@@ -205,7 +206,7 @@ def complete(values):
     except OSError:
         pass
     if not os.access(values.out, os.W_OK):
-        raise Stop(f"OUT='{values.out}': expected a folder that a flight can write", 2)
+        raise Stop(f"OUT='{values.out}': expected a folder that a flight can write to", 2)
 
 
 def check_chip(values, build):

@@ -73,9 +73,11 @@ class Option:
             if names and word not in names:
                 called = self.name.upper() if self.positional else f"--{self.name}"
                 called = self.variable if values.given_by_make else called
-                known = f"; known: {', '.join(names)}" if len(names) <= MOST_LISTED else ""
+                similar = nearest(word, names)
+                known = f"{' Known' if similar else '; known'}: {', '.join(names)}"
+                known = known if len(names) <= MOST_LISTED else ""
                 raise Stop(f"{called}: expected {choices.noun(self.choices)}, got '{word}'"
-                           f"{nearest(word, names)}{known}", 2)
+                           f"{similar}{known}", 2)
 
     def completions(self, prefix, **_):
         """Returns the words that may follow, for argcomplete."""
@@ -217,6 +219,6 @@ FRESH = Option("fresh", SWITCH,
                "ignore cached results of proofs, lints and synthesis, and compute them again")
 CORE_FOLDERS = Option(
     "core-folders", TEXT,
-    "folders of cores outside ip/, or folders with a cores.list; several are separated by ;. "
-    "Later commands also use them; the value none ends this")
+    "folders of cores outside ip/, or folders with a cores.list, separated by semicolons; later "
+    "commands also use them, until --core-folders none")
 BUILT = Option("built", SWITCH, "use the existing build, without set-up and build", listed=False)

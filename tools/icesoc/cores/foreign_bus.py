@@ -42,7 +42,7 @@ class Core:
                 self.count_words(roles[n], p, address)
 
     def pin_table(self):
-        """Returns the pins as a manifest has them."""
+        """Returns the pins in the form used in a manifest."""
         return [{"name": n, "width": len(p["bits"])} if len(p["bits"]) > 1 else {"name": n}
                 for n, p in self.pins]
 

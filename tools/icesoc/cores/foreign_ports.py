@@ -15,8 +15,8 @@ from icesoc import TREE
 from icesoc.cores.foreign_files import (FLAGS, declared, end_of, fail, filled, folders_of, has_mark,
                                         is_vhdl, overrides, text_of)
 
-REPORT = 10  # interval of reports on a tool that runs for long, s
-LIMIT = 60   # time after which Verilator reads what Yosys has not finished, s
+REPORT = 10  # s between progress messages about a tool that is still running
+LIMIT = 60   # s; if Yosys needs longer, Verilator reads the files instead
 
 # Messages of Verilator and Yosys, and what to do about them.
 HINTS = {r"[Ii]nclude file:? (?:`)?([^\s']+)": "FILES may also name headers: `include looks for "
@@ -201,7 +201,7 @@ def copies_in(folder, files, change):
 
 def read_module(top, files, headers=(), params=(), defines=(), is_whole=True, ghdl="ghdl",
                 library="", libraries=()):
-    """Returns the ports of the module `top` in their order, and whether Yosys can read the module
+    """Returns the ports of the module `top` in order, and whether Yosys can read the module
     (otherwise only Verilator can). A port that resets registers asynchronously has the key "reset",
     its active level. `headers`: files whose folders are searched by `include. `params`: NAME=value
     of parameters or generics. `defines`: NAME or NAME=value of macros. `is_whole`: the files

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""junit: reads and writes results of tests as JUnit, and reads the log of a CTest that was stopped,
-which writes its JUnit only at its end."""
+"""junit: reads and writes test results as JUnit. CTest writes its JUnit file only when it ends; if
+a CTest run was stopped, this module reads the log instead."""
 import collections
 import dataclasses
 import pathlib
@@ -22,7 +22,7 @@ class Result:
 
 
 def read_junit(path):
-    """Returns the results in a JUnit file, of CTest or of write_junit."""
+    """Returns the results in a JUnit file that CTest or write_junit has written."""
     try:
         cases = xml.parse(path).iter("testcase")
     except xml.ParseError as error:

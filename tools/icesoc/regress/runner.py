@@ -16,7 +16,7 @@ from icesoc.util.process import children, collect, descendants, end_descendants
 
 SHORTEST_HANG = 30  # s; a test is never ended before it has used this CPU time, or has run for this
                     # time without using the CPU
-IDLE = 10  # time in which a test must use a second of CPU time, or it counts as idle, s
+IDLE = 10  # s; a test that uses less than 1 s of CPU time within this time counts as idle
 
 
 class Progress:

@@ -49,7 +49,8 @@ def reset_of(text):
 
 @dataclass
 class Field:
-    """Some bits of a register; a register without fields is one field without a name."""
+    """Some bits of a register. A register that declares no fields is represented by one unnamed
+    field."""
 
     name: str
     lsb: int

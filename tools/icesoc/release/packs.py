@@ -35,7 +35,7 @@ Set limits such as `-DICE_MESSAGE_MAX=1024` for all files of the program; `src/i
 
 
 def limits(tree=TREE):
-    """Returns IceC's numbers that a program may choose: (name, value, help), in their order."""
+    """Returns IceC's numbers that a program may choose: (name, value, help), in order."""
     text = (tree / CONFIG).read_text(encoding="utf-8")
     found = re.findall(r"/\*((?:(?!\*/).)*)\*/\n#ifndef (\w+)\n#define \2 (\w+)\n#endif", text,
                        re.S)

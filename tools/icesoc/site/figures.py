@@ -41,9 +41,10 @@ PLACES = {
         "| all | 6840 | {minimal} | {full} |",
         "occupies {ram} of the chip's"],
     "docs/utilisation.md": [
-        "with these, Table I's content takes {table1.through}. ",
-        "content takes {table1.lut} LUTs, {table1.ff} flip-flops and about {table1.slices} slices",
-        "Counted in this way it is about {table1.sites},",
+        "with these, the blocks of Table I take {table1.through} LUTs. ",
+        "The blocks of Table I take {table1.lut} LUTs, {table1.ff} flip-flops and about "
+        "{table1.slices} slices",
+        "Counted in this way, it is about {table1.sites},",
         "put the sites at {table1.low} to {table1.high} and the slices at {table1.less} to "
         "{table1.more}.",
         "It takes {flown.sites} LUT sites ({flown.low} to {flown.high}), {flown.ff} flip-flops and "

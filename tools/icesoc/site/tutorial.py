@@ -28,7 +28,7 @@ class Mismatch(Exception):
 
 
 def steps(text):
-    """Returns the steps of a page in their order."""
+    """Returns the steps of a page in order."""
     found, block, before, opened = [], [], "", None
     for number, line in enumerate(text.splitlines(), 1):
         if opened is None and line.startswith("```"):

@@ -185,9 +185,9 @@ def places_of(n, figures):
 
 
 def together(orders):
-    """Returns the figures of a design from its netlists in several orders. Counts are those of the
-    order with the median of LUTs; the clock is that of the order with the median clock; the longest
-    paths are those of the slowest order."""
+    """Returns the figures of a design from the netlists of all orders of its ports. Counts are
+    those of the order with the median of LUTs; the clock is that of the order with the median
+    clock; the longest paths are those of the slowest order."""
     if len(orders) == 1:
         return orders[0] | {"luts": [orders[0]["lut"]], "clocks": [orders[0]["mhz"]]}
     by_lut = sorted(orders, key=lambda figures: figures["lut"])
@@ -248,7 +248,8 @@ def carry_out_one(run, library, options, version):
 def time_left(runs, options, now):
     """Returns a line such as "11 of 55 designs, about 3:20 left: soc, vision". The time of a design
     on an idle machine is estimated from its LUTs; the finished runs, or the load, show how much
-    slower this machine is. A netlist in several orders shows their number."""
+    slower this machine is. The progress of a design that is synthesised in several orders is the
+    number of netlists already written."""
     def expected(run):
         return 1 + options.luts.get(run.design.name, 100) * (1 + run.orders) / 200
 

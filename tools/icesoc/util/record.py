@@ -9,7 +9,7 @@ The description is a TOML file with these keys:
     include = "base.h"            optional: the header with U8, U16 and U32; default <stdint.h>
     [constants]                   optional: numbers and texts, macros in C
     MAGIC = "ICESOC1"
-    [fields]                      in their order, little-endian, at their natural alignment
+    [fields]                      in order, little-endian, at their natural alignment
     ns = ["u64", "simulated time, ns"]
     seen = ["u8[1024]", "..."]
 

@@ -31,8 +31,8 @@ class Ended(Exception):
 
 
 def refusal(headers, query, host):
-    """Returns the reason why a connection is refused, or an empty text. host: from the request,
-    which the caller has checked."""
+    """Returns the reason why a connection is refused, or an empty text. host: the Host header
+    of the request; do_GET has already checked it."""
     if headers.get_all("Origin", []) != [f"http://{host}"]:
         return "a page of another origin"
     if not hmac.compare_digest(query.encode(), f"token={TOKEN}".encode()):
@@ -90,7 +90,7 @@ def accept(handler):
 
 
 def serve(handler, host, query, address):
-    """Serves a request for a WebSocket; address: (host, port) of the gateway, or None."""
+    """Serves a request for a WebSocket. address: (host, port) of the gateway, or None."""
     if refusal(handler.headers, query, host):
         return handler.send_error(HTTPStatus.FORBIDDEN)
     if not address:

@@ -36,7 +36,7 @@ def read(name):
 
 @command("board list", [], examples=["board list"], brief="board list")
 def board_list(_):
-    """list the boards that are described in boards/
+    """list the boards that are described in the folder boards/
 
     Prints name, number of wires, title and state of each board. A board whose description lacks
     facts cannot be built."""

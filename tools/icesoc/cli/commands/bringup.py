@@ -19,9 +19,9 @@ from icesoc.util.console import say
 from icesoc.util.errors import Stop
 
 CALL_TIMEOUT = 30  # time for a call, s
-BREAK_SECONDS = 1.0  # time before the reset of a vehicle that is to be opened, s
-LOAD_TIMEOUT = 120  # time after which OpenOCD or a call is ended, s
-SILENCE = 60  # time without a line, s, after which the report ends
+BREAK_SECONDS = 1.0  # s; the line is in the break state for this time before the reset
+LOAD_TIMEOUT = 120  # s; OpenOCD or a call is ended after this time
+SILENCE = 60  # s; the report ends if no line of text arrives for this time
 CONSOLE = "/dev/ttyUSB0"
 
 
@@ -31,8 +31,9 @@ CONSOLE = "/dev/ttyUSB0"
     Option("wire", WORDS, "with --simulated: faults of the board's wires, such as D3:open "
                           "D1-D2:short NWE:late=12ns"),
     Option("device", TEXT, "serial port of the board's console", CONSOLE),
-    Option("cable", TEXT, "serial port of a cable in the modem's place (docs/modem.md): loads the "
-                          "firmware and calls it, instead of the self-test", ""),
+    Option("cable", TEXT, "serial port of a cable in the modem's place (docs/modem.md); the "
+                          "command then loads the firmware and calls it instead of running the "
+                          "self-test", ""),
     Option("listen", SWITCH, "only read the console; the self-test was started by hand"),
     Option("silence", SECONDS, "end the report after this time without output from the board",
            SILENCE),

@@ -66,9 +66,9 @@ def values_of(catalogue, each, operation, parameter):
 
 
 WORD = Option("call", ARGUMENTS,
-              "[OBJECT.]OPERATION, then its arguments, by position or as NAME=VALUE; structures "
-              "and sequences are JSON, bytes and pictures can be @FILE, and a listener is the word "
-              "watch",
+              "[OBJECT.]OPERATION, then its arguments, by position or as NAME=VALUE; write "
+              "structures and sequences as JSON, bytes and pictures also as @FILE, and for a "
+              "listener the word watch",
               positional=True, completer=completed)
 OPTIONS = [
     WORD,

@@ -269,7 +269,8 @@ def measure(benches, folder):
 
 
 @command("bench", [
-    Option("only", WORDS, "names of the benches to run; the page is then not written"),
+    Option("only", WORDS, "names of the benches to run; the page is then not written",
+           choices=choices.benches),
     Option("page", PATH, "output page", "docs/figures.md"), BUILD, JOBS], make="bench",
          brief="bench --only slice", long="bench --page build/bench/figures.md", examples=[
              "bench",
@@ -285,7 +286,8 @@ def bench(values):
     benches = json.loads((build / "benches.json").read_text())
     for name in values.only:
         if name not in benches:
-            raise Stop(f"unknown bench '{name}': expected one of {', '.join(benches)}", 2)
+            raise Stop(f"bench '{name}' is not in this build: expected one of "
+                       f"{', '.join(benches)}", 2)
     folder = Path("build/bench")
     if values.only:
         targets = [target for name in values.only for target in benches[name]["targets"]]

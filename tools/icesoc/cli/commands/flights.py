@@ -300,8 +300,8 @@ def gdb(values):
                                   "missing authority is created"),
     Option("signing", SWITCH, "make a private key for signing updates, and its public half "
                               "(spare.pub for spare.key); an existing key is kept"),
-    Option("list", COUNT, "make a list of signing keys; its number is the number of the previous "
-                          "list plus 1"),
+    Option("list", COUNT, "make list number N of signing keys; N must be the number of the "
+                          "previous list plus 1"),
     Option("by", FILE, "private key that signs the list; it must be in the previous list"),
     Option("first", FILE, "first public key of the list"),
     Option("second", FILE, "second public key of the list"), BUILD, JOBS], make="key",

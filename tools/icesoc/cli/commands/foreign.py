@@ -106,7 +106,8 @@ def put_and_fly(values, listed, known):
 
 @command("core examples", [
     Option("cores", WORDS, "names of the cores to use, from examples/foreign/cores.json (default: "
-                           "all); their chip is then built in only one order"),
+                           "all); the chip with these cores is then built in one order of the "
+                           "list of cores, not in three"),
     Option("chip", SWITCH, "also print the cost of each core in the chip"), SEED,
     *(o for o in FIELDS if o.name == "image"), BUILD, JOBS], make="foreign",
          brief="core examples --cores foreign_i2c foreign_arbiter foreign_queue",

@@ -35,7 +35,7 @@ mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd $3 && $2"
 @command("check fresh", [
     Option("release", one_of(*RELEASES), "Debian release, bookworm or trixie; default: both", ""),
     Option("again", SWITCH, "reuse the existing systems, and update their clones to HEAD"),
-    Option("steps", TEXT, "commands to run, separated by ;",
+    Option("steps", TEXT, "commands to run, separated by semicolons",
            "; ".join([*README, PACKAGES])),
     Option("packages", INPUT_FOLDER, "only test the Debian packages in this folder, in a new "
                                      "system of that --release"),

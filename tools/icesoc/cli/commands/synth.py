@@ -38,9 +38,9 @@ def utilisation(build, values, *words):
 @command("synth report", [
     DESIGN,
     Option("family", WORDS, "additional FPGA families, such as xc7 or ecp5"),
-    Option("base", TEXT, "commit to compare with; prints Markdown. COMMIT1..COMMIT2 prints only "
-                         "the differences between two commits, COMMIT.. the differences from "
-                         "COMMIT to the last report", ""),
+    Option("base", TEXT, "commit to compare with; prints Markdown. 'COMMIT1..COMMIT2' prints "
+                         "only the differences between two commits; 'COMMIT..' prints those "
+                         "between COMMIT and the last report", ""),
     CORE_FOLDERS, BUILD, JOBS], make="synth", brief="synth report --design npi_arbiter",
          long="synth report", examples=[
              "synth report --design modem", "synth report --family xc7 ecp5",

@@ -68,7 +68,7 @@ def clean(values):
 
 @command("commands", [
     Option("brief", SWITCH,
-           "run a short form of every command, and write the results to build/commands.md"),
+           "run a quick example of every command, and write the results to build/commands.md"),
     Option("only", TEXT, "only commands with this text in their name", ""),
     Option("man", PATH, "write the manual page to this file, such as icesoc.1", ""),
     Option("completion", SWITCH, "print code for bash, and zsh with bashcompinit, that completes "
@@ -79,10 +79,10 @@ def clean(values):
              "commands", "commands --brief --only core", "commands --completion",
              "commands --man icesoc.1 && man ./icesoc.1"])
 def commands(values):
-    """list all commands, each with a short form; or run the short forms
+    """list all commands, each with a quick example; or run the examples
 
-    A short form is a command line that runs all steps of a command in seconds or a few minutes.
-    CI runs all short forms.
+    A quick example is a command line that runs all steps of a command in seconds or a few minutes.
+    CI runs all quick examples.
     """
     if values.completion:
         return say(doors.completion_code())
@@ -103,7 +103,7 @@ def commands(values):
 
 
 def run_all(only):
-    """Runs every brief form, even after a failure, and writes a table of the results."""
+    """Runs all quick examples, even after a failure, and writes a table of the results."""
     table, folder = Table("build/commands"), Path("build/brief")
     for name, each in COMMANDS.items():
         if only not in name:

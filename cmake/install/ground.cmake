@@ -47,10 +47,10 @@ install(FILES ${tools}/util/__init__.py ${tools}/util/console.py ${tools}/util/e
   ${tools}/util/process.py DESTINATION ${SHARE}/tools/icesoc/util COMPONENT ${component})
 install(PROGRAMS ${here}/ground/icesoc-call DESTINATION ${CMAKE_INSTALL_BINDIR}
   COMPONENT ${component})
-set(objects ${CMAKE_CURRENT_BINARY_DIR}/objects.json)
+set(objects ${CMAKE_CURRENT_BINARY_DIR}/chip.json)
 add_custom_command(OUTPUT ${objects}
-  COMMAND ${PYTHON} ${here}/objects.py ${GEN_DIR}/objects.json ${top} ${objects}
-  DEPENDS ${here}/objects.py ${GEN_DIR}/objects.json VERBATIM COMMENT "Objects for icesoc-call")
+  COMMAND ${PYTHON} ${here}/objects.py ${GEN_DIR}/chip.json ${top} ${objects}
+  DEPENDS ${here}/objects.py ${GEN_DIR}/chip.json VERBATIM COMMENT "Objects for icesoc-call")
 install(FILES ${objects} DESTINATION ${SHARE}/gen COMPONENT ${component})
 list(APPEND installable ${objects})
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """objects: writes the installed list of the chip's objects, for icesoc-call.
 
-    objects.py BUILD/gen/objects.json TREE OUT
+    objects.py BUILD/gen/chip.json TREE OUT
 
 Slice files get their installed paths, relative to share/icesoc: ip/CORE for the cores' files, slice
 for the vehicle's. Register descriptions are left out, because the cores of the default chip are
@@ -14,7 +14,7 @@ import sys
 
 given, tree, out = sys.argv[1:]
 with open(given) as file:
-    cores = json.load(file)
+    cores = json.load(file)["objects"]
 for core in cores:
     del core["registers"]
     if "interface" in core:
@@ -23,4 +23,4 @@ for core in cores:
     core["slice"] = [path if path.startswith("ip/") else f"slice/{os.path.basename(path)}"
                      for path in paths]
 with open(out, "w") as file:
-    json.dump(cores, file, indent=1)
+    json.dump({"objects": cores}, file, indent=1)

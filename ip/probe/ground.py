@@ -12,7 +12,7 @@ def fly(log, proxy, report):
     import Probes  # made by loadSlice
 
     trigger = os.environ.get("PROBE", "")
-    signals = tool.Signals(os.path.join(log.build, "gen/probes.json"), "probe")
+    signals = tool.Signals(os.path.join(log.build, "gen/chip.json"), "probe")
     mask, value = signals.trigger(trigger)
     probe = Probes.ProbePrx.uncheckedCast(proxy(signals.identity))
     signals.check(log.call("ground -> UAV", "probe.getState()", probe.getState))

@@ -257,10 +257,10 @@ class Call(unittest.TestCase):
         build = Path(self.work.name, "build")
         (build / "gen").mkdir(parents=True)
         (build / "slice").symlink_to(BUILD / "slice")
-        (build / "gen/objects.json").write_text(json.dumps([{
+        (build / "gen/chip.json").write_text(json.dumps({"objects": [{
             "identity": "eye", "core": "eye", "registers": str(TREE / "ip/vision/vision.regs.json"),
             "slice": [str(TREE / "sw/hw/registers/Registers.ice")],
-            "interface": "::Hw::Registers"}]))
+            "interface": "::Hw::Registers"}]}))
         for words, message in (
                 ("set THRESHOLD 300", "THRESHOLD: expected 0 to 255, got 300"),
                 ("set THRESHOLD -1", "THRESHOLD: expected 0 to 255, got -1"),

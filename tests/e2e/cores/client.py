@@ -63,7 +63,7 @@ with Ice.initialize(data) as ic:
     # A probe records the inputs and outputs of the first core; cores.sh compares the recording with
     # the simulator's trace.
     said = []
-    signals = probe.Signals(os.path.join(folder, "build/gen/probes.json"), "probe")
+    signals = probe.Signals(os.path.join(folder, "build/gen/chip.json"), "probe")
     prober = Probes.ProbePrx.checkedCast(ic.stringToProxy("probe" + where))
     settings = types.SimpleNamespace(trigger="u_sample_verilog.bus_valid_i=1", level=False,
                                      before=4, after=150, wait=600,
@@ -86,7 +86,7 @@ with Ice.initialize(data) as ic:
     expect("the second capture is another one", times[1][0] > times[0][-1], True)
     signals.names ^= 1
     failed = fails(probe.Failed, signals.check, prober.getState())
-    expect("another chip's names", "probes.json" in str(failed), True)
+    expect("another chip's names", "chip.json" in str(failed), True)
     for identity, prx in (("sample_verilog", Cores.SampleVerilogPrx),
                           ("newcomer", Cores.SampleVhdlPrx)):
         core = prx.checkedCast(ic.stringToProxy(identity + where))

@@ -195,9 +195,9 @@ class Cases(Script):
             ["/usr/bin/python3", TREE / "tests/cli/call_server.py",
              "--Ice.Plugin.IceSSL=IceSSL:createIceSSL", "--Trial.Endpoints=wss -h 127.0.0.1",
              *security], "").strip(), free_port()
-        write("build/gen/objects.json", json.dumps([
+        write("build/gen/chip.json", json.dumps({"objects": [
             {"identity": "try", "core": "try", "registers": "", "interface": "::Trial::Try",
-             "slice": [str(TREE / "tests/cli/call.ice")]}]))
+             "slice": [str(TREE / "tests/cli/call.ice")]}]}))
         for name in "slice", "page":
             os.symlink(BUILD / name, f"build/{name}")
         said = self.start([TREE / "tools/python", "-m", "icesoc.web.live", "--build", "build",

@@ -194,16 +194,15 @@ setTimeout(() => top.document.body.append("cut: " + [...document.querySelectorAl
 
     def test_errors(self):
         self.contrasts()
-        registers = BUILD / "gen/registers.list"
-        page = *LIVE, "--dir", self.work, "--registers"
+        page = *LIVE, "--dir", self.work, "--build"
         self.ask(*LIVE, "--help")
-        self.has("--registers")
+        self.has("--build")
         self.ask(*page, self.work / "none", status=1)
         self.has("cannot read")
         self.ask(*LIVE, "--dir", self.work, status=2)
         self.has("required")
-        with self.serving(*page, registers, until="127.0.0.1") as port:
-            self.ask(*page, registers, "--port", str(port), status=1)
+        with self.serving(*page, BUILD, until="127.0.0.1") as port:
+            self.ask(*page, BUILD, "--port", str(port), status=1)
             self.has("is the port taken")
             self.ask(TREE / "icesoc", "run", "--built", "--build", BUILD, "--size", "96x64",
                      "--out", "unflown", "--port", str(port), status=1)

@@ -42,16 +42,16 @@ class Cases(Script):
                    "interface": interface}
                   for name, file, interface in (("try", TRIAL, "::Trial::Try"),
                                                 ("many", self.work / "many.ice", "::Many::Lots"))]
-        write("build/gen/objects.json", json.dumps(listed))
+        slots = json.loads((BUILD / "gen/chip.json").read_text())["slots"]
+        write("build/gen/chip.json", json.dumps({"slots": slots, "objects": listed}))
         for name in "slice", "page":
             os.symlink(BUILD / name, f"build/{name}")
-        write("build/gen/registers.list", (BUILD / "gen/registers.list").read_text())
         self.gateway = f"127.0.0.1:{port}"
         write("live.json", json.dumps({"pid": os.getpid(), "build": str(self.work / "build"),
                                        "vehicles": {"uav1": f"tcp -h 127.0.0.1 -p {port}"}}))
         self.page = subprocess.Popen(
-            [TREE / "tools/python", "-m", "icesoc.web.live", "--dir", self.work, "--registers",
-             "build/gen/registers.list"], stdout=subprocess.PIPE, text=True)
+            [TREE / "tools/python", "-m", "icesoc.web.live", "--dir", self.work, "--build",
+             "build"], stdout=subprocess.PIPE, text=True)
         self.port = int(re.search(r":(\d+)/", self.page.stdout.readline())[1])
         self.address = f"http://127.0.0.1:{self.port}/"
 

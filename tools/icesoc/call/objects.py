@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""objects: the objects of a vehicle with their interfaces and Slice files, as the build lists them
-in gen/objects.json; and the endpoints of a flight in progress, which the flight writes to
+"""objects: the objects of a vehicle with their interfaces and Slice files, from gen/chip.json in
+the build folder; and the endpoints of a flight in progress, which the flight writes to
 OUT/live.json.
 """
 import json
@@ -60,9 +60,9 @@ class Catalogue:
     def __init__(self, build, files=()):
         """build: build folder of the vehicle, or None; files: Slice files that replace those of the
         vehicle."""
-        listed_cores = read_json(Path(build, "gen/objects.json")) if build else None
-        self.is_complete = listed_cores is not None
-        cores = listed_cores or []
+        chip = read_json(Path(build, "gen/chip.json")) if build else None
+        self.is_complete = chip is not None
+        cores = chip["objects"] if chip else []
         for core in cores:
             core["slice"] = [str(TREE / file) for file in core["slice"]]
         own = [] if build is None else [places.slice_file(file) for file, _ in VEHICLE.values()]

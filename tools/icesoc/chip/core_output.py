@@ -90,12 +90,6 @@ def names_of(probe):
     return hash_of("".join(f"{name}:{width}\n" for name, width in probe.signals))
 
 
-def probes_of(chip):
-    probes = {c.name: {"identity": c.identity, "names": names_of(c), "signals": c.signals}
-              for c in chip.cores if c.is_probe}
-    return json.dumps(probes, separators=(",", ":")) + "\n"
-
-
 def signal_bits(probe):
     """Returns the width of signals_i of a probe."""
     return 64 * change_words(probe) - 33
@@ -235,18 +229,27 @@ def render(template, **values):
     return environment().get_template(template).render(**values)
 
 
-def objects_of(chip, registers, slices):
-    """Returns the objects of the cores as JSON: identity, Slice files, register description.
-    registers: maps a folder to its *.regs.json; slices: pairs of folder and Slice file."""
-    return json.dumps([
-        {"identity": core.identity, "core": core.name, "registers": registers[core.folder],
-         "slice": [file for folder, file in slices if folder == core.folder],
-         **({} if core.servant else {"interface": "::Hw::Registers"})}
-        for core in chip.cores], indent=1) + "\n"
+def description_of(chip, slots, registers, slices):
+    """Returns the chip as JSON, for programs on the PC: its slots with their register descriptions,
+    the objects that a client can call with their Slice files, and the signals of its probes.
+    registers: maps the name of a block to its *.regs.json; slices: pairs of folder and Slice
+    file."""
+    return json.dumps({
+        "slots": [{"slot": slot.number, "name": slot.name, "registers": registers[slot.name]}
+                  for slot in sorted(slots, key=lambda slot: slot.number)],
+        "objects": [
+            {"identity": core.identity, "core": core.name, "registers": registers[core.name],
+             "slice": [file for folder, file in slices if folder == core.folder],
+             **({} if core.servant else {"interface": "::Hw::Registers"})}
+            for core in chip.cores],
+        "probes": [
+            {"core": core.name, "identity": core.identity, "names": names_of(core),
+             "signals": core.signals} for core in chip.cores if core.is_probe],
+    }, indent=1) + "\n"
 
 
 def files(chip, slots, base):
     """Returns all files about the chip: name -> text."""
-    return {"map.regs.json": map_of(chip, base), "probes.json": probes_of(chip),
+    return {"map.regs.json": map_of(chip, base),
             "soc_pins.h": render("soc_pins.h.j2", chip=chip), "core_pins.ucf": constraints_of(chip),
             "soc_cores.vh": verilog_of(chip, slots), "soc_cores.c": instances_of(chip, slots)}

@@ -2,8 +2,8 @@
 """coremap: builds the chip from the cores in ip/cores.list, one per line (docs/hw-mapping.md).
 
 Writes map.regs.json (slots, memory ports, buffers in DDR3, pins), soc_cores.vh (instances, for
-soc.v), soc_cores.c (servants), soc_pins.h (for the simulator), core_pins.ucf (for ISE), probes.json
-(the probes' signals), objects.json (for ./icesoc call), and register descriptions for other tools
+soc.v), soc_cores.c (servants), soc_pins.h (for the simulator), core_pins.ucf (for ISE), chip.json
+(slots, objects and probes, for the programs on the PC), and register descriptions for other tools
 and for people.
 """
 import argparse
@@ -399,8 +399,10 @@ def build(asked):
     slots += [(core.name, core.slot, descriptions[core.folder]) for core in chip.cores]
     placed = [Slot(name, number, chip.registers + SLOT_BYTES * number, block)
               for name, number, block in slots]
+    paths = {slot.name: os.path.abspath(file) for slot, (_, _, file) in zip(placed, blocks)}
+    paths.update({core.name: os.path.abspath(files[core.folder]) for core in chip.cores})
     return core_output.files(chip, placed, base) | core_exchange.files(placed) | {
-        "objects.json": core_output.objects_of(chip, files, slices)}
+        "chip.json": core_output.description_of(chip, placed, paths, slices)}
 
 
 def main():

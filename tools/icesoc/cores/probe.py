@@ -33,11 +33,10 @@ class Signals:
     def __init__(self, path, name):
         try:
             with open(path) as f:
-                probes = json.load(f)
-        except (OSError, ValueError) as e:
+                probes = {probe["core"]: probe for probe in json.load(f)["probes"]}
+        except (OSError, ValueError, LookupError, TypeError) as e:
             raise Failed("cannot read --map %s (%s): it is in the build folder of the vehicle's "
-                         "chip, gen/probes.json"
-                         % (path, e))
+                         "chip, gen/chip.json" % (path, e))
         if name not in probes:
             raise Failed("--map %s: expected a probe '%s', found %s" %
                          (path, name, ", ".join(probes) or "none"))
@@ -48,7 +47,7 @@ class Signals:
     def check(self, state):
         if state.names & 0xFFFFFFFF != self.names:
             raise Failed("--map: expected signals with the hash 0x%08X (in the chip), got 0x%08X; "
-                         "give the probes.json of the build of this chip" %
+                         "give the chip.json of the build of this chip" %
                          (state.names & 0xFFFFFFFF, self.names))
 
     def trigger(self, text):
@@ -190,8 +189,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", help="output file for the waveform (VCD)")
-    parser.add_argument("--map", default=str(TREE / "build/main/gen/probes.json"),
-                        help="default: build/main/gen/probes.json")
+    parser.add_argument("--map", default=str(TREE / "build/main/gen/chip.json"),
+                        help="default: build/main/gen/chip.json")
     parser.add_argument("--probe", default="probe",
                         help="name in the list of cores, if it was renamed (name=)")
     parser.add_argument("--trigger", default="",

@@ -106,24 +106,16 @@ def picture(folder, address):
     return next(filter(os.path.exists, paths), "")
 
 
-def blocks_by_slot(registers):
-    """Returns [(slot, name, its block or None)]; `registers`: file that lists the blocks'
-    *.regs.json, one a line."""
+def blocks_by_slot(build):
+    """Returns [(slot, name of its block, the block)] for the chip of a build folder."""
     # Imported here, since the installed page of a gateway has no registers.
     from icesoc.regs.model import Block, Wrong
     try:
-        with open(registers) as paths:
-            found = [Block.read(path, is_built=True)
-                     for path in filter(None, paths.read().split("\n"))]
+        with open(os.path.join(build, "gen/chip.json")) as chip:
+            return [(slot["slot"], slot["name"], Block.read(slot["registers"], is_built=True))
+                    for slot in json.load(chip)["slots"]]
     except Wrong as wrong:
         raise ValueError(wrong) from None
-    blocks = {block.name: block for block in found}
-    slots = []
-    for constant in blocks["map"].constants:
-        prefix, _, name = constant.name.lower().partition("slot_")
-        if not prefix and name not in ("", "count"):
-            slots.append((constant.value, name, blocks.get(name)))
-    return sorted(slots, key=lambda slot: slot[0])
 
 
 def register(block, word, value, seen):
@@ -361,10 +353,8 @@ def options(program, build):
         "Serves the page that shows a mission as it runs, on 127.0.0.1.")
     parser.add_argument("--dir", default="", help=of_flight(
         "folder of the mission: status, calls.jsonl, before.png"))
-    parser.add_argument("--registers", help=of_flight(
-        "file that lists the *.regs.json of all blocks; map.regs.json assigns blocks to slots"))
     parser.add_argument("--build", default=build, help=of_flight(
-        "build folder of the vehicle; default: that of --registers"))
+        "build folder of the vehicle; its gen/chip.json describes the slots and objects"))
     parser.add_argument("--vehicle", type=Vehicle, action="append", default=[],
                         help="NAME=ws:PORT or NAME=wss:PORT: a vehicle of the gateway; can be "
                         "repeated")
@@ -383,9 +373,9 @@ def options(program, build):
 def main(program="icesoc-live", build=None):
     parser = options(program, build)
     words = parser.parse_args()
-    if not words.vehicle and not (words.dir and words.registers):
+    if not words.vehicle and not (words.dir and words.build):
         parser.error("--vehicle is required" if build else
-                     "the arguments --dir and --registers are required for the page of a flight")
+                     "the arguments --dir and --build are required for the page of a flight")
     host, port = words.listen or ("127.0.0.1", words.port)
     Page.names = ("127.0.0.1", "localhost", "[::1]") if host in ("127.0.0.1", "localhost", "::1") \
         else (f"[{host}]" if ":" in host else host, )
@@ -393,11 +383,10 @@ def main(program="icesoc-live", build=None):
     Page.secret = os.environ.get("ICESOC_PAGE_SECRET", "")
     Page.is_https = bool(words.certificate)
     try:
-        Page.slots = blocks_by_slot(words.registers) if words.registers else []
-        Page.build = words.build or os.path.dirname(os.path.dirname(os.path.abspath(
-            words.registers)))
+        Page.slots = blocks_by_slot(words.build) if words.dir else []
+        Page.build = words.build
     except (OSError, ValueError, KeyError) as error:
-        sys.exit(f"{program}: error: cannot read '{words.registers}': {error}")
+        sys.exit(f"{program}: error: cannot read '{words.build}/gen/chip.json': {error}")
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: os._exit(0))
     try:

@@ -317,12 +317,12 @@ def serve_page(options):
     from icesoc.util.process import run, tool
     if not re.fullmatch(r"(\[[0-9a-fA-F:.]+\]|[^\s:\[\]]+):\d{1,5}", options.gateway):
         raise Stop(f"--page: expected --gateway HOST:PORT, got '{options.gateway}'", 2)
-    listed_registers = os.path.join(options.build, "gen/registers.list")
-    if not os.path.exists(listed_registers):
-        raise Stop(f"{listed_registers} not found; ./icesoc build writes it", 2)
+    chip = os.path.join(options.build, "gen/chip.json")
+    if not os.path.exists(chip):
+        raise Stop(f"{chip} not found; ./icesoc build writes it", 2)
     with tempfile.TemporaryDirectory() as folder:
-        return run([*tool("web.live"), "--dir", folder, "--registers", listed_registers,
-                    "--gateway", options.gateway], check=False)
+        return run([*tool("web.live"), "--dir", folder, "--build", options.build, "--gateway",
+                    options.gateway], check=False)
 
 
 def refuse_oneway(options, operation):

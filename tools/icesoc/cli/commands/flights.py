@@ -130,7 +130,7 @@ def mission(values, build, held):
     """Flies the mission that the README shows, with its page."""
     out, status_file = Path(values.out), Path(values.out) / "status"
     page = [*tool("web.live"), "--dir", out, "--port", values.port,
-            "--registers", build / "gen/registers.list"]
+            "--build", build.folder]
 
     def flown():
         return status_file.stat().st_ctime_ns if status_file.exists() else None

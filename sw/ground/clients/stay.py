@@ -6,7 +6,8 @@ OUT/live.json, which `./icesoc call` reads to find the flight:
     {"pid": 4711, "build": "/.../build/main", "vehicles": {"uav1": "tcp -h 127.0.0.1 -p 40001"}}
 
 The server of the page writes OUT/viewed about once per second while a browser shows the page, and
-removes it when the page is closed.
+removes it when the page is closed. The file contains "opening" until a browser that was started
+with the flight has loaded the page.
 """
 
 import contextlib
@@ -22,7 +23,7 @@ import time
 from mission_log import whole
 
 # time without a request after which the page counts as closed, s; in a hidden tab, browsers send
-# only one request per minute
+# only one request per minute. Also the time that a browser has after the mission to load the page.
 HIDDEN = 75
 GRACE = 3  # waiting time after the page was closed, s; another tab may still show it
 
@@ -35,6 +36,15 @@ def is_viewed(folder):
         return False
 
 
+def await_browser(folder):
+    """Starts the time in which a browser that is still starting must load the page."""
+    path = os.path.join(folder, "viewed")
+    with contextlib.suppress(OSError):
+        with open(path) as file:
+            if file.read() == "opening":
+                os.utime(path)
+
+
 def gateway_program(args):
     """Returns the gateway of the build, or the installed one; None if there is neither."""
     return shutil.which("icesoc-gateway", path=os.pathsep.join(
@@ -43,6 +53,7 @@ def gateway_program(args):
 
 def is_wanted(args):
     """Returns whether the vehicle must stay reachable after its mission."""
+    await_browser(args.out)
     if not args.live and not is_viewed(args.out):
         return False
     if gateway_program(args):

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """live_test: tests the page of a mission in headless Chromium, or its errors.
 
-Usage: live_test.py mission|errors work-folder build-folder
+Usage: live_test.py mission|late|errors work-folder build-folder
 """
 import contextlib
 import http.client
@@ -103,6 +103,28 @@ class Cases(Script):
         for file in (*PAGE.glob("*.html"), *PAGE.glob("*.css")):
             self.lacks("(https?:)?//[a-z]", file)  # the page names no other host
         self.narrow(state)
+
+    def test_late(self):
+        """A browser that loads the page only after the mission shows the vehicle's last state; the
+        flight does not wait for a browser that cannot be started."""
+        write("browser", "#!/bin/sh\n")
+        flight = (TREE / "icesoc", "run", "--built", "--build", BUILD, "--size", "48x32",
+                  "--guard", "20", "--out", self.work, "--show", "yes")
+        with self.serving(*flight, until="http://", BROWSER=f"{self.work}/browser %s") as port:
+            self.hear("The page stays until you close it")
+            with Browser() as browser:
+                browser.open(f"http://127.0.0.1:{port}/")
+                browser.until("/mission is over/.test(document.getElementById('phase').innerText)")
+                self.said = browser.elements()
+                browser.open("about:blank")
+            self.hear("The flight has ended")
+            self.assertEqual(self.process.wait(), 0)
+        self.has(">WIDTH 48</span>.*>HEIGHT 32</span>", r"hwengine1.getResult\(\)")
+        with self.serving(*flight, until="http://", BROWSER="false", DISPLAY="",
+                          WAYLAND_DISPLAY=""):
+            self.hear("Pictures and report: ")
+            self.assertNotIn("The page stays", self.process.stdout.read())
+            self.assertEqual(self.process.wait(), 0)
 
     def calls(self):
         """After the mission the vehicle is called from the shell."""

@@ -190,6 +190,17 @@ def mark_viewed(folder, is_viewed=True):
         pass  # the folder was removed, or another request has done this
 
 
+def open_page(address, folder):
+    """Opens the page in a browser. A browser that is still starting when the mission ends counts
+    as one that shows the page: it has some time to load the page (stay.py)."""
+    path = os.path.join(folder, objects.VIEWED)
+    if folder:
+        with open(path, "w") as file:
+            file.write("opening")
+    if not webbrowser.open(address) and folder:
+        mark_viewed(folder, False)
+
+
 class Vehicle:
     """A vehicle of a gateway: NAME=PROTOCOL:PORT, as the gateway passes it."""
 
@@ -400,7 +411,7 @@ def main(program="icesoc-live", build=None):
         print(f"The vehicle: {address}#objects" if words.gateway or words.vehicle
               else f"The mission as it runs: {address}", flush=True)
         if words.open:
-            threading.Thread(target=webbrowser.open, args=(address, ), daemon=True).start()
+            threading.Thread(target=open_page, args=(address, words.dir), daemon=True).start()
         server.serve_forever()
 
 

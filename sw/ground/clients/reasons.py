@@ -7,8 +7,9 @@ import termios
 import Ice
 
 
-def reason_of(error):
-    """Returns the reason of an error, without its number or class if there is a better text."""
+def reason_of(error, connecting="cannot connect: "):
+    """Returns the reason of an error, without its number or class if there is a better text.
+    connecting: prefix of the reason why a connection was not made."""
     if isinstance(error, OSError) and error.strerror:
         return ": ".join(str(part) for part in (error.filename, error.strerror) if part)
     if isinstance(error, termios.error):
@@ -21,8 +22,8 @@ def reason_of(error):
         if getattr(error, field, ""):
             return getattr(error, field).strip().rpartition("\n")[2]
     if getattr(error, "error", 0):
-        is_connecting = isinstance(error, Ice.ConnectFailedException)
-        return ("cannot connect: " if is_connecting else "") + os.strerror(error.error)
+        prefix = connecting if isinstance(error, Ice.ConnectFailedException) else ""
+        return prefix + os.strerror(error.error)
     # The other exceptions have no text: returns the words of their name, such as "Connection lost".
     name = error.ice_id().rpartition(":")[2].replace("Exception", "")
     return re.sub("(?<=[a-z])(?=[A-Z])", " ", name).capitalize()

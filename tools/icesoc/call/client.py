@@ -7,13 +7,11 @@ facet or operation; 6 the operation refused the call without a reason.
 """
 import os
 import queue
-import sys
 import time
 
 import Ice
 from reasons import reason_of
 
-from icesoc import TREE
 from icesoc.call.mapping import Mapping, escaped
 from icesoc.util.errors import Stop
 
@@ -98,7 +96,6 @@ class Client:
         self.communicator.destroy()
 
     def connect(self):
-        sys.path.append(str(TREE / "sw/ground/clients"))
         import plugged
         milliseconds = str(int(1000 * self.options.timeout))
         settings = {"Ice.Default.InvocationTimeout": milliseconds,
@@ -188,7 +185,7 @@ class Client:
                           "Ice.TimeoutException") from None
         except Ice.LocalException as error:
             raise Failure(f"cannot reach {self.target.place}: "
-                          f"{reason_of(error).removeprefix('cannot connect: ')}", SILENT,
+                          f"{reason_of(error, connecting='')}", SILENT,
                           error.ice_id().lstrip(":").replace("::", ".")) from None
 
     def thrown(self, error):

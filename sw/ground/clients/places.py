@@ -13,6 +13,9 @@ TOP = os.path.normpath(os.path.join(HERE, "../../../.." if IS_INSTALLED else "..
 SHARE = os.path.join(TOP, "share/icesoc")
 SLICE_FILES = {"Autopilot.ice": "sw/vehicle", "Registers.ice": "sw/hw/registers",
                "Update.ice": "sw/update"}  # Slice files and their folders in the source tree
+# objects of the firmware (sw/vehicle): identity -> interface, declared in one of these Slice files
+OBJECTS = {"uav": "::Autopilot::Vehicle", "keys": "::Autopilot::KeyRing", "chip": "::Hw::Chip",
+           "update": "::Update::Firmware", "fpga": "::Update::Firmware"}
 
 
 def slice_file(name):

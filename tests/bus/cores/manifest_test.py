@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Tests of the manifest of a core, core.toml: accepted values, and messages for rejected ones."""
+import re
 import tempfile
 import unittest
 from pathlib import Path
 
+import places
+
 from icesoc import TREE
-from icesoc.call import objects
-from icesoc.chip import coremap, manifest
+from icesoc.chip import manifest
 from icesoc.regs.model import Wrong
 
 
@@ -66,8 +68,11 @@ class Manifest(unittest.TestCase):
         self.refused("verilog: lamp.v is listed twice",
                      'interface = "lamp.ice"\nverilog = ["lamp.v", "lamp.v"]\n')
 
-    def test_the_objects_of_the_platform_are_those_that_can_be_called(self):
-        self.assertEqual(coremap.PLATFORM_OBJECTS, set(objects.VEHICLE))
+    def test_the_objects_of_the_platform_are_those_of_the_firmware(self):
+        firmware = "".join(file.read_text() for file in (TREE / "sw/vehicle").glob("*.c"))
+        added = re.findall(r'Ice_ObjectAdapter_add\([^;]*"(\w+)"\)', firmware)
+        updatable = re.search(r"names\[UAV_UPDATABLES\] = {(.*?)}", firmware)[1]
+        self.assertEqual({*added, *re.findall(r'"(\w+)"', updatable)}, set(places.OBJECTS))
 
     def test_a_core_has_one_interface(self):
         self.refused("expected one of 'interface'", 'verilog = ["lamp.v"]\n')

@@ -15,12 +15,6 @@ from icesoc import TREE
 from icesoc.call.slices import Slices, listed
 from icesoc.util.errors import Stop, nearest
 
-# Objects of the firmware itself (sw/vehicle): identity -> file and interface
-VEHICLE = {"uav": ("Autopilot.ice", "::Autopilot::Vehicle"),
-           "keys": ("Autopilot.ice", "::Autopilot::KeyRing"),
-           "chip": ("Registers.ice", "::Hw::Chip"),
-           "update": ("Update.ice", "::Update::Firmware"),
-           "fpga": ("Update.ice", "::Update::Firmware")}
 REGISTERS = "::Hw::Registers"  # interface of a core without a servant of its own, which is called
                                # by its registers
 ACCESSES = {"get": ("ro", "rw", "w1c", "w1s"), "set": ("rw", "w1c", "w1s", "ws")}
@@ -65,7 +59,7 @@ class Catalogue:
         cores = chip["objects"] if chip else []
         for core in cores:
             core["slice"] = [str(TREE / file) for file in core["slice"]]
-        own = [] if build is None else [places.slice_file(file) for file, _ in VEHICLE.values()]
+        own = [] if build is None else [places.slice_file(file) for file in places.SLICE_FILES]
         all_files = [*files, *own, *(file for core in cores for file in core["slice"])]
         self.given = {os.path.realpath(file) for file in files}
         self.slices = Slices(all_files, compiler(build),
@@ -74,7 +68,7 @@ class Catalogue:
         self.objects = {}
         if build is not None:
             self.objects = {name: Object(name, interface)
-                            for name, (_, interface) in VEHICLE.items()}
+                            for name, interface in places.OBJECTS.items()}
         for core in cores:
             interface = core.get("interface") or only_interface(self.slices, core["slice"])
             self.objects[core["identity"]] = Object(core["identity"], interface,

@@ -12,6 +12,8 @@ import re
 import sys
 from dataclasses import dataclass, field
 
+import places
+
 from icesoc.regs import core_exchange
 from icesoc.chip import collisions, core_output, manifest
 from icesoc.regs.generate import save
@@ -24,8 +26,6 @@ BUFFER_ALIGNMENT = 128  # size of the largest NPI burst, bytes
 # TIMEOUT of bus_crossing.
 LEAST_HZ = 3e6
 PROBE_BITS = 223
-# Identities of the firmware's other objects (sw/vehicle).
-PLATFORM_OBJECTS = {"chip", "fpga", "keys", "uav", "update"}
 
 
 @dataclass
@@ -154,7 +154,7 @@ class Chip:
                           "name=")
         core.check(known == line, f"'{core.name}' is already on line {known}; give one of the two "
                                   "another name by name=")
-        core.check(core.identity not in PLATFORM_OBJECTS,
+        core.check(core.identity not in places.OBJECTS,
                    f"the identity '{core.identity}' is an object of the platform; give another one "
                    "by identity=")
         core.check(core.identity not in self.identities,

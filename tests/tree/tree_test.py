@@ -88,9 +88,15 @@ class Cases(Script):
             self.assertIn("README.md: table1.ff is 75, but 755 in its source", wrong)
             self.assertEqual(list(figures.correct(copy)), ["README.md"])
             self.assertEqual(page.read_text(), right)
+            page.write_text(right.replace("the result equals", "the result equalled"))
+            self.assertIn("README.md: expected the output of make run that "
+                          "docs/pictures/mission.png contains, found another",
+                          figures.differences(copy))
+            self.assertEqual(list(figures.correct(copy)), ["README.md"])
+            self.assertEqual(page.read_text(), right)
             picture = figures.PICTURE.format("utilisation")
             text = figures.text_of(Path(copy, picture))
-            shutil.copy(TREE / "docs/pictures/mission.png", Path(copy, picture))
+            figures.put_text(Path(copy, picture), "")
             wrong = list(figures.differences(copy))
             self.assertTrue(wrong)
             for line in wrong:

@@ -2,8 +2,9 @@
 """figures: the figures that pages and pictures repeat, each with its source.
 
 The sources are docs/figures.md (written by `bench`), synth/baseline.json (written by `synth
-accept`), and the pictures of pages: the text that a picture shows is in its PNG file. `build
-figures` writes the figures into the pages, and `make test NAME=tree.figures` compares them.
+accept`), and the pictures: the text that a page shows is in its picture's PNG file, and the picture
+of the mission contains what `make run` printed. `build figures` writes the figures into the pages,
+and `make test NAME=tree.figures` compares them.
 
     figures TREE    prints a line for each figure that differs; exit status 1 if there is one
 """
@@ -17,6 +18,10 @@ from pathlib import Path
 KEYWORD = b"Description"  # PNG's keyword for such a text
 
 PICTURE = "docs/pictures/{}.png"
+MISSION = PICTURE.format("mission")
+
+# Output of `make run` in README.md, which is the text in the picture of the same flight.
+TRANSCRIPT = re.compile(r"(?<=Ice's log lines\):\n\n```\n).*?(?=```)", re.S)
 
 # Page or picture: texts in it, in which a name in braces stands for a figure. A name that has no
 # source must have the same figure wherever it stands.
@@ -39,7 +44,12 @@ PLACES = {
         "| radio endpoint | not listed | {minimal.endpoint} | {full.endpoint} |",
         "| encryption | none | none | {full.crypto} |",
         "| all | 6840 | {minimal} | {full} |",
-        "occupies {ram} of the chip's"],
+        "occupies {ram} of the chip's",
+        "s {mission.corners} corners; the core took {mission.cycles} cycles"],
+    MISSION: ["s {mission.corners} corners; the core took {mission.cycles} cycles",
+              "cornersFound {mission.corners},"],
+    PICTURE.format("live"): ["{mission.corners} corners, the strongest ",
+                             "cornersFound {mission.corners},"],
     "docs/utilisation.md": [
         "with these, the blocks of Table I take {table1.through} LUTs. ",
         "The blocks of Table I take {table1.lut} LUTs, {table1.ff} flip-flops and about "
@@ -85,6 +95,12 @@ def put_text(picture, text):
     Path(picture).write_bytes(
         data[:header] + struct.pack(">I", len(chunk) - 4) + chunk
         + struct.pack(">I", zlib.crc32(chunk)) + data[header:])
+
+
+def printed(log, out):
+    """Returns the lines of a mission's log that README.md shows; out: folder of the flight."""
+    lines = re.findall(r"^(?:icesoc-sim: | *[\d.]+ s  |Pictures and report).*\n", log, re.M)
+    return "".join(lines).replace(str(out), "build/run")
 
 
 def content(tree, place):
@@ -154,11 +170,20 @@ def differences(tree, places=None):
                 value, where = known.setdefault(name, (shown.replace(",", ""), place))
                 if float(shown.replace(",", "")) != float(value):
                     yield f"{place}: {name} is {shown}, but {value} in {where}"
+    shown = TRANSCRIPT.search(content(tree, "README.md"))
+    if not shown or shown[0] != content(tree, MISSION):
+        yield f"README.md: expected the output of make run that {MISSION} contains, found another"
 
 
 def correct(tree, given=None):
     """Writes the figures into the pages: `given`, then those of the sources. Pictures are left."""
     known = {**values(tree), **(given or {})}
+    readme = Path(tree, "README.md")
+    was = readme.read_text()
+    now = TRANSCRIPT.sub(lambda found: content(tree, MISSION) or found[0], was)
+    if now != was:
+        readme.write_text(now)
+        yield "README.md"
     for place, texts in PLACES.items():
         if place.endswith(".png"):
             continue

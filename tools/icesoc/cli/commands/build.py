@@ -9,7 +9,7 @@ from pathlib import Path
 from icesoc.cli.build_folder import BuildFolder, configured
 from icesoc.cli.command import DEFAULTS, GROUPS, command
 from icesoc.cli.options import BUILD, FOLDER, INPUT_FOLDER, JOBS, UCOS2, WORDS, Option
-from icesoc.site.figures import put_text
+from icesoc.site.figures import printed, put_text
 from icesoc.util.browser import Browser
 from icesoc.util.console import say
 from icesoc.util.errors import Stop
@@ -101,7 +101,8 @@ VISIBLE = """(() => {
         const box = document.createRange();
         box.selectNodeContents(node);
         const place = box.getBoundingClientRect();
-        if (place.width && place.bottom > 0 && place.top < innerHeight)
+        if (place.width && place.bottom > 0 && place.top < innerHeight &&
+            node.parentElement.checkVisibility())
             texts.push(node.textContent);
     }
     return texts.join(' ').replace(/\\s+/g, ' ');
@@ -143,6 +144,15 @@ CALL = """(async () => {
 })()"""
 
 
+def shoot_mission(path, profile, icesoc):
+    """Takes the picture that the default mission draws, with what the mission prints."""
+    out, log = f"{profile}/run", f"{profile}/log"
+    logged([*icesoc, "--out", out], log, "the mission failed")
+    path.write_bytes(Path(out, "after.png").read_bytes())
+    small(path)
+    put_text(path, printed(Path(log).read_text(), out))
+
+
 def shoot_live(path, profile, icesoc):
     """Takes a picture of the page of a flight in progress, after calls of the vision core with its
     forms."""
@@ -162,7 +172,9 @@ def shoot_live(path, profile, icesoc):
                 time.sleep(1)  # s, in which the page draws the corners, and removes the marks of
                                # changed registers
                 browser.shoot(path)
+                shown = browser.run(VISIBLE)
             small(path)
+            put_text(path, shown)
         finally:
             end(flight)
 
@@ -189,10 +201,7 @@ def pictures(values):
         for name in values.pictures:
             path = to / f"{name}.png"
             if name == "mission":
-                logged([*icesoc, "--size", "640x480", "--out", f"{profile}/run"], f"{profile}/log",
-                       "the mission failed")
-                path.write_bytes(Path(profile, "run/after.png").read_bytes())
-                small(path)
+                shoot_mission(path, profile, icesoc)
             elif name == "live":
                 shoot_live(path, profile, icesoc)
             elif name in PAGES:

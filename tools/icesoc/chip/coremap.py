@@ -139,10 +139,10 @@ class Chip:
             given[key] = value
         for key, value in given.items():
             self.set(core, key, value)
-        for name, places in self.manifests[folder].places().items():
+        for name, locations in self.manifests[folder].places().items():
             pin = next(p for p in core.pins if p.name == name)
             if pin.is_pin and not pin.places:
-                self.set_places(core, pin, "@" + ",".join(places))
+                self.set_places(core, pin, "@" + ",".join(locations))
         core.check(core.says_idle or not core.has_gate,
                    f"gate=on: '{core.folder}' has no output idle_o (idle in its core.toml)")
         core.check(core.signals or not core.is_probe,

@@ -7,14 +7,15 @@
 .SUFFIXES:
 MAKEFLAGS += --no-builtin-rules
 unexport MAKEFILES
-# When GNU make exports a variable from its command line, it expands the value, and so would run a
-# $(shell ...) in it. The lines below make each value literal text first.
+# GNU make expands a variable of its command line when it exports the variable, so a $(shell ...) in
+# the value would run. The lines below first turn each value into literal text.
 $(foreach v,$(.VARIABLES),$(if $(filter command,$(firstword $(origin $v))),\
     $(eval export override $v := $$(value $v))))
 export ICESOC_GOALS := $(MAKECMDGOALS)
 %: export ICESOC_GOAL = $@
 
-# Runs for every goal, whether or not a file has its name. An empty Debian has no Python yet.
+# This rule applies to every goal, even if a file has the name of the goal. setup.sh runs first on
+# an empty Debian, which has no Python yet.
 %: always
 	@[ -x /usr/bin/python3 ] || cmake/setup.sh
 	@./icesoc

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
-# arm.cmake: compiles C90 and assembly for the Cortex-M3 with GCC's bare-metal toolchain. The same
-# sources are also compiled for the host elsewhere.
+# arm.cmake: compiles C90 and assembly for the Cortex-M3 with GCC's bare-metal toolchain. icesoc_c90
+# (icesoc.cmake) compiles the same sources for the host.
 
 icesoc_needs(gcc-arm-none-eabi ARM_GCC program arm-none-eabi-gcc)
 icesoc_needs(binutils-arm-none-eabi ARM_SIZE program arm-none-eabi-size)
@@ -42,8 +42,9 @@ function(icesoc_arm_objects out name)
   set(${out} ${objects} PARENT_SCOPE)
 endfunction()
 
-# icesoc_arm_program(NAME SCRIPT file.ld OBJECTS ... [OPTIONS ...]): target firmware_NAME, which
-# links NAME.elf, with its checksum inside, and a map file in ${CMAKE_BINARY_DIR}/firmware.
+# icesoc_arm_program(NAME SCRIPT file.ld OBJECTS ... [OPTIONS ...]): adds the target firmware_NAME.
+# It links NAME.elf, which contains its own checksum, and writes a map file. Both are in
+# ${CMAKE_BINARY_DIR}/firmware.
 function(icesoc_arm_program name)
   cmake_parse_arguments(A "" "SCRIPT" "OBJECTS;OPTIONS" ${ARGN})
   set(dir ${CMAKE_BINARY_DIR}/firmware)

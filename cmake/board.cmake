@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 #
-# board.cmake: selects the board for which the firmware and the simulator are built. Its pins
-# (board_pins.h), constraints (board.ucf) and wires (board_wires.inc) are generated from
-# boards/BOARD/board.toml.
+# board.cmake: selects the board for which the firmware and the simulator are built. The pins
+# (board_pins.h), constraints (board.ucf) and wires (board_wires.inc) of the board are generated
+# from boards/BOARD/board.toml.
 set(BOARD nucleo-qmtech CACHE STRING "Board of the firmware and the simulator: a folder of boards/")
 set(board_file ${CMAKE_SOURCE_DIR}/boards/${BOARD}/board.toml)
 if(NOT EXISTS ${board_file})

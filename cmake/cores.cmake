@@ -12,7 +12,8 @@ set(MANIFEST_FILES ${REGMAP_FILES} ${TOOLS}/chip/manifest.py ${TOOLS}/chip/core.
   ${TOOLS}/util/schema.py ${TOOLS}/util/templates.py)
 file(GLOB MAP_TEMPLATES CONFIGURE_DEPENDS ${TOOLS}/chip/templates/*.j2)
 
-# Names of the cores in the list. Parts that need a core test it: if("vision" IN_LIST CHIP_CORES)
+# Names of the cores in the list. A CMakeLists.txt that needs a core checks whether the core is in
+# the list: if("vision" IN_LIST CHIP_CORES)
 set(CHIP_CORES)
 set(instances 0)
 set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${CORES})
@@ -24,10 +25,11 @@ foreach(line IN LISTS lines)
   endif()
 endforeach()
 list(REMOVE_DUPLICATES CHIP_CORES)
-# Number of servants in the object adapter: the servants of the vehicle and of all cores, but at
-# least 8, the default (sw/icec/ice_config.h). The host's library icec gets it, and the firmware by
-# ARM_DEFINES. Number of connections: four for a ground station, four for a second ground station,
-# and four for another vehicle.
+# ICE_SERVANTS is the number of servants in the object adapter: the servants of the vehicle and of
+# all cores, but at least 8, the default of sw/icec/ice_config.h. ARM_DEFINES passes it to the
+# firmware, and the host's library icec uses the same number. ICE_CONNECTIONS is the number of
+# connections: four for a ground station, four for a second ground station, and four for another
+# vehicle.
 set(ARM_DEFINES ICE_CONNECTIONS=12)
 set(header ${CMAKE_SOURCE_DIR}/sw/vehicle/uav_tasks.h)
 set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
@@ -38,8 +40,9 @@ if(servants GREATER 8)
   list(APPEND ARM_DEFINES ICE_SERVANTS=${servants})
 endif()
 
-# Macros used by icesoc_core, in its scope, one for each part of a core: C code from a Slice file,
-# in a folder of GEN_DIR; registers, wrapper and servant; a separate clock; the block test.
+# Macros that icesoc_core calls, and that use its variables. Each handles one part of a core: C code
+# from a Slice file, in a folder of GEN_DIR; registers, wrapper and servant; a separate clock; the
+# block test.
 macro(icesoc_core_slice folder file)
   get_filename_component(base ${file} NAME_WE)
   set(slice ${GEN_DIR}/slice/${folder})
@@ -196,7 +199,7 @@ function(icesoc_core)
     set_property(GLOBAL APPEND PROPERTY ICESOC_IDLE_CORES ${name})
   endif()
   set(files ${A_VERILOG})
-  set(headers ${A_VERILOG}) # headers are found by `include, so they are not sources
+  set(headers ${A_VERILOG}) # headers are included by `include, so they are not passed as sources
   list(FILTER files EXCLUDE REGEX "[.]([sS]?[vV]?[hH]|[iI][nN][cC])$")
   list(FILTER headers INCLUDE REGEX "[.]([sS]?[vV]?[hH]|[iI][nN][cC])$")
   set(targets ${A_DEPENDS})
@@ -216,7 +219,8 @@ function(icesoc_core)
                 ${CMAKE_SOURCE_DIR}/hdl/ddr/npi_stream_pkg.vhd ${registers})
     list(APPEND files ${GEN_DIR}/${name}.v)
     list(APPEND targets ${name}_verilog)
-    list(APPEND A_FLAGS -Wno-PINCONNECTEMPTY) # GHDL's way to write an `open` port
+    # GHDL writes an `open` port as a port with empty parentheses
+    list(APPEND A_FLAGS -Wno-PINCONNECTEMPTY)
   endif()
   icesoc_core_clock()
   foreach(what files headers targets regs libs manifest slices arm_sources arm_includes arm_targets)
@@ -272,7 +276,7 @@ function(icesoc_chip)
     file(GLOB own CONFIGURE_DEPENDS ${folder}/*.ucf)
     list(APPEND inputs ${manifest} ${regs} ${own})
   endforeach()
-  # Checks, when the chip is built, that no two files contain a module of the same name.
+  # When the chip is built, this step checks that no two files contain a module of the same name.
   icesoc_chip_property(files files)
   icesoc_chip_property(targets targets)
   add_custom_command(OUTPUT ${GEN_DIR}/cores.checked

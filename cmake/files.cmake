@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-# Writes the list of the Verilog files that Verilator has read for a model, for other tools. The
-# folder of each file is put on the include path, because some cores include files with the suffix
-# .v. SystemVerilog packages are listed first.
+# files.cmake: writes the list of the Verilog files that Verilator has read for a model, for other
+# tools. The folder of each file is put on the include path, because some cores include files with
+# the suffix .v. SystemVerilog packages are listed first.
 #
 #   cmake -DREAD=V__ver.d -DTO=list -DTOP=module "-DDEFINES=+define+NAME" -P files.cmake
 file(READ "${READ}" text)
@@ -11,8 +11,9 @@ set(sources)
 foreach(file IN LISTS files)
   string(STRIP "${file}" file)
   file(STRINGS "${file}" line REGEX "^`line 1 \".*\"" LIMIT_COUNT 1)
-  if(line MATCHES "\"(.*)\"") # the file is a copy that was made for the simulator
-                              # (testbench/sim/rest.awk)
+  # `file` is a copy made for the simulator (testbench/sim/rest.awk); its `line directive names the
+  # original
+  if(line MATCHES "\"(.*)\"")
     set(file "${CMAKE_MATCH_1}")
   endif()
   get_filename_component(folder "${file}" DIRECTORY)

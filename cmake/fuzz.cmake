@@ -6,7 +6,8 @@
 #             [SEEDS file-or-folder] [DICT file] [LENGTH bytes] [LIBS file...] [LABELS ...]
 #             [DEPENDS ...])
 # Builds the program NAME, and adds the test fuzz.NAME, which runs RUNS inputs of up to LENGTH (400)
-# bytes, drawn by SEED. It ends by their number, never by time. The inputs in SEEDS run first.
+# bytes, drawn by SEED. The test ends after this number of inputs, not after a time. The inputs in
+# SEEDS run first.
 function(icesoc_fuzz name)
   cmake_parse_arguments(A "" "HARNESS;DICT;RUNS;SEEDS;LENGTH"
     "SOURCES;INCLUDES;DEFINES;LIBS;LABELS;DEPENDS" ${ARGN})

@@ -27,8 +27,8 @@ for number, line in enumerate(sys.stdin):
     open(f"{sys.argv[1]}/{number}", "wb").write(bytes.fromhex(line))' "$work/seeds" <"$seeds"
     seeds=$work/seeds
 fi
-# libFuzzer also tries values that the program compares, and these can be addresses. If the system
-# allows fixed addresses, every run uses the same inputs.
+# libFuzzer also tries values that the program compares, and these values can be addresses. If the
+# system allows fixed addresses, every run therefore uses the same addresses and the same inputs.
 alike=$(setarch -R true 2>/dev/null && echo "setarch -R" || :)
 $alike "$program" -seed="${SEED:-1}" "$end" -timeout=60 -print_final_stats=1 \
     -artifact_prefix="$work/" "$@" "$found" $seeds >"$work/log" 2>&1 || {

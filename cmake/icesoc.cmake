@@ -43,7 +43,7 @@ set(TOOLS ${CMAKE_SOURCE_DIR}/tools/icesoc)
 set(FETCH ${PYTHON} -m icesoc.util.fetch)
 set(FETCH_FILES ${TOOLS}/__init__.py ${TOOLS}/util/fetch.py)
 
-# Compiles for any CPU of this architecture (packages), or for the CPU of this machine.
+# Compiles for any CPU of this architecture (for packages), or for the CPU of this machine.
 set(TUNE -march=native)
 set(SAME_BYTES)
 if(PORTABLE)
@@ -62,7 +62,8 @@ set(TOOL_OPTIONS ${HOST_WARNINGS} -O1)
 set(C90_WARNINGS -std=c90 -pedantic -Wall -Wextra -Wconversion -Wstrict-prototypes
     -Wmissing-prototypes -Wdeclaration-after-statement -Werror)
 if(COVERAGE)
-  add_compile_options(-g --coverage -fprofile-update=atomic) # -g: without it gcov misses lines
+  # -g: without debug information, gcov misses lines
+  add_compile_options(-g --coverage -fprofile-update=atomic)
   add_link_options(--coverage)
 endif()
 if(SANITIZE STREQUAL "thread")
@@ -97,9 +98,9 @@ function(icesoc_c90 name)
   endif()
 endfunction()
 
-# icesoc_test(NAME SOURCES... [LIBS lib...] [LABELS label...] [ARGS ...] [SANITIZED regexp]):
+# icesoc_test(NAME SOURCES... [LIBS lib...] [LABELS label...] [ARGS ...] [SANITIZED regexp]): adds a
 # GoogleTest program; CTest discovers its cases. LABELS select tests: `ctest -L rtl`. SANITIZED:
-# `make test` runs the cases whose names match a second time, with sanitizers.
+# `make test` runs the cases whose names match the expression a second time, with sanitizers.
 function(icesoc_test name)
   cmake_parse_arguments(A "" "SANITIZED" "SOURCES;LIBS;LABELS;ARGS" ${ARGN})
   if(NOT TARGET clock_listener)
@@ -112,8 +113,8 @@ function(icesoc_test name)
   target_link_libraries(${name} PRIVATE ${A_LIBS} GTest::gtest GTest::gmock GTest::gtest_main)
   gtest_discover_tests(${name} TEST_PREFIX "${name}." EXTRA_ARGS ${A_ARGS}
                        DISCOVERY_TIMEOUT 60)
-  # CTest reads this file after the cases are known; gtest_discover_tests itself keeps only the
-  # first of several labels.
+  # CTest reads this file after the cases are known. It sets the labels, because
+  # gtest_discover_tests itself keeps only the first of several labels.
   set(labels ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
   list(GET A_SOURCES 0 first)
   cmake_path(ABSOLUTE_PATH first)
@@ -155,10 +156,10 @@ function(icesoc_uncertain program seeds)
   endforeach()
 endfunction()
 
-# icesoc_regmap(JSON [BLOCK]): generates from a *.regs.json, in ${GEN_DIR}, a Verilog include, a C
-# header, a VHDL package and a Markdown page of the registers of one block. With BLOCK also the
-# register block <block>_regs.v, its proof and <block>_regs.vhd. Target regmap_<block>, interface
-# library regs_<block>.
+# icesoc_regmap(JSON [BLOCK]): generates files for the registers of one block from a *.regs.json.
+# The files in ${GEN_DIR} are a Verilog include, a C header, a VHDL package and a Markdown page.
+# With BLOCK, it also generates the register block <block>_regs.v, the proof of this block, and
+# <block>_regs.vhd. The target is regmap_<block>, the interface library regs_<block>.
 set(REGMAP ${PYTHON} -m icesoc.regs.generate)
 file(GLOB REGMAP_FILES CONFIGURE_DEPENDS ${TOOLS}/__init__.py ${TOOLS}/regs/*.py
   ${TOOLS}/regs/regs.schema.json ${TOOLS}/regs/templates/*.j2)
@@ -188,7 +189,8 @@ function(icesoc_regmap json)
   add_dependencies(regs_${block} regmap_${block})
 endfunction()
 
-# Adds waveforms and counters to icesoc_verilate, in its scope.
+# Adds the flags for waveforms and coverage counters to icesoc_verilate. It uses the variables of
+# that function.
 macro(icesoc_verilate_observed)
   set(definitions) # observer.h reads these definitions
   if(TRACE)
@@ -213,9 +215,10 @@ endmacro()
 # icesoc_verilate(NAME TOP module SOURCES file... [PARAMS NAME=value...] [INCLUDES dir...]
 #                 [REGS block...] [DEPENDS target-or-file...] [FLAGS ...] [FAST] [CLASS class])
 # Builds a Verilated model of a module as the library NAME with the class V<NAME>, or V<CLASS>. Lint
-# (-Wall) is on, and its warnings are errors. FAST compiles with clang, for the whole chip
-# (measured: 1.18 times the speed of code by g++). With COVERAGE only soc.v is counted here, because
-# the test of each block counts the block; with all counters, seconds of flight took minutes.
+# (-Wall) is on, and its warnings are errors. FAST is for the model of the whole chip. It compiles
+# with clang (measured: 1.18 times the speed of code by g++). With COVERAGE, a FAST model counts
+# only soc.v, because the test of each block counts the block. With all counters, a few simulated
+# seconds of flight took minutes.
 function(icesoc_verilate name)
   cmake_parse_arguments(A "FAST" "TOP;CLASS" "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;FLAGS" ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name})
@@ -226,7 +229,7 @@ function(icesoc_verilate name)
   set(lib ${dir}/${class}__ALL.a)
   set(flags --cc -Wall --x-assign unique --x-initial unique -O3 --top-module ${A_TOP}
             --prefix ${class} --Mdir ${dir} -y ${GEN_DIR} -I${GEN_DIR} ${A_FLAGS})
-  set(library) # modules that Verilator may find by -y
+  set(library) # files of modules that Verilator may find through -y
   foreach(i IN LISTS A_INCLUDES)
     list(APPEND flags -y ${i} -I${i})
     file(GLOB found CONFIGURE_DEPENDS ${i}/*.v ${i}/*.vh)
@@ -255,8 +258,8 @@ function(icesoc_verilate name)
     set(without_tree COMMAND find ${dir} -name "*.cpp" -exec sed -i
       "s|MT(\"${CMAKE_SOURCE_DIR}/|MT(\"|" {} +)
   endif()
-  # This code runs only once. With counters it is several megabytes long, and compiling it with -O1
-  # took minutes.
+  # The generated code of these files runs only once. With counters it is several megabytes long,
+  # and compiling it with -O1 took minutes.
   set(slow -O1)
   if(COVERAGE)
     set(slow -O0)
@@ -293,10 +296,10 @@ endfunction()
 set(STATE_MEMBERS ${CMAKE_SOURCE_DIR}/testbench/common/state_members.awk)
 
 # icesoc_netlist(NAME DESIGN design [PARAMS NAME=value...] [DEPENDS target...] [TOP module SOURCES
-# file... INCLUDES dir...] [FLAGS ...] [CLASS class]): builds a Verilated model, like
-# icesoc_verilate, of the netlist that `make synth` measures for a design, or of a netlist with
-# other parameters. Each primitive has a model. With TOP, the model is of a module around the
-# netlist.
+# file... INCLUDES dir...] [FLAGS ...] [CLASS class]): builds a Verilated model of a netlist, as
+# icesoc_verilate does for a module. The netlist is the one that `make synth` measures for a design,
+# or one with other parameters. Each primitive in the netlist has a Verilog model. With TOP, the
+# model is of a module that contains the netlist.
 function(icesoc_netlist name)
   cmake_parse_arguments(A "" "DESIGN;TOP;CLASS" "PARAMS;DEPENDS;SOURCES;INCLUDES;FLAGS" ${ARGN})
   if(NOT A_TOP)

@@ -4,7 +4,7 @@
 # setup: installs the Debian packages that `make run` needs and the machine lacks; on a terminal it
 # asks before it calls sudo. It is a shell script because an empty Debian has no Python.
 # Usage: cmake/setup.sh [--packages] [--tests] [--check]
-# --packages: also packages that make and check Debian packages
+# --packages: also packages that `./icesoc package` needs
 # --tests: also packages for tests, reports and debuggers, and the packages of --packages
 # --check: only lists missing packages (exit status 1 if a package is missing)
 
@@ -60,13 +60,13 @@ libnewlib-arm-none-eabi C library for it
 clang fuzzers of the link layer (libFuzzer)
 libclang-rt-dev their run time, which clang only recommends
 '
-# packages that make and check Debian packages
+# additional packages for `./icesoc package`, which makes and checks Debian packages
 deb='
 dpkg-dev finds the dependencies of the Debian packages
 file finds the programs in them
 lintian checks them
 '
-# packages that tests, reports and debuggers need in addition
+# additional packages for tests, reports and debuggers
 rest='
 clang-format-19 holds the source to .clang-format
 mypy checks the types of the tools in Python
@@ -93,7 +93,7 @@ groff-base formats them
 '
 [ -z "$packaging" ] || packages="$packages$deb"
 [ -z "$tests" ] || packages="$packages$rest"
-# Debian 12 has too old a version; icesoc.util.fetch gets the one of Debian 13.
+# The version in Debian 12 is too old; icesoc.util.fetch downloads the version of Debian 13.
 case $(sed -n 's/^VERSION_ID="*\([0-9]*\).*/\1/p' /etc/os-release 2>/dev/null) in
 1[3-9]) packages="$packages
 ghdl-mcode simulates and converts VHDL" ;;
@@ -108,8 +108,9 @@ fi
 
 # shellcheck disable=SC2046 # a list of words
 there=$(dpkg-query -W -f ';${db:Status-Status} ${Package};' $(echo "$packages" | sed 's/ .*//') \
-    2>/dev/null) || true # dpkg-query fails for packages that it does not know; packages that others
-                         # only mention are not-installed
+    # dpkg-query fails for unknown packages. It reports a package as not-installed if only other
+    # packages mention it.
+    2>/dev/null) || true
 list=$(echo "$packages" | while read -r name why; do
     case "$name;$there" in
     ";"* | *";installed $name;"*) ;;

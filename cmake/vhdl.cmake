@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 #
-# vhdl.cmake: converts VHDL cores to Verilog with GHDL 5, and refuses latches.
+# vhdl.cmake: converts VHDL cores to Verilog with GHDL 5. A latch in the result is an error.
 
 set(GHDL_DIR ${CMAKE_BINARY_DIR}/ghdl)
 set(GHDL ${GHDL_DIR}/ghdl)
@@ -10,10 +10,11 @@ add_custom_command(OUTPUT ${GHDL}
 add_custom_target(ghdl DEPENDS ${GHDL})
 
 # icesoc_vhdl(NAME entity SOURCES file... [REGS block...] [LIBRARY name] [LIBRARIES name=file...]
-#             [GENERICS name=value...] [FOREIGN]): ${GEN_DIR}/<entity>.v, target <entity>_verilog.
-# LIBRARY is the library of SOURCES. The files may be in any order. GHDL writes the names of the
-# files into the Verilog as it gets them. They are relative to the tree, so that copies of the tree
-# give the same Verilog.
+#             [GENERICS name=value...] [FOREIGN])
+# Converts an entity to ${GEN_DIR}/<entity>.v with the target <entity>_verilog. LIBRARY is the
+# library of SOURCES. The files may be in any order. GHDL writes the names of the files into the
+# Verilog in the form in which it gets them. The names are relative to the tree, so that copies of
+# the tree give the same Verilog.
 function(icesoc_vhdl)
   cmake_parse_arguments(A "FOREIGN" "NAME;LIBRARY" "SOURCES;REGS;GENERICS;LIBRARIES" ${ARGN})
   list(TRANSFORM A_LIBRARIES REPLACE "(.+)" "--in;\\1" OUTPUT_VARIABLE members)
@@ -53,9 +54,9 @@ function(icesoc_vhdl)
   set_property(GLOBAL APPEND PROPERTY ICESOC_VHDL_TARGETS ${A_NAME}_verilog)
 endfunction()
 
-# icesoc_vhdl_test(NAME core SOURCES file... [LIBS lib...]): adds the test vhdl.<core>, which runs
-# <core>_tb.vhd with vectors written by <core>_vectors.cpp, both in this folder
-# (cmake/vhdl_test.sh).
+# icesoc_vhdl_test(NAME core SOURCES file... [LIBS lib...]): adds the test vhdl.<core>
+# (cmake/vhdl_test.sh). It runs <core>_tb.vhd with vectors that <core>_vectors.cpp writes. Both
+# files are in the folder of the caller.
 function(icesoc_vhdl_test)
   cmake_parse_arguments(A "" "NAME" "SOURCES;LIBS" ${ARGN})
   add_executable(${A_NAME}_vectors ${A_NAME}_vectors.cpp)

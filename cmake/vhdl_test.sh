@@ -1,9 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# vhdl_test: core GHDL vectors-program folder file.vhd ...   Runs entity <core>_tb by GHDL; the
-# first failure stops it.
-# vectors-program: gets the folder and SEED and writes the test bench's input there.
-# COVERAGE_DIR: folder for GHDL's file of lines that ran. WAVE: file for a waveform (*.fst).
+# vhdl_test: runs the entity <core>_tb under GHDL, and stops at its first failure.
+# Usage: vhdl_test.sh core GHDL vectors-program folder file.vhd...
+# vectors-program: gets the folder and SEED, and writes the test bench's input into the folder
+# COVERAGE_DIR: folder for GHDL's file of lines that ran
+# WAVE: file for a waveform (*.fst)
 set -eu
 core=$1 ghdl=$2 vectors=$3 work=$4
 shift 4

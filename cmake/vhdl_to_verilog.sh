@@ -7,7 +7,7 @@
 # The files may be in any order.
 #   --foreign   third-party sources: they may use Synopsys' packages, and constructs that other
 #               tools allow; their assertions are removed
-#   --library   VHDL library of the files, if they refer to themselves by its name (default: work)
+#   --library   name of the VHDL library of the files, if the files use this name (default: work)
 #   --in        name of a further library, and a file of this library
 #   --generic   value of a generic of the entity
 
@@ -53,7 +53,7 @@ done
     cat "$work/messages" >&2
     exit 1
 }
-# The other entities get the name of this entity as a prefix, since another core may use the same
+# All other entities get the name of this entity as a prefix, because another core may use the same
 # library.
 sed -n 's/^module \([A-Za-z0-9_]*\).*/\1/p' "$output.tmp" |
     grep -v "^$entity" >"$work/others" || true

@@ -15,7 +15,7 @@ add_custom_command(OUTPUT ${pack_update}
 install(PROGRAMS ${pack_update} DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${component})
 list(APPEND installable xbeeat xbeeat_cpp11 gateway ${pack_update})
 
-# The Python module, and its programs as commands.
+# Installs the Python module, and its programs as commands.
 set(clients ${top}/sw/ground/clients)
 install(FILES ${top}/sw/ground/python/icesoc.py DESTINATION ${module} RENAME __init__.py
   COMPONENT ${component})
@@ -33,7 +33,7 @@ foreach(program mission provide_key change_key update)
   install(FILES ${link} DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT ${component})
 endforeach()
 
-# icesoc-call: the modules of `./icesoc call`, and the list of objects of the default chip.
+# icesoc-call: installs the modules of `./icesoc call`, and the list of objects of the default chip.
 set(tools ${top}/tools/icesoc)
 file(GLOB modules CONFIGURE_DEPENDS ${tools}/call/*.py)
 install(FILES ${tools}/__init__.py DESTINATION ${SHARE}/tools/icesoc COMPONENT ${component})
@@ -54,7 +54,7 @@ add_custom_command(OUTPUT ${objects}
 install(FILES ${objects} DESTINATION ${SHARE}/gen COMPONENT ${component})
 list(APPEND installable ${objects})
 
-# icesoc-page: the page of the gateway, with Ice for JavaScript, which is GPL-2.0.
+# icesoc-page: installs the page of the gateway, with Ice for JavaScript, which is GPL-2.0.
 install(FILES ${tools}/web/__init__.py ${tools}/web/bridge.py ${tools}/web/live.py
   ${tools}/web/common.css ${tools}/web/common.js
   DESTINATION ${SHARE}/tools/icesoc/web COMPONENT ${component})
@@ -69,7 +69,7 @@ install(FILES ${top}/sw/vehicle/Autopilot.ice ${top}/sw/hw/registers/Registers.i
   ${top}/sw/update/Update.ice DESTINATION ${SHARE}/slice COMPONENT ${component})
 install(FILES ${top}/testbench/status/sim_status.toml ${top}/sw/update/slots_header.toml
   DESTINATION ${SHARE} COMPONENT ${component})
-# The Slice files of the cores, and the Python code of each core for a mission.
+# Installs the Slice files of the cores, and the Python code of each core for a mission.
 foreach(core IN LISTS CHIP_CORES)
   if(EXISTS ${top}/ip/${core})
     file(GLOB files ${top}/ip/${core}/*.ice ${top}/ip/${core}/ground.py)

@@ -4,8 +4,8 @@
 
     manual.py PAGE.1.gz --name NAME --purpose TEXT --version VERSION -- COMMAND --help
 
-A line of two spaces and a dash begins an option. Its text follows after two spaces, or in the next
-lines, which are indented further.
+A line that begins with two spaces and a dash describes an option. The text of the option follows
+after two more spaces, or in the next lines, which are indented further.
 """
 import argparse
 import gzip
@@ -22,8 +22,8 @@ def roff(text):
 
 
 def options(lines):
-    """Returns the parts of a help text in order: a paragraph as a string, options as a list with
-    their texts, examples as a tuple of lines."""
+    """Returns the parts of a help text in order. A paragraph is a string, options are a list with
+    their texts, and examples are a tuple of lines."""
     parts = []
     for line in lines:
         if parts and isinstance(parts[-1], tuple):  # examples are the last part of a help text
@@ -46,8 +46,8 @@ def options(lines):
 
 
 def page(name, section, purpose, version, text, program):
-    """Returns the manual page of a program. `text`: its --help output; `program`: the name by which
-    this output calls it."""
+    """Returns the manual page of a program. `text` is the output of the program's --help; `program`
+    is the name by which this output calls the program."""
     text = re.sub(rf"\S*\b{re.escape(program)}\b", name, text)
     usage = re.search(r"^usage: *(.*(?:\n +\S.*)*)\n", text, re.M | re.I)
     rest = text.replace(usage[0], "", 1) if usage else text

@@ -11,7 +11,8 @@ install(TARGETS sim_clock LIBRARY DESTINATION ${CMAKE_INSTALL_LIBEXECDIR}/icesoc
   COMPONENT ${component})
 install(PROGRAMS ${top}/testbench/sim/fly.py DESTINATION ${CMAKE_INSTALL_BINDIR}
   RENAME icesoc-fly COMPONENT ${component})
-# The firmware without debug information, because that contains paths of the build.
+# Installs the firmware without debug information, because debug information contains paths of the
+# build.
 set(elf ${CMAKE_CURRENT_BINARY_DIR}/uav.elf)
 add_custom_command(OUTPUT ${elf}
   COMMAND ${ARM_OBJCOPY} --strip-debug ${CMAKE_BINARY_DIR}/firmware/uav.elf ${elf}

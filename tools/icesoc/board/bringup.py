@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""bringup: reads what the self-test prints on the console (sw/bringup/console.h), adds the places
-of the wires, and writes the report as JSON and as a page."""
+"""bringup: reads what the self-test prints on the console (sw/bringup/console.h), adds the pins and
+connectors of each wire, and writes the report as JSON and as a page."""
 import html
 import json
 import re
@@ -12,7 +12,7 @@ ENDS = {"mcu": "microcontroller", "fpga": "FPGA", "modem": "modem"}
 
 
 class Report:
-    """A report, built line by line. `result` is passed, failed, or stopped."""
+    """A report, built line by line. Its `result` is passed, failed, or stopped."""
     def __init__(self, board):
         self.board = board  # a board of board.model, or None if unknown
         self.data = {"board": board.name if board else "", "result": "stopped", "steps": []}
@@ -27,7 +27,7 @@ class Report:
         return [failure for step in self.steps for failure in step["failures"]]
 
     def take(self, line):
-        """Adds a line. Returns the text to show for it, or None."""
+        """Adds a line of the console. Returns the text to show for this line, or None."""
         line = line.rstrip("\r\n")
         self.log.append(line)
         word, _, rest = line.partition(" ")
@@ -65,7 +65,8 @@ class Report:
         return None
 
     def places(self, wire):
-        """Returns a line of text for each net of a wire or pair: its pins and connectors."""
+        """Returns one line of text for each net of a wire, or of a pair of wires: the pins and
+        connectors of the net."""
         found = []
         for name in wire.split("-"):
             net = self.board.net(name) if self.board else None
@@ -83,14 +84,14 @@ class Report:
 
 
 def shown(failure):
-    """Returns the lines of a failure for a terminal."""
+    """Returns a failure as lines for a terminal."""
     lines = [f"  FAILED: {failure['wire']} {failure['kind']}: {failure['seen']}",
              *(f"    {place}" for place in failure["places"]), f"    check: {failure['check']}"]
     return "\n".join(lines)
 
 
 def page(report):
-    """Returns the report as an HTML page without other files."""
+    """Returns the report as one HTML page that needs no other files."""
     style = (TREE / "tools/icesoc/web/common.css").read_text()
     colours = {"passed": "good", "failed": "bad"}
     rows = []

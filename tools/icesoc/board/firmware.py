@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: MIT
 """firmware: generates the firmware's pin table (board_pins.h) and the configuration of OpenOCD.
 
-The table contains the values of the registers of each port, which the firmware only stores."""
+The table contains complete register values for each GPIO port; the firmware only writes them to the
+registers."""
 from icesoc.board.model import Board
 from icesoc.board.signals import SIGNALS
 
 SPEEDS = {"low": 0, "medium": 1, "high": 2, "fast": 3}
 PULLS = {"up": 1, "down": 2}
 GPIO = 0x40020000
-# Values after reset (RM0033, 6.4), which keep the debugger's pins of ports A and B.
+# Values of the registers after reset (RM0033, 6.4). They keep the debugger's pins, which are on
+# ports A and B, in use.
 RESET = {"A": {"mode": 0xA8000000, "speed": 0, "pull": 0x64000000, "low": 0, "high": 0},
          "B": {"mode": 0x00000280, "speed": 0x000000C0, "pull": 0x00000100, "low": 0, "high": 0}}
 START = {"crystal": "RCC_CR_HSEON", "bypass": "(RCC_CR_HSEBYP | RCC_CR_HSEON)"}
@@ -17,13 +19,14 @@ ADAPTERS = {"stlink": "interface/stlink.cfg", "jlink": "interface/jlink.cfg",
 
 
 def put(registers, name, number, bits, value):
-    """Sets a field of a register; fields are `bits` wide."""
+    """Sets field `number` of the register `name` to `value`. Each field of this register is `bits`
+    wide."""
     mask = (1 << bits) - 1 << number * bits
     registers[name] = registers[name] & ~mask | value << number * bits
 
 
 def ports(board: Board):
-    """Returns the register values of each port that has pins of the FSMC, by its letter."""
+    """Returns {letter: register values} for each port that has pins of the FSMC."""
     found = {}
     speed = SPEEDS[board.facts.get("fsmc", {}).get("drive", "fast")]
     pins = board.parts["mcu"]

@@ -27,7 +27,8 @@ def for_bench(board):
 
 
 def write(files, folder):
-    """Writes files that have changed; leaves others as they are. Returns their paths."""
+    """Writes the files whose text has changed, and leaves the others as they are. Returns the paths
+    of all files."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in files.items():

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""model: reads boards/NAME/board.toml with the modules and parts that it names.
+"""model: reads boards/NAME/board.toml, and the files of the modules and parts that it names.
 
 The facts of parts (boards/parts/*.csv) and of modules (boards/modules/*.toml) are read here and
-nowhere else. check.py judges what was read; the generators are in ucf.py and the files next to it.
+nowhere else. check.py checks a board that was read; the generators are in ucf.py and the files next
+to it.
 """
 import csv
 import json
@@ -61,7 +62,7 @@ class Module:
 
 @dataclass
 class Net:
-    """A wire of the board: its ends, and their known facts."""
+    """A wire of the board with its ends, and with the known facts about the wire."""
     name: str
     facts: dict
 
@@ -83,7 +84,8 @@ class Net:
 
 @dataclass
 class Board:
-    """A board as read. `parts` and `modules` have the keys mcu, fpga and modem, if present."""
+    """A board as described in its board.toml. `parts` and `modules` have the keys mcu, fpga and
+    modem, if the board has such a part."""
     path: Path
     name: str
     facts: dict
@@ -101,7 +103,8 @@ class Board:
 
     @property
     def modem(self):
-        """Returns the kind of modem (--modem of a flight), or None."""
+        """Returns the kind of the modem, in the form of the option --modem; None if the board has
+        no modem."""
         return self.facts.get("modem", {}).get("profile")
 
     @property
@@ -110,7 +113,7 @@ class Board:
 
     @property
     def ddr(self):
-        """Returns the facts of the memory in use, or None."""
+        """Returns the facts of the memory, or None if the board does not use it."""
         module = self.modules.get("fpga")
         used = self.facts["fpga"].get("ddr", False)
         return module.facts.get("ddr") if used and module else None
@@ -161,8 +164,9 @@ def fpga_part(path):
 
 
 def merged(base, facts):
-    """Returns the facts of a board that is derived from another one, its base: tables are merged,
-    nets are replaced by name, and the nets listed in `without` are left out."""
+    """Returns the facts of a board that is derived from a base board. Tables of both are merged,
+    nets of the base are replaced by nets of the same name, and the nets listed in `without` are
+    left out."""
     result = {**base, **facts}
     for key, value in facts.items():
         if isinstance(value, dict) and isinstance(base.get(key), dict):

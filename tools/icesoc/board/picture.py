@@ -5,7 +5,7 @@ import html
 from icesoc.board.model import Board
 
 ROW, WIDTH, GAP, TOP, LEFT = 13, 120, 30, 60, 20
-SPAN = 420  # px; distance between the side of the microcontroller and that of the FPGA
+SPAN = 420  # px; distance between the microcontroller's column and the FPGA's column
 COLOURS = {"A": "#2b6cb0", "D": "#c05621", "N": "#2f855a", "I": "#2f855a", "M": "#6b46c1"}
 
 

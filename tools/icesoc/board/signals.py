@@ -16,9 +16,9 @@ class Signal:
                    # function
     modem: str = ""  # pin of the modem's socket
     is_clock: bool = False  # an edge of the signal clocks registers of the FPGA
-    is_strobe: bool = False  # an edge of the signal ends an access, so a slow or noisy edge causes
-                             # an additional access
-    needed: bool = True  # False: a board need not connect the signal
+    # an edge of the signal ends an access, so a slow or noisy edge could cause an additional access
+    is_strobe: bool = False
+    needed: bool = True  # True: every board must connect the signal
 
 
 def _signals():
@@ -34,7 +34,8 @@ def _signals():
     yield Signal("NWE", MCU, "fsmc_nwe_n_i", "FSMC_NWE", is_clock=True, is_strobe=True)
     yield Signal("NADV", MCU, "fsmc_nadv_n_i", "FSMC_NL", is_clock=True, is_strobe=True)
     yield Signal("NWAIT", FPGA, "fsmc_nwait_n_o", "FSMC_NWAIT")
-    yield Signal("IRQ", FPGA, "irq_o", "GPIO", pin="PB0")  # EXTI0_Handler of sw/board/board.c
+    # EXTI0_Handler of sw/board/board.c requires this pin
+    yield Signal("IRQ", FPGA, "irq_o", "GPIO", pin="PB0")
     yield Signal("CLOCK", OTHER, "sys_clk_i", is_clock=True)
     yield Signal("RESET", OTHER, "sys_rst_i")
     yield Signal("MODEM_RXD", MODEM, "modem_rxd_i", modem="DOUT")

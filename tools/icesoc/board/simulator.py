@@ -7,15 +7,16 @@ KNOWN = {signal.function for signal in SIGNALS.values() if signal.function.start
 
 
 def at_pin(pin, function):
-    """Returns the function that a pin has among its alternate functions, even if its net expects
-    another one: a wire at the wrong pin carries the signal of that pin."""
+    """Returns the first alternate function of a pin that the board's signals use, even if the net
+    expects another one: a wire at the wrong pin carries the signal of that pin. Returns `function`
+    if the pin has no such function."""
     return next((name for name in pin.functions if name in KNOWN), function or "-")
 
 
 def wires(board: Board):
-    """Returns the wires as text. First the oscillator, then for each net the pin, the number and
-    name of its alternate function (- for none), the net, the ball, and the supply of its bank in
-    V."""
+    """Returns the wires as text. The first line is the oscillator. Then each net has a line: the
+    pin, the number and the name of its alternate function ("-" if it has none), the net, the ball,
+    and the supply of the ball's bank in V."""
     lines = [f"# Wires of {board.name}: pin, alternate function, its name, net, ball, volts",
              f"oscillator {board.facts['mcu']['hse_hz']}"]
     pins, balls = board.parts["mcu"], board.parts["fpga"]
@@ -31,6 +32,7 @@ def wires(board: Board):
 
 
 def literals(wires_text, ucf_text):
-    """Returns both texts as C++ string literals, for the simulator's default board."""
+    """Returns the texts of the wires and of the UCF as C++ string literals, for the simulator's
+    default board."""
     return (f'constexpr char defaultWires[] = R"board({wires_text})board";\n'
             f'constexpr char defaultUcf[] = R"board({ucf_text})board";\n')

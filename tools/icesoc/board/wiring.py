@@ -15,7 +15,8 @@ STYLE = ("body{font:10pt sans-serif} table{border-collapse:collapse;width:100%} 
 
 
 def end(board: Board, net: Net, role):
-    """Returns (sort key, text) of one end of a wire: connector, number and pin."""
+    """Returns (sort key, text) for one end of a wire; the text is the connector, its number and the
+    pin."""
     pin, place = net.get(role), board.place(net, role)
     if place:
         return place, f"{place[0]}.{place[1]} ({pin})"
@@ -29,12 +30,12 @@ def wires(board: Board):
         roles = [role for role in ("mcu", "fpga", "modem") if net.get(role)]
         ends = [end(board, net, role) for role in roles]
         if len(ends) == 1 and not net.get("to"):
-            continue  # this net has only a pull
+            continue  # this net has a pull resistor but no wire
         if len(ends) == 1:
             module = board.modules.get(roles[0])
             use = module.occupied.get(net.get(roles[0]), {}) if module else {}
             if use.get("drives"):
-                continue  # this net is wired on the module
+                continue  # this net is already wired on the module
             ends.append((("~", 0), net.get("to")))
         arrow = "←" if net.signal.driver in (MODEM, "other") else ARROWS[net.signal.driver]
         if roles[0] == "fpga":
@@ -118,7 +119,7 @@ def bullets(texts):
     return "".join(f"- {text}\n" for text in texts)
 
 
-# Facts about a chip in board.toml, as the page shows them.
+# Facts about a chip in board.toml, with the titles that the page shows.
 FACTS = {
     "part": "part {value}", "speed": "speed grade -{value}", "hse_hz": "clock (HSE) {value} Hz",
     "hse": "HSE mode {value}", "clock_hz": "oscillator {value} Hz", "vccaux": "VCCAUX {value} V",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""client: calls an operation by stock Ice and returns the result; receives events.
+"""client: calls an operation through stock Ice and returns the result; receives events.
 
 Exit statuses of a call that fails: 2 wrong arguments; 3 the operation threw an exception that its
 throws clause declares; 4 no answer (no connection, time-out); 5 the vehicle has no such object,
@@ -44,8 +44,8 @@ class Events:
         return mapping.of(interface, "Prx").uncheckedCast(proxy)
 
     def open(self):
-        """Returns the object adapter. The vehicle calls it over the connection of this program's
-        calls."""
+        """Returns the object adapter for calls by the vehicle. They arrive at the endpoints of the
+        target, or over the connection that this program has opened."""
         if not self.adapter:
             target, communicator = self.client.target, self.client.communicator
             if target.callbacks:
@@ -198,7 +198,7 @@ class Client:
 
 
 def properties_in(file):
-    """Returns the properties of Ice in a file."""
+    """Returns the Ice properties that a file sets."""
     found = Ice.createProperties()
     found.load(file)
     return found.getPropertiesForPrefix("")

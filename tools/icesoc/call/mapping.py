@@ -21,11 +21,11 @@ class Mapping:
     def __init__(self, slices, communicator):
         self.slices, self.communicator = slices, communicator
         self.loaded = set()
-        self.listeners = None  # function that returns the proxy of a listener for the name of an
-                               # interface
+        # function that takes the name of an interface and returns the proxy of a listener
+        self.listeners = None
 
     def load(self, file):
-        """Loads a Slice file once."""
+        """Loads a Slice file, if it is not loaded already."""
         if file in self.loaded:
             return
         self.loaded.add(file)
@@ -37,7 +37,8 @@ class Mapping:
             raise Stop(f"'{file}': stock Ice cannot load it: {error}", 2) from None
 
     def of(self, name, suffix=""):
-        """Returns the Python class for a name such as ::Cores::Fir."""
+        """Returns the Python class for a name such as ::Cores::Fir; `suffix` is appended to the
+        name of the class."""
         self.load(self.slices.get(name)["file"])
         *modules, last = name.lstrip(":").split("::")
         found = importlib.import_module(".".join(map(escaped, modules)))
@@ -86,7 +87,8 @@ class Mapping:
         return self.of(interface, "Prx").uncheckedCast(found)
 
     def outof(self, value, kind):
-        """Converts a value of stock Ice to a checked value: what JSON has; bytes stay bytes."""
+        """Converts a value of stock Ice to a checked value. It consists of the types that JSON has,
+        except that bytes remain bytes."""
         if kind.endswith("*"):
             return None if value is None else str(value)
         if value is None or value is Ice.Unset:

@@ -15,11 +15,11 @@ from icesoc import TREE
 from icesoc.call.slices import Slices, listed
 from icesoc.util.errors import Stop, nearest
 
-REGISTERS = "::Hw::Registers"  # interface of a core without a servant of its own, which is called
-                               # by its registers
+# interface for a core without a servant; it reads and writes the registers of the core by name
+REGISTERS = "::Hw::Registers"
 ACCESSES = {"get": ("ro", "rw", "w1c", "w1s"), "set": ("rw", "w1c", "w1s", "ws")}
 LIVE = "live.json"  # file in the folder of a flight, present during the flight
-VIEWED = "viewed"  # file in the same folder, written as long as a browser shows the page
+VIEWED = "viewed"  # file in the same folder, which is rewritten while a browser shows the page
 
 
 def read_json(path):
@@ -33,14 +33,14 @@ def read_json(path):
 @dataclass
 class Object:
     identity: str
-    interface: str = ""  # empty: unknown, so the object is asked for it
-    registers: str = ""  # path of the *.regs.json of its core
-    core: str = ""  # name of its core and of the core's register block
+    interface: str = ""  # name of the interface; empty if unknown: the object is then asked for it
+    registers: str = ""  # path of the *.regs.json of the object's core
+    core: str = ""  # name of the object's core and of the core's register block
 
 
 def only_interface(slices, files):
-    """Returns the interface of the servant of a core: the interface with [":hw"], or the only
-    one."""
+    """Returns the interface of a core's servant: the interface with the metadata [":hw"], or the
+    only interface of the files. Returns "" if neither is unique."""
     folders = {os.path.realpath(file) for file in files}
     found = [name for name in slices.interfaces()
              if os.path.realpath(slices.get(name)["file"]) in folders]
@@ -52,8 +52,8 @@ class Catalogue:
     """Everything that can be called: the objects, and the declarations of their interfaces."""
 
     def __init__(self, build, files=()):
-        """build: build folder of the vehicle, or None; files: Slice files that replace those of the
-        vehicle."""
+        """build: build folder of the vehicle, or None. files: Slice files to use instead of the
+        vehicle's Slice files."""
         chip = read_json(Path(build, "gen/chip.json")) if build else None
         self.is_complete = chip is not None
         cores = chip["objects"] if chip else []
@@ -97,8 +97,8 @@ class Catalogue:
 
     def unknown(self, identity, operation):
         """Returns an object that the build does not list. If exactly one interface in the files of
-        --slice declares the operation, the object has that interface; otherwise the object is asked
-        later."""
+        --slice declares the operation, this is the interface of the object. Otherwise the object is
+        asked for its interface later."""
         declare = [name for name in self.slices.interfaces()
                    if os.path.realpath(self.slices.get(name)["file"]) in self.given
                    and any(o["name"] == operation for o in self.slices.get(name)["operations"])]
@@ -115,8 +115,8 @@ class Catalogue:
         return found[name]
 
     def interface_of(self, ids):
-        """Returns the most derived interface that Slice declares among the type ids of an
-        object."""
+        """Returns, among the type ids of an object, the most derived interface that the Slice files
+        declare."""
         known = [name for name in ids if name in self.slices.declarations]
         return max(known, key=lambda name: len(self.slices.lineage(name)), default="")
 

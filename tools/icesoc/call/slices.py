@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """slices: the declarations of Slice files, as printed by `slice2c --describe`.
 
-The command line and the page in the browser check values and show operations by them.
+The command line and the page in the browser use them to check values and to show operations.
 """
 import json
 import re
@@ -24,7 +24,7 @@ OBJECT = [{"name": "ice_ping", "result": "void", "parameters": [],
 
 
 def listed(words, most=12):
-    """Returns words separated by commas; if there are many, only the first ones."""
+    """Returns words separated by commas. Of many words, only the first `most` are listed."""
     words = list(words)
     more = f", ... ({len(words)} in all)" if len(words) > most else ""
     return ", ".join(words[:most]) + more
@@ -36,7 +36,7 @@ def annotation(metadata, name):
 
 
 class Slices:
-    """All declarations of some Slice files, by full names such as ::Cores::Fir."""
+    """All declarations of some Slice files. The keys are full names such as ::Cores::Fir."""
 
     def __init__(self, files, compiler, includes=()):
         self.files = [Path(file) for file in dict.fromkeys(map(str, files))]
@@ -107,7 +107,8 @@ class Slices:
         return next((int(limit) for limit in limits if limit), None)
 
     def named(self, kind):
-        """Returns the name of a type for people: without ::, a sequence by its element type."""
+        """Returns a readable name of a type, such as Cores.Fir. A sequence or dictionary is named
+        after its element type, and a small enum is listed by its enumerators."""
         each = self.get(kind)
         if each["kind"] == "sequence":
             return f"sequence<{self.named(each['element'])}>"

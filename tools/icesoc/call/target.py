@@ -21,8 +21,9 @@ class Target:
     plugin: str = ""  # folder of the radio plugin
     key: str = ""
     guard: int = 1000
-    callbacks: str = ""  # endpoints at which the vehicle calls this program; empty: it uses the
-                         # connection of the call
+    # endpoints at which the vehicle calls this program; empty: the vehicle calls back over the
+    # connection that this program has opened
+    callbacks: str = ""
 
     def proxy(self, identity, mode="", facet=""):
         quoted = identity.replace("\\", "\\\\").replace('"', '\\"')
@@ -70,7 +71,7 @@ def of_gateway(values):
 
 
 def of_settings(values):
-    """Returns the target of a vehicle that is listed in vehicles.conf."""
+    """Returns the target for a vehicle that vehicles.conf lists."""
     import vehicles
     try:
         suffix, properties = vehicles.find(values.vehicle)
@@ -83,8 +84,8 @@ def of_settings(values):
 
 
 def of(values):
-    """Returns the target that the options name. Without such an option it is the flight in
-    progress, or the installed settings."""
+    """Returns the target that the options name. Without such an option, it is the flight in
+    progress; without a flight, a vehicle in the installed settings."""
     given = [name for name in ("flight", "device", "gateway", "locator") if getattr(values, name)]
     if len(given) > 1:
         raise Stop(f"{', '.join('--' + name for name in given)} exclude each other: give only one",

@@ -2,8 +2,8 @@
 """values: converts the arguments of a call from texts to checked values and then to values of stock
 Ice, and results in the other direction.
 
-A checked value consists of types that JSON has, and of bytes for a sequence<byte>. Everything is
-checked against Slice before a communicator is created: "threshold: expected 0 to 255, got 300".
+A checked value consists of the types that JSON has, and of bytes for a sequence<byte>. Every value
+is checked against Slice before a communicator is created: "threshold: expected 0 to 255, got 300".
 """
 import json
 import math
@@ -92,8 +92,8 @@ class Reader:
         return self.check(parse(text, where), kind, where, metadata)
 
     def scalar(self, text, kind):
-        """Returns the text as a number or a bool; if it is neither, the text itself, for the error
-        message."""
+        """Returns the text as a number or a bool. If it is neither, returns the text itself, which
+        the error message quotes."""
         if kind == "bool":
             return {"true": True, "false": False}.get(text, text)
         if re.fullmatch(r"[+-]?\d{1,40}", text, re.A) and (kind in INTEGERS or len(text) < 300):
@@ -122,8 +122,7 @@ class Reader:
             raise Refused(where, f"JSON in '{path}'", "bytes that are not UTF-8") from None
 
     def picture_fields(self, kind):
-        """Returns the names of the fields for width, height and pixels if a struct consists of
-        these."""
+        """If a struct consists of width, height and pixels, returns the names of these fields."""
         if self.slices.get(kind)["kind"] != "struct":
             return None
         fields = {field["name"]: field["type"] for field in self.slices.fields(kind)}
@@ -289,5 +288,5 @@ def readable(value, indent=""):
 
 
 def plain(value):
-    """Returns a value in which bytes are replaced by what JSON has: a list of numbers."""
+    """Returns a value in which a list of numbers replaces bytes, because JSON has no bytes."""
     return list(value)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""collisions: rejects a chip in which two cores, or a core and the platform, would have one name in
-the generated files.
+"""collisions: rejects a chip in which two cores, or a core and the platform, would have the same
+name in the generated files.
 
 For example, core `a_b` with the output `c_o` and core `a` with the output `b_c_o` would both have
 the wire pin_a_b_c_o. The error message contains both names.
@@ -14,8 +14,8 @@ PLATFORM = "the platform"
 
 
 def platform_names(base):
-    """Yields (scope, name) for the names that the platform uses: those in hdl/soc.v, of its
-    modules, and of the constants of bus/map.regs.json."""
+    """Yields (scope, name) for each name that the platform uses: names in hdl/soc.v, names of
+    modules, and names of the constants of bus/map.regs.json."""
     text = re.sub("//.*", "", (TREE / "hdl/soc.v").read_text())
     yield from (("soc.v", name) for name in re.findall(r"[A-Za-z_]\w*", text))
     yield from (("modules", path.stem) for room in ("bus", "hdl")
@@ -25,7 +25,7 @@ def platform_names(base):
 
 
 def instance_names(core):
-    """Yields (scope, name) for everything that core_output.py names after a core of the chip."""
+    """Yields (scope, name) for each name that core_output.py derives from a core of the chip."""
     name, upper = core.name, core.name.upper()
     yield from (("soc.v", stem + name) for stem in ("u_", "u_gate_", "u_clock_", "clk_", "idle_",
                                                     "cycles_", "signals_"))
@@ -39,8 +39,8 @@ def instance_names(core):
 
 
 def constant_names(block):
-    """Returns pairs of the name in C and the name in the description for the constants of a
-    block."""
+    """Returns pairs for the constants of a block: the name in C, and the name in the
+    description."""
     return [(f"{block.prefix}_{name}", f"{block.name}.{owner}")
             for name, owner in constants(block).owners.values()]
 

@@ -7,8 +7,8 @@ BASE=commit.
 Compares the register descriptions of two trees: each block's *.regs.json, and those that slice2c
 generates from [":hw"] interfaces. Software that was built against the old contract fails after a
 breaking change: a block, register, field or event that was removed, moved or narrowed, or has
-another access or type. New or wider ones are compatible. Exit status: 1 after a breaking change, 2
-if a tree cannot be read.
+another access or type. New items and wider items are compatible. Exit status: 1 after a breaking
+change, 2 if a tree cannot be read.
 """
 import glob
 import os
@@ -56,8 +56,8 @@ def blocks_of(tree, slice2c, work):
 
 
 def add_memory(block, facts):
-    """Adds the size of the buffers, which the core's manifest contains, to the description: it is
-    part of the contract."""
+    """Adds the size of the buffers to the description of a block. The core's manifest contains this
+    size, but it is part of the contract."""
     if "memory_bytes" in facts:
         block.description["memory_bytes"] = facts["memory_bytes"]
 

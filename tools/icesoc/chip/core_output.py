@@ -67,7 +67,7 @@ def map_of(chip, base):
 
 
 def contract_of(block):
-    """Returns the hash of the register properties that software relies on."""
+    """Returns a hash of the properties of the registers on which software relies."""
     lines = [json.dumps(block.description["type"])]
     for r in block.own_registers:
         lines.append(f"{r.word} {r.page} {r.name} {r.access} {r.width}")
@@ -103,7 +103,7 @@ def recorded(probe):
 
 
 def taps_of(probe):
-    """Returns (wire, hierarchical name, width of that signal, width of the wire) for each signal
+    """Returns (wire, hierarchical name, width of this signal, width of the wire) for each signal
     that a probe records."""
     return [*((f"{probe.name}_{i}", name, width, width)
               for i, (name, width) in enumerate(probe.signals)),
@@ -168,8 +168,8 @@ def places(core):
 
 
 def own_constraints(core):
-    """Returns the timing constraints of a core. In its file, @name@ stands for the instance and
-    @port@ for its pads, a list if the port is a bus."""
+    """Returns the timing constraints of a core. In the core's UCF file, @name@ stands for the
+    instance, and @port@ for the pads of that port. For a bus, the pads are a list."""
     s = core.constraints.replace("@name@", core.name)
     for pin in core.pins:
         s = s.replace(f"@{pin.name}@", '" : "'.join(pads(pin)) if pin.is_pin else "")
@@ -179,8 +179,8 @@ def own_constraints(core):
 def clock_constraints(core):
     """Returns the timing constraints of the separate clock of a core: its period and its crossings.
 
-    Paths between this clock and the chip clock have at most 8 ns, so two bits, or a word and its
-    flag, arrive at most one clock of 10 ns apart.
+    A path between this clock and the chip clock may take at most 8 ns. Two bits of a crossing, or a
+    word and its flag, then arrive at most one clock of 10 ns apart.
     """
     if not core.own_clock:
         return ""

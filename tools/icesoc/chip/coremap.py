@@ -22,8 +22,8 @@ from icesoc.regs.model import Block, Wrong, check
 SLOT_LIMIT, PIN_LIMIT = 64, 32
 SLOT_BYTES = 64
 BUFFER_ALIGNMENT = 128  # size of the largest NPI burst, bytes
-# Lowest frequency of a core's separate clock, Hz; with a slower one an access would exceed the
-# TIMEOUT of bus_crossing.
+# Lowest frequency of a core's separate clock, Hz. With a slower clock, an access would take longer
+# than the TIMEOUT of bus_crossing.
 LEAST_HZ = 3e6
 PROBE_BITS = 223
 
@@ -61,9 +61,11 @@ class Core:
     servant: dict = None  # C type and header of the servant; default: the servant of
                           # sw/hw/registers
     pins: list = field(default_factory=list)
-    constraints: str = ""  # text of its *.ucf
+    constraints: str = ""  # text of the core's *.ucf
     has_clock: bool = False  # the module has the parameter CLK_HZ
-    own_clock: int = 0  # highest frequency of its separate clock, Hz; 0: it uses the chip clock
+    # highest frequency of its separate clock, Hz; 0: it has no separate clock and uses the chip
+    # clock
+    own_clock: int = 0
     # clock_hz is the chip clock * multiply / divide; 0: the clock comes from pin clock_i, the last
     # pin of the core
     multiply: int = 0
@@ -89,7 +91,8 @@ class Core:
 
 @dataclass
 class Slot:
-    """A populated slot, the platform's included, with its *.regs.json."""
+    """A slot that contains a block: a core or a part of the platform. It has the block's
+    *.regs.json."""
 
     name: str
     number: int
@@ -109,7 +112,8 @@ class Chip:
         self.memory_end = 1 << constants["DDR_BYTES_LOG2"]
         self.ports = constants["NPI_PORT_COUNT"]
         self.registers = constants["CONTROL_WINDOW"]  # the processor's address of slot 0
-        self.pins = {"i": 0, "o": 0}  # bits used of core_pins_i, core_pins_o
+        # number of bits used in core_pins_i ("i") and core_pins_o ("o")
+        self.pins = {"i": 0, "o": 0}
         # names in use -> line number in the list
         self.names = {n[5:].lower(): 0 for n in constants if n.startswith("SLOT_")}
         self.identities, self.places, self.cores = set(), {}, []
@@ -193,7 +197,7 @@ class Chip:
         core.fail(f"no room in DDR3 for the {needed} bytes of '{core.folder}'")
 
     def set(self, core, key, value):
-        """Parses one word of the line of a core."""
+        """Parses one word of a core's line in the list."""
         if key == "name":
             core.check(re.fullmatch("[a-z][a-z0-9_]*", value),
                        f"name={value}: expected small letters, digits and _")
@@ -326,8 +330,8 @@ class Chip:
                 placed.append(core)
 
     def connect(self, core):
-        """Connects pins of a core to other cores, and assigns bits of the chip pins to the
-        remaining pins."""
+        """Connects inputs of a core to outputs of other cores, and assigns bits of the chip's pins
+        to the remaining pins of the core."""
         outputs = {f"{c.name}.{p.name}": p for c in self.cores for p in c.pins
                    if p.direction == "o"}
         names = [c.name for c in self.cores]

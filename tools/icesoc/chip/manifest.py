@@ -18,8 +18,8 @@ from icesoc.util.reserved import REFUSAL, RESERVED
 
 SCHEMA = json.loads(Path(__file__).with_name("core.schema.json").read_text())
 HEADERS = ".vh", ".svh", ".inc", ".h"
-# Keys of the manifest that become part of the block's description, for the chip, the firmware's
-# table and the exchange formats.
+# Keys of the manifest that are added to the block's register description. The chip, the firmware's
+# table and the exchange formats use them.
 DESCRIBED = "memory_port", "memory_bytes", "probe", "servant"
 FILE_LISTS = "verilog", "vhdl", "includes", "tests"
 
@@ -132,8 +132,8 @@ def block_of(manifest, registers):
 
 
 def quoted(words):
-    """Returns words as arguments for CMake, in which @NAME@ is replaced by the value of a
-    variable."""
+    """Returns words as arguments for CMake. In each word, @NAME@ becomes a reference to CMake's
+    variable NAME."""
     text = (str(word).replace("\\", "\\\\").replace('"', '\\"').replace("$", "\\$")
             .replace(";", "\\;") for word in words)
     return " ".join('"' + re.sub("@([A-Z_]+)@", r"${\1}", word) + '"' for word in text)

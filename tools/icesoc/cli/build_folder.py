@@ -18,7 +18,7 @@ ROOMS_OF_PROGRAMS = "bus;slice;sw;hdl;ip;testbench;tests"
 
 
 def writable(folder, otherwise):
-    """Creates a folder, or fails with the reason."""
+    """Creates a folder. Fails if it is not writable; `otherwise` advises what to do."""
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
     except OSError:
@@ -28,8 +28,8 @@ def writable(folder, otherwise):
 
 
 def cores_in(folder):
-    """Returns the folder of one core, or the folders of all cores if it is a repository, which has
-    a cores.list."""
+    """Returns the folders of the cores in a folder: all cores of a repository, which has a
+    cores.list, or else the folder itself as the only core."""
     return sorted(path.parent for path in folder.glob("*/core.toml")) \
         if (folder / "cores.list").is_file() else [folder]
 
@@ -45,8 +45,8 @@ class BuildFolder:
         return self.folder / name
 
     def prepare(self, *arguments, tests=False, packages=False):
-        """Installs missing packages, with `tests` or `packages` also those for tests or Debian
-        packages; then runs CMake, unless the folder is configured."""
+        """Installs missing packages; with `tests`, also those for tests, and with `packages`, also
+        those that make Debian packages. Then runs CMake, unless the folder is configured."""
         if not self.built:
             run(["cmake/setup.sh", *["--tests"] * tests, *["--packages"] * packages])
             self.configure(*arguments)
@@ -117,9 +117,9 @@ class BuildFolder:
                 for core in cores_in(Path(folder).absolute())]
 
     def chip_list(self):
-        """Returns the list of the chip's cores that the command selects: that of the first
-        repository among the folders, or that of this tree; None if the command does not select
-        one."""
+        """Returns the path of the list of the chip's cores: the cores.list of the first repository
+        among the folders that the command names, or ip/cores.list if the command leaves these
+        folders. Returns None if the command does not change the list."""
         if self.core_folders == "none":
             return Path("ip/cores.list").absolute() if self.cached("CORES") else None
         lists = (Path(folder).absolute() / "cores.list" for folder in self.core_folders.split(";"))

@@ -30,7 +30,7 @@ def texts(folders, *endings):
     return [path.read_text(errors="replace") for path in files(folders, *endings)]
 
 
-NOUNS = {}  # names of the functions' results, for messages
+NOUNS = {}  # noun for the names that each function returns, for messages
 
 
 def expecting(noun):
@@ -104,7 +104,7 @@ def benches(values=None):
 
 @expecting("a block with seeded bugs, or block/bug")
 def seeded(values=None):
-    """Returns the blocks with seeded bugs, and each bug as block/name."""
+    """Returns the names of the blocks with seeded bugs, and each bug as block/name."""
     names = []
     for path in sorted(Path("tests/mutants").glob("*.bugs.json")):
         block = path.name.partition(".")[0]
@@ -134,8 +134,9 @@ def words_of_tests(values=None):
 
 
 def may_name_test(text, values):
-    """Returns whether a text may match a test: an expression always; a plain word if each part of
-    it is in the source of a test. Tests of cores outside the tree may have any name."""
+    """Returns whether a text may match a test. An expression always may. A plain word may if each
+    part of it occurs in the source of a test, or if cores outside the tree are used, because their
+    tests may have any name."""
     from icesoc.cli.build_folder import BuildFolder  # the installed icesoc-call does not contain
                                                      # this module
     if not re.fullmatch(r"[A-Za-z]\w*", text) or \

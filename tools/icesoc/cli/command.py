@@ -22,7 +22,7 @@ SECTIONS = {  # sections of the overview by purpose: title -> commands and group
     "Add cores, look at the chip": ("core", "contract", "synth", "board"),
     "Build and test": ("build", "test", "regress", "bisect", "check", "bench", "nightly"),
     "The project": ("setup", "docs", "package", "release", "clean", "commands")}
-ALIASES = {}  # other goals of make: goal -> the switch that it sets
+ALIASES = {}  # further goals of make: goal -> the switch that it sets
 
 
 class Command:
@@ -119,7 +119,7 @@ class Command:
         """Returns the values of all options.
 
         given: texts by field; makes: variables of make's command line; place: the folder to which
-        file names are relative, which is a value itself."""
+        file names are relative. The result also contains the place."""
         values = argparse.Namespace(given=set(), given_by_make=makes is not None, place=place)
         for option in self.options:
             text = given.get(option.field) or given.get(f"--{option.field}")
@@ -128,7 +128,8 @@ class Command:
                 values.given.add(option.field)
                 called = option.name.upper() if option.positional else called
             elif self.takes_environment and (option.variable != "LANG" or option.variable in (
-                    makes or ())):  # ignored: LANG in the environment is the language of the user
+                    # LANG in the environment is ignored, because it is the language of the user
+                    makes or ())):
                 text, called = os.environ.get(option.variable), option.variable
                 if text and option.variable in (makes or ()):
                     values.given.add(option.field)
@@ -177,7 +178,8 @@ def by_words(words, place):
     """Returns (command, values) of a command line."""
     found, rest = find(words)
     flags = {word.partition("=")[0] for word in rest}
-    for each in COMMANDS.values():  # `run --replay` selects the same command as `make run REPLAY=`
+    # as with `make run REPLAY=`, `run --replay` selects the command replay
+    for each in COMMANDS.values():
         if each.when and each.make == found.make and f"--{each.when.lower()}" in flags:
             found = each
     return found, found.words(rest, place)

@@ -75,8 +75,8 @@ FIELDS = [
     Option("guard", number(2, 3300, "ms"), "guard time of both modems", 1000),
     Option("patience", number(1, unit="s"), "time-out for each answer of the vehicle", 300),
     Option("firmware", FILE, "firmware (ELF) to fly instead of the firmware of the build", ""), ]
-# Options that only the simulator has, in flight.json or as words of a command line; ./icesoc has
-# separate options for their purposes.
+# Fields that only the simulator accepts, in flight.json or on its command line. ./icesoc has
+# separate options for these purposes.
 _TEXT: dict = {"type": "string"}
 _TIME: dict = {"type": "number", "minimum": 0}
 _FLAG: dict = {"type": "boolean"}
@@ -165,8 +165,8 @@ def read(path):
 
 
 def complete(values):
-    """Fills in options from the flight that is repeated, and refuses options that exclude each
-    other."""
+    """Takes the missing options from the flight that is repeated, and rejects options that exclude
+    each other."""
     if values.again:
         given = values.given | ({"key", "open"} if values.given & {"key", "open"} else {"version"})
         for name, value in read(values.again).items():
@@ -210,7 +210,7 @@ def complete(values):
 
 
 def check_chip(values, build):
-    """Refuses a core of the tree that is not in the chip, because its call would fail only minutes
+    """Rejects a core of the tree that is not in the chip, because its call would fail only minutes
     later."""
     listed = build.cached("CORES") or "ip/cores.list"
     lines = re.findall(r"^\s*(\w+)", Path(listed).read_text(), re.M)
@@ -220,7 +220,8 @@ def check_chip(values, build):
 
 
 def take_key(values, build):
-    """Returns the demo key, created once, if the mission is neither open nor has a key."""
+    """Sets the key of the mission to the demo key, if the mission is not open and no key is given.
+    The demo key is created once."""
     if values.open or values.key or values.app != "uav":
         return
     keys.rescue(build.folder.parent)
@@ -231,7 +232,7 @@ def take_key(values, build):
 
 
 def take_observers_key(values):
-    """Returns a demo key for the second ground station, if the vehicles have keys."""
+    """Sets the key of the second ground station to a demo key, if the vehicles have keys."""
     if values.vehicles > 1 and values.key and not values.observer:
         values.observer = str(keys.folder() / "observer.key")
         make_key(values.observer)
@@ -268,9 +269,9 @@ def write(values, build):
 
 
 def last_span(out):
-    """Returns the options FROM= and TO= for the end of a flight, starting at the last checkpoint
-    that is at least 10 ms before the end. Returns None if the recording is incomplete, for example
-    after the disk was full."""
+    """Returns the options FROM= and TO= for the end of a flight. FROM is the last checkpoint that
+    is at least 10 ms before the end. Returns None if the recording is incomplete, for example after
+    the disk was full."""
     last = before = finish = 0.0
     recording = (Path(out) / "flight.jsonl").read_text()
     if not recording.endswith("\n"):

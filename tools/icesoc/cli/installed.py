@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """installed: the program icesoc-call, which is `./icesoc call` without the source tree.
 
-The package icesoc-ground contains this module and those that it imports. Options that need the
-source tree are left out, and make's variables in the environment are ignored.
+The package icesoc-ground contains this module and all modules that it imports. Options that need
+the source tree are left out, and make's variables in the environment are ignored.
 """
 import dataclasses
 import os
@@ -15,7 +15,7 @@ from icesoc.cli.commands.call import OPTIONS, call
 from icesoc.cli.main import main
 from icesoc.cli.options import FILE, KEY_FILE
 
-# options that need the source tree, with their values here
+# options that need the source tree, and their fixed values in this program
 TREE_ONLY = {"build": places.SHARE, "flight": "", "page": False, "plugin": ""}
 TEXTS = {"vehicle": "name of the vehicle in vehicles.conf, or in IceGrid; default: the only one of "
                     "vehicles.conf",

@@ -27,7 +27,7 @@ def folder():
 
 
 def rescue(built):
-    """Moves keys out of the folder `built` or a folder in it, where earlier versions stored
+    """Moves keys out of the folder `built` and the folders below it, where earlier versions stored
     them."""
     for pattern in ("demo.key", "update.key", "*/update.key"):
         for old in sorted(Path(built).glob(pattern)):
@@ -42,7 +42,7 @@ def rescue(built):
 
 
 def check_folder(path):
-    """Fails unless the folder of a new file exists."""
+    """Fails unless the folder for a new file exists."""
     if not Path(path).parent.is_dir():
         raise Stop(f"folder '{Path(path).parent}' not found; create it first", 2)
 
@@ -95,8 +95,8 @@ def check_authority(authority, signs):
 def sign(name, cert, key, constraint, *by):
     # A plus sign or a slash in the name would start another part of the subject.
     name = name.replace("\\", "\\\\").replace("+", "\\+").replace("/", "\\/")
-    settings = cert.with_name("openssl.cnf")  # the settings of the machine would allow every
-                                              # certificate to sign others
+    # with the settings of the machine, every certificate could sign others
+    settings = cert.with_name("openssl.cnf")
     settings.write_text("[req]\ndistinguished_name = name\n[name]\n")
     run(["openssl", "req", "-x509", "-utf8", "-config", settings, "-newkey", "ec", "-pkeyopt",
          "ec_paramgen_curve:P-256", "-nodes", "-days", "3650", "-subj", f"/CN={name}", "-addext",

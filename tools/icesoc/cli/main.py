@@ -23,12 +23,13 @@ def surroundings():
         place = os.getcwd()
     except FileNotFoundError:
         raise Stop("the current folder does not exist any more: cd to another one", 2) from None
-    tree = os.environ.pop("ICESOC_TREE", "")  # ICESOC_TREE: a tree that a test uses instead
+    tree = os.environ.pop("ICESOC_TREE", "")  # a test sets ICESOC_TREE to use another tree
     os.chdir(tree or TREE)
     place = os.getcwd() if tree else place
     # ccache and icesoc.util.fetch store files in HOME, which a timer or a container may not set.
     os.environ.setdefault("HOME", pwd.getpwuid(os.getuid()).pw_dir)
-    # Paths below this folder are relative in the compiler cache, so that it works for every clone.
+    # Paths below this folder are relative in the compiler cache, so that all clones share the
+    # cache.
     os.environ.update(CCACHE_BASEDIR=os.getcwd(), CCACHE_NOHASHDIR="1")
     os.environ[
         "LC_ALL"] = "C.UTF-8"  # all tools print a decimal point, whatever the language of the user
@@ -36,8 +37,8 @@ def surroundings():
 
 
 def make_gave():
-    """Returns (goal, all goals, variables of make's command line), or None if make is not the
-    caller."""
+    """Returns (goal, all goals, names of the variables on make's command line), or None if the
+    caller is not make."""
     goal, goals = os.environ.pop("ICESOC_GOAL", ""), os.environ.pop("ICESOC_GOALS", "").split()
     flags = os.environ.pop("MAKEFLAGS", "")
     for name in ("MFLAGS", "MAKELEVEL", "MAKEOVERRIDES"):
@@ -104,8 +105,8 @@ def main(words, function=act):
 
 def path_of(error):
     """Returns the path of the file to which an exception refers. If a write fails, for example on a
-    full disk, Python omits the path. This function then returns the path of a file that is open in
-    the innermost function, or the value of a path there."""
+    full disk, Python omits the path. In this case the path is that of a file that the innermost
+    function has open, or the value of a path in that function."""
     found = error.filename or ""
     for frame, _ in [] if found else traceback.walk_tb(error.__traceback__):
         local = frame.f_locals.values()

@@ -20,7 +20,7 @@ class Kind:
     """A kind of value. `read` converts a text to a value, and raises ValueError if it is
     invalid."""
     read: typing.Callable
-    expected: str  # end of the message "LOSS: expected ..."
+    expected: str  # end of the message "LOSS: expected ...": the valid values
     schema: dict = None  # JSON schema of the value in flight.json
     metavar: str = "VALUE"
     words: tuple = ()  # all possible values, if there are only a few
@@ -34,7 +34,8 @@ class Option:
     default: object = None
     positional: bool = False
     variable: str = ""  # name as a make variable
-    listed: bool = True  # False: not in the help; for the tests of this project
+    # False: the option is only for tests of this project, and the help does not list it
+    listed: bool = True
     completer: typing.Callable = None  # of argcomplete
     choices: typing.Callable = None  # function that returns the known names for the values of all
                                      # options (choices.py)
@@ -61,8 +62,8 @@ class Option:
                        2) from None
 
     def check_names(self, value, values):
-        """Refuses a name that is not among the choices, before anything is built. If the tree has
-        no choices, nothing is refused."""
+        """Rejects a name that is not among the choices, before anything is built. If the tree has
+        no choices, every name is accepted."""
         if not self.choices or not self.is_checked or not value:
             return
         names = None

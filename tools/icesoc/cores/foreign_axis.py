@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""foreign_axis: writes the files of a core with an AXI-Stream in and one out, for new_foreign.py
-(BUS=axis).
+"""foreign_axis: writes the files of a core with one AXI-Stream input and one AXI-Stream output, for
+new_foreign.py (BUS=axis).
 
-The core gets the operation `process`: its argument is the input sequence, its result the output.
-Wrapper, servant and proxies are generated from its Slice interface; axis_filter moves the words.
+The core gets the operation `process`: its argument is the input sequence, its result the output
+sequence. Wrapper, servant and proxies are generated from the Slice interface of the core;
+axis_filter moves the words.
 """
 import re
 
@@ -17,8 +18,8 @@ BYTES = 1024  # largest packet in each direction, bytes
 
 
 def role(name, port):
-    """Returns s_ and the signal of the input stream, m_ and the signal of the output stream, or
-    None."""
+    """Returns the role of a port: "s_" and the name of a signal of the input stream, or "m_" and
+    the name of a signal of the output stream; None for any other port."""
     found = re.search(f"({'|'.join(SIGNALS)})(_[io])?$", name.lower()) or re.fullmatch(
         "[sm](?:_axis)?_(data|valid|ready|rdy|keep|strb|last)", name.lower())
     if not found:
@@ -29,7 +30,7 @@ def role(name, port):
 
 
 def problem(top, ports, roles):
-    """Returns the error in the module's streams, or None."""
+    """Returns the error in the module's streams or settings, or None."""
     widths = [len(p["bits"]) for n, p in ports.items() if roles[n] in ("s_tdata", "m_tdata")]
     if widths[0] != widths[1] or widths[0] not in ELEMENTS:
         return (f"tdata of {top} has {widths[0]} and {widths[1]} bits: expected 8, 16, 32 or 64 in "
@@ -43,7 +44,8 @@ def camel(name):
 
 
 def setting(name):
-    """Returns the operation that sets a port, without its `set`, in snake_case."""
+    """Returns the name of a setting in snake_case: the name of its port without i_ or _i. The
+    operation that sets the port has `set` before this name."""
     return re.sub(r"^i_|_i$", "", name.lower())
 
 
@@ -55,8 +57,8 @@ class Core:
         self.type_name = camel(name)
         self.by_role = {r: n for n, r in roles.items()}
         self.width = len(ports[self.by_role["s_tdata"]]["bits"])
-        self.bits = 8 if {"s_tkeep", "m_tkeep"} & set(self.by_role) else self.width  # width of an
-                                                                                     # element
+        # bits; width of an element
+        self.bits = 8 if {"s_tkeep", "m_tkeep"} & set(self.by_role) else self.width
         self.most = BYTES * 8 // self.bits
         self.settings = [n for n in ports if roles[n] == "setting"]
         self.pins = [(pin_name(n, p), p) for n, p in ports.items() if not roles[n]]
@@ -67,7 +69,7 @@ class Core:
 
 
 def connection(core, name, port):
-    """Returns the connection of a port of the core."""
+    """Returns the expression that is connected to a port of the core."""
     role, bits = core.roles[name], len(port["bits"])
     if role == "setting":
         return f"{setting(name)}[{bits - 1}:0]" if bits > 1 else f"{setting(name)}[0]"
@@ -99,7 +101,7 @@ def module(core):
 
 
 def texts(name, top, params, ports, roles):
-    """Returns the files by their names: interface, module, test, mission."""
+    """Returns the files of the slot, by name: interface, module, test, mission."""
     core = Core(name, top, params, ports, roles)
     named = {"name": name, "core": core, "camel": camel, "setting": setting,
              "ice_type": "Ice_" + core.element.capitalize()}

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """foreign_bus: writes the files of a core with registers on a bus, for new_foreign.py.
 
-The slot has a Wishbone or an AXI4-Lite adapter. Other buses become Wishbone's by a few gates: a
-core without acknowledge answers at once, after some clocks, or in APB's access phase.
+The slot has a Wishbone or an AXI4-Lite adapter. A few gates convert other buses to Wishbone. A core
+without an acknowledge answers at once, after some clocks, or in APB's access phase.
 """
 import json
 
@@ -19,11 +19,11 @@ ADDRESSES = ("adr", "words", "bytes", "awaddr", "araddr")
 
 
 class Core:
-    """A third-party core. `roles`: role of each port. `latency`: clocks after which a core without
-    ack answers. `address`: "words", "bytes" or None. `macros`: result of macros_of."""
+    """A third-party core. `roles`: role of each port. `latency`: number of clocks after which a
+    core without ack answers. `address`: "words", "bytes" or None. `macros`: result of macros_of."""
 
     def __init__(self, name, top, bus, ports, roles, latency, params, clock, address, macros):
-        # One ack for reads and one for writes, or one for both.
+        # There may be one ack for reads and another for writes, or one for both.
         acks = [n for n in ports if roles[n] == "ack"]
         self.acks = {n: f"ack_{i}" for i, n in enumerate(acks)} if len(acks) > 1 else {}
         self.name, self.top, self.bus, self.ports = name, top, bus, ports
@@ -36,7 +36,7 @@ class Core:
         self.signals = AXI if bus == "axil" else WISHBONE
         self.has_strobes = bus == "avalon" or {"stb", "strobe"}.isdisjoint(self.by_role)
         self.adr_bits, self.word_bits, self.unit = 6, 0, ""
-        self.step = 1  # distance of the addresses of two words
+        self.step = 1  # difference between the addresses of two consecutive words
         for n, p in ports.items():
             if roles[n] in ADDRESSES:
                 self.count_words(roles[n], p, address)
@@ -47,8 +47,9 @@ class Core:
                 for n, p in self.pins]
 
     def count_words(self, role, port, address):
-        """Detects whether an address counts words or bytes, and the number of bits that count
-        words. On a narrow APB, the registers follow each other without gaps."""
+        """Detects whether an address counts words or bytes, and how many bits of the address select
+        a word. On an APB with 8 or 16 data bits, the addresses of registers are assumed to have no
+        gaps."""
         width, lsb = len(port["bits"]), port.get("offset", 0)
         step, reason = 4, "as you say"
         if address or role in ("words", "bytes"):
@@ -71,7 +72,8 @@ class Core:
             reason = f"it has {width} bits"
         unit, other = ("words", "bytes") if step == 1 else ("bytes", "words")
         if step == 1 and self.bus == "apb" and not address and role not in ("words", "bytes"):
-            unit, other = "bytes, each a register", "bytes"  # byte addresses of words of four bytes
+            # byte addresses, with a word of four bytes for each register
+            unit, other = "bytes, each a register", "bytes"
         self.unit = f"counts {unit}: {reason}" + (
             "" if reason == "as you say" else f"; if not, ADDRESS={other}")
         lsb = lsb if step > 1 else 0
@@ -85,14 +87,16 @@ class Core:
 
 
 def connection(core, role, port, interrupts):
-    """Returns the connection of a port with a role; appends the wire of an interrupt."""
+    """Returns the expression for a port with a role. For an interrupt, also appends its wire to
+    `interrupts`."""
     width = len(port["bits"])
     if role in LOW:
         return f"{{{width}{{!({connection(core, role[:-2], {'bits': [0]}, interrupts)})}}}}"
-    strobes = core.has_strobes  # without a select, read and write are strobes
+    strobes = core.has_strobes  # if the core has no select, its read and write are strobes
     own = {"strobe": "stb", "re": "stb && !we" if strobes else "!we",
            "we": "stb && we" if strobes else "we"}
-    if role in ("stb", "strobe", "re", "we"):  # one bit per byte, all driven
+    # such a port may have one bit per byte; all bits get the same value
+    if role in ("stb", "strobe", "re", "we"):
         to = own.get(role, role) if core.bus in ("own", "avalon") else role
         return f"{{{width}{{{to}}}}}" if width > 1 else to
     if role in ("interrupt", "interruptn"):
@@ -145,7 +149,7 @@ def answers(core):
 
 
 def connected(core, name, port, interrupts):
-    """Returns the connection of a port: a pin if it has no role."""
+    """Returns the expression for a port; a port without a role is connected to a pin."""
     role = core.roles[name]
     return connection(core, role, port, interrupts) if role else pin_name(name, port)
 
@@ -173,7 +177,7 @@ def module(core):
     takes_strobes = core.bus == "own" and core.has_strobes or {"stall", "valid", "strobe"} & set(
         core.by_role)
     options = ", .PIPELINED(1)" if takes_strobes or core.latency else ""
-    # the adapter aborts before bus_crossing does, after 250 chip clocks
+    # after 250 chip clocks, the adapter aborts an access, before bus_crossing does
     if core.clock:
         options += f", .TIMEOUT({max(2, 250 * core.clock // 100000000 - 6)})"
     kind = "bus_to_axi4lite" if core.bus == "axil" else "bus_to_wishbone"
@@ -184,7 +188,8 @@ def module(core):
 
 
 def description(core, words):
-    """Returns the register description (*.regs.json); `words`: names of words by address."""
+    """Returns the register description (*.regs.json). `words`: names of registers by word
+    address."""
     letters = (core.name.replace("_", "") + "x").upper()
     width = {} if core.data_width >= 32 else {"width": core.data_width}
     registers = [{"word": 3, "name": "PAGE", "access": "rw",
@@ -200,7 +205,7 @@ def description(core, words):
 
 
 def texts(core, words):
-    """Returns the files by name. `words`: names of words by address, or empty."""
+    """Returns the files by name. `words`: names of registers by word address; may be empty."""
     words = words or {a: f"REG{a}" for a in range(min(32, 1 << core.word_bits))}
     first = next(iter(words.values()))
     suite = "".join(w.capitalize() for w in core.name.split("_"))

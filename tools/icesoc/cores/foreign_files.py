@@ -13,7 +13,7 @@ from icesoc.util import templates
 
 KINDS = {".vhd": "vhdl", ".vhdl": "vhdl", ".v": "verilog", ".sv": "verilog",
          ".vh": "header", ".svh": "header", ".h": "header", ".inc": "header"}
-# Options of Verilator for third-party code, which accept any style.
+# Options that make Verilator accept third-party code of any style.
 FLAGS = ["-Wno-fatal", "-Wno-lint", "-Wno-style",
          *("-Wno-" + w for w in "TIMESCALEMOD SELRANGE COMBDLY INITIALDLY".split()),
          "-Werror-MODDUP", "--no-timing"]
@@ -50,8 +50,9 @@ def has_mark(file):
 
 
 def verilog_params(params):
-    """Returns parameters with values that Verilog reads, from NAME=value as a user types them: a
-    number such as -3 or 8'hFF, a number in C's form such as 0xFF, or a text with or without quotes.
+    """Returns parameters with values in Verilog's notation. Each is NAME=value as a user types it:
+    a number such as -3 or 8'hFF, a number in C's notation such as 0xFF, or a text with or without
+    quotes.
     """
     found = []
     for param in params:
@@ -86,7 +87,8 @@ def declared(files, kind):
 
 
 def only_once(modules, what_to_do):
-    """Returns the file of each module; a module in two files is an error."""
+    """Returns the file of each module. A module in two files is an error; its message ends with
+    `what_to_do`."""
     first = {}
     for name, file, line in modules:
         other, at = first.setdefault(name, (file, line))
@@ -97,12 +99,12 @@ def only_once(modules, what_to_do):
 
 def check_names(slot, top, files):
     """Checks that each module is in only one file, and that no module has the name of the slot or
-    of a module of this project, because names must be unique in a chip. Returns TOP with the
-    capitals of its declaration."""
+    of a module of this project, because names must be unique in a chip. Returns TOP, spelled as in
+    its declaration."""
     kind = "entity" if is_vhdl(files[0]) else "module"
     there = declared(files, kind)
     names = [n for n, *_ in there]
-    if kind == "entity":  # names in VHDL have no case; GHDL writes them as declared
+    if kind == "entity":  # names in VHDL are case-insensitive; GHDL writes them as declared
         top = next((n for n in names if n.lower() == top.lower()), top)
     if top not in names:
         fail(f"no {kind} '{top}' in FILES; found {', '.join(names) or 'none'}")
@@ -125,7 +127,8 @@ def check_names(slot, top, files):
 
 
 def packages_first(files):
-    """Returns the files with each SystemVerilog package before those that use it."""
+    """Returns the files in an order in which each SystemVerilog package comes before the files that
+    use it."""
     there = {name: f for name, f, _ in declared(files, "package")}
     ordered = []
 
@@ -142,8 +145,8 @@ def packages_first(files):
 
 
 def filled(file, defines):
-    """Returns the file's text after definitions of the macros `defines`, and with absolute paths in
-    $readmemh, because a simulation may run in any folder."""
+    """Returns the text of a file, with two changes. It begins with definitions of the macros
+    `defines`. Paths in $readmemh are absolute, because a simulation may run in any folder."""
     def path(m):
         there = os.path.join(os.path.dirname(file), m.group(1))
         return f'"{there}"' if os.path.isfile(there) else m.group()
@@ -155,9 +158,9 @@ def filled(file, defines):
 
 
 def macros_of(files):
-    """Returns the macros that are byte addresses of registers, as {name: value}. All macros that
-    are hexadecimal numbers with a size count, if their sizes are equal and their values are
-    different multiples of 4. Otherwise the result is empty."""
+    """Returns the macros that are byte addresses of registers, as {name: value}. These are all
+    macros whose value is a hexadecimal number with a size. The result is empty unless all sizes are
+    equal and all values are different multiples of 4."""
     found = re.findall(r"^\s*`define\s+(\w+)\s+(\d+)'h([0-9a-fA-F_]+)\s*(?://.*)?$",
                        "\n".join(map(text_of, files)), re.M)
     values = {n: int(digits, 16) for n, _, digits in found}
@@ -167,9 +170,10 @@ def macros_of(files):
 
 
 def names_of(top, files, core):
-    """Returns the names of the core's words by address. The names are the constants in the file
-    with `top` that are as wide as the address; without such constants, its macros. Two names such
-    as KEY0 and KEY7 that are 7 words apart also name the words between them."""
+    """Returns the names of the core's registers by word address. The names come from constants in
+    the file of module `top` whose width is the width of the address. If there are no such
+    constants, they come from the macros. If two names such as KEY0 and KEY7 are 7 words apart, the
+    words between them get the names KEY1 to KEY6."""
     text = next((t for t in map(text_of, files) if re.search(rf"^\s*module\s+{top}\b", t, re.M)),
                 "")
     text = re.sub(r"//.*", "", text)
@@ -202,16 +206,16 @@ def vector(width):
 
 
 def pin_name(name, port):
-    """Returns the name of a port in the form of platform pins: in lower case, with _i or _o at its
-    end."""
+    """Returns the name of a port in the form of the platform's pins: in lower case, with _i or _o
+    at its end."""
     base = "_".join(re.sub(r"^[io]_|_[io]$", "", part) for part in name.lower().split("."))
     return base + ("_i" if port["direction"] == "input" else "_o")
 
 
 def connected_ports(ports, connection):
     """Returns the connections of an instance, and wires for unused parts of its outputs. A packed
-    structure is connected as the concatenation of its members. `connection` returns the connection
-    of a port or a member by name."""
+    structure is connected as the concatenation of its members. The function `connection` takes the
+    name of a port or member and returns its connection."""
     parts, wires = {}, []
     for name, port in ports.items():
         whole, _, member = name.partition(".")
@@ -225,7 +229,7 @@ def connected_ports(ports, connection):
 
 
 def overrides(params):
-    """Returns the parameters of an instance."""
+    """Returns the parameters of an instance, as Verilog."""
     return f" #({', '.join('.{}({})'.format(*p.split('=', 1)) for p in params)})" if params else ""
 
 
@@ -236,11 +240,12 @@ def environment():
 
 
 def render(template, **values):
-    """Returns a file of a slot's folder."""
+    """Returns the text of a file for the folder of a slot."""
     return environment().get_template(template).render(**values)
 
 
-if __name__ == "__main__":  # foreign_files.py FILE...: the Verilog of all cores of a chip
+# usage: foreign_files.py FILE..., the Verilog files of all cores of a chip
+if __name__ == "__main__":
     only_once(declared([f for f in sys.argv[1:] if os.path.isfile(f)], "module"),
               "a chip has one of each: give one of them another name, in a copy, where it is "
               "used as well")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""foreign_ports: reads the ports of a third-party core by Yosys, Verilator and GHDL, for
-new_foreign.py, and prints what takes longer than ten seconds."""
+"""foreign_ports: reads the ports of a third-party core with Yosys, Verilator and GHDL, for
+new_foreign.py. It prints progress messages if a tool takes longer than ten seconds."""
 import json
 import os
 import re
@@ -29,8 +29,9 @@ HINTS = {r"[Ii]nclude file:? (?:`)?([^\s']+)": "FILES may also name headers: `in
 
 
 def run_tool(program, verb, top, command, is_needed=True, limit=None):
-    """Runs a tool that reads the core; a refusal is an error, with advice. Returns whether the tool
-    accepts the core if it is not needed, and None after `limit` seconds."""
+    """Runs a tool that reads the core. Returns True if the tool accepts the core, None if it has
+    not ended after `limit` seconds. If the tool rejects the core, returns False, or, with
+    `is_needed`, fails with the tool's message and advice."""
     begin = time.monotonic()
     with subprocess.Popen(list(map(str, command)), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                           text=True, errors="replace") as process:
@@ -61,8 +62,9 @@ def lint_of(top, files, defines):
 
 
 def ports_by_verilator(top, words, is_needed=True):
-    """Returns the ports of TOP as listed by Yosys; a packed structure has "members", the most
-    significant first: (name, bits). Returns None if it is not needed and Verilator fails."""
+    """Returns the ports of TOP in the form in which Yosys lists them. For a packed structure,
+    "members" lists (name, bits), most significant member first. Returns None if Verilator fails and
+    the result is not needed."""
     with tempfile.TemporaryDirectory() as work:
         file = os.path.join(work, "top.xml")
         if not run_tool("Verilator", "elaborate", top,
@@ -128,9 +130,9 @@ def check_interfaces(top, files):
 
 
 def without_initial(text):
-    """Returns Verilog without its `initial` blocks, which have no influence on ports: Yosys unrolls
-    their loops, and needs minutes for a memory of 64 KiB. Lines keep their numbers; a block that is
-    cut by `ifdef stays."""
+    """Returns Verilog without its `initial` blocks. They have no influence on ports, but Yosys
+    unrolls their loops, which takes minutes for a memory of 64 KiB. Line numbers do not change. A
+    block with an `ifdef inside is kept."""
     tokens = [m for m in re.finditer(
         r'//[^\n]*|/\*.*?\*/|`define(?:\\\r?\n|[^\n])*|"(?:\\.|[^"\\])*"|[`$]?[A-Za-z_][\w$]*'
         r"|\\\S+|\S", text, re.S) if not m[0].startswith(("//", "/*", "`define"))]
@@ -186,7 +188,7 @@ def without_initial(text):
 
 
 def copies_in(folder, files, change):
-    """Returns the files, with copies in a folder for those that `change` alters."""
+    """Returns the files. A file that `change` alters is replaced by a changed copy in `folder`."""
     copies = []
     for number, file in enumerate(files):
         text = text_of(file)
@@ -215,7 +217,7 @@ def read_module(top, files, headers=(), params=(), defines=(), is_whole=True, gh
                       library or "work", *(word for each in libraries for word in ("--in", each)),
                       *(word for p in params for word in ("--generic", p)),
                       ghdl, work, top, out, *files])
-            files, params = [out], ()  # converted with the generics
+            files, params = [out], ()  # GHDL has already applied the generics
         elif any(end_of(f) == ".sv" for f in files):
             check_interfaces(top, files)
         lint = [*lint_of(top, [*files, *headers], defines), *("-G" + p for p in params), *files]
@@ -235,12 +237,14 @@ def read_module(top, files, headers=(), params=(), defines=(), is_whole=True, gh
 
 
 def modules_by_yosys(top, files, headers, params, defines, is_whole, work):
-    """Returns the modules of a core as elaborated by Yosys. Returns None if Yosys does not accept
-    SystemVerilog, or has not finished in time: Verilator has to read the core then."""
+    """Returns the modules of a core as elaborated by Yosys. Returns None if Yosys rejects
+    SystemVerilog, or takes longer than the limit. Verilator must then read the core."""
     folders = ["-I" + d for d in folders_of([*files, *headers])] + ["-D" + d for d in defines]
     check = "hierarchy -check" if is_whole else "hierarchy"
     elaborate = [f"{check} -top {top}"]
-    if params:  # an instance of TOP: -chparam takes neither texts nor negative numbers
+    # an instance of TOP sets the parameters, because -chparam accepts neither texts nor negative
+    # numbers
+    if params:
         instance = os.path.join(work, "instance.v")
         Path(instance).write_text(f"module icesoc_top; {top}{overrides(params)} u (); endmodule")
         elaborate = [f"read_verilog -sv {instance}", f"{check} -top icesoc_top",
@@ -257,7 +261,8 @@ def modules_by_yosys(top, files, headers, params, defines, is_whole, work):
     is_system = any(end_of(f) == ".sv" for f in files)
     short, whole = (copies_in(work, files, change) for change in (without_initial, str))
     accepted = elaborates(short, short == whole and not is_system)
-    if accepted is False and short != whole:  # gives the message with lines of the files
+    # read again without cuts, so that the message shows lines of the original files
+    if accepted is False and short != whole:
         accepted = elaborates(whole, not is_system)
     if accepted is None:
         print(f"new-foreign: Yosys has not elaborated {top} in {LIMIT} s: Verilator reads its "
@@ -268,8 +273,8 @@ def modules_by_yosys(top, files, headers, params, defines, is_whole, work):
 
 
 def copies_for_verilator(top, files, headers, defines):
-    """Returns texts by the files that they replace, with macros, paths of data and, where Verilator
-    needs it, SystemVerilog's words as names."""
+    """Returns {file: text to use instead}. A text has macros, absolute paths of data and, if
+    Verilator needs it, keywords of SystemVerilog that are allowed as names."""
     lint = lint_of(top, [*files, *headers], defines)
     copies = {f: t for f in files if (t := filled(f, defines)) != text_of(f) or has_mark(f)}
     if run_tool("Verilator", "read", top, [*lint, "--lint-only", *files], False):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""foreign_roles: finds the role of each port of a third-party core, by its name and by PORTS."""
+"""foreign_roles: finds the role of each port of a third-party core, from the name of the port and
+from PORTS."""
 import fnmatch
 import re
 
@@ -22,8 +23,8 @@ WISHBONE = {"input": {"cyc": "cyc", "stb": "stb", "we": "we", "adr": "adr", "add
 # "apb": AMBA APB 2 to 5 (ARM IHI 0024), without parity.
 APB = {"psel": "stb", "penable": "enable", "pwrite": "we", "paddr": "adr", "pwdata": "wdata",
        "pstrb": "sel", "pwstrb": "sel", "prdata": "rdata", "pready": "ack", "pslverr": "err"}
-# Optional signals of a bus, set to constants for single transfers of whole words; outputs are left
-# open.
+# Optional signals of a bus. Inputs are set to constants for single transfers of whole words;
+# outputs are left open.
 TIED = {"axil": {**dict.fromkeys("awid awlen awlock awcache awqos awregion awuser wid wuser arid "
                                  "arlen arlock arcache arqos arregion aruser".split(), "low"),
                  "awakeup": "high", "wlast": "high", "awburst": "1", "arburst": "1",
@@ -34,8 +35,7 @@ TIED = {"axil": {**dict.fromkeys("awid awlen awlock awcache awqos awregion awuse
         "wishbone": dict.fromkeys(("cti", "bte", "lock"), "low"),
         "avalon": {"burstcount": "1", "debugaccess": "low", "lock": "low", "response": "open",
                    "writeresponsevalid": "open"}}
-# "memory": chip select, write enable, address of a word, data; read data is available in the same
-# clock.
+# "memory": chip select, write enable, word address, data. Read data is valid in the same clock.
 MEMORY = {"cs": "stb", "ce": "stb", "we": "we", "address": "adr", "addr": "adr",
           "write_data": "wdata", "wdata": "wdata",
           "din": "wdata", "read_data": "rdata", "rdata": "rdata", "dout": "rdata"}
@@ -43,8 +43,8 @@ MEMORY = {"cs": "stb", "ce": "stb", "we": "we", "address": "adr", "addr": "adr",
 AVALON = {"chipselect": "stb", "read": "re", "write": "we", "address": "adr", "addr": "adr",
           "writedata": "wdata", "byteenable": "sel", "readdata": "rdata", "waitrequest": "stall",
           "readdatavalid": "valid"}
-# Words for ROLE=port. select is high until the answer, strobe for one clock; read and write without
-# either are both.
+# Words for ROLE=port. A select is high until the answer, a strobe is high for one clock. A core
+# without select and strobe is selected by read and write.
 ROLES = {"select": "stb", "strobe": "strobe", "read": "re", "write": "we", "address": "adr",
          "enables": "sel",
          "wdata": "wdata", "rdata": "rdata", "ack": "ack", "error": "err", "clock": "clock",
@@ -138,9 +138,9 @@ def roles_of(top, bus, ports, given):
 
 
 def take_given(top, bus, ports, roles, given):
-    """Changes the roles of the ports that the user names. Returns the clocks of ack=CLOCKS, or
-    None."""
-    # Names of the bus also count, unless a role has the same name.
+    """Changes the roles of the ports that the user names. Returns the number of clocks in
+    ack=CLOCKS, or None."""
+    # Names of the bus's signals are also accepted, unless a role has the same name.
     words = {**{r: r for r in NEEDED[bus] + {"axil": AXI, "axis": foreign_axis.ROLES}.get(bus, [])},
              **ROLES}
     latency, named = None, set()
@@ -152,7 +152,7 @@ def take_given(top, bus, ports, roles, given):
             latency = int(port)
             continue
         is_output = words[what] in OUTPUTS or is_answer(words[what])
-        if "*" in port:  # the ports of its direction that would be pins
+        if "*" in port:  # all matching ports of this direction that would otherwise be pins
             found = [n for n, p in ports.items() if not roles[n] and fnmatch.fnmatch(n, port)
                      and n not in named and is_output == (p["direction"] == "output")]
             roles.update(dict.fromkeys(found, words[what]))

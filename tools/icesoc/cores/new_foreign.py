@@ -7,13 +7,13 @@
 
 Reads the ports of the module or entity TOP, and writes these files into FOLDER, which must not
 exist: NAME.v, which connects TOP to the slot; a description of the registers, with the names that
-TOP has for their addresses; a test; ground.py, which calls the core in a mission; core.toml. Ports
-that are neither bus, clock, reset nor interrupt become pins. A core with AXI-Streams (axis) has an
-operation instead of registers: foreign_axis.py.
+TOP uses for their addresses; a test; ground.py, which calls the core in a mission; core.toml. Ports
+that do not belong to the bus and are not a clock, reset or interrupt become pins. A core with
+AXI-Streams (axis) has an operation instead of registers: foreign_axis.py.
 
-CLOCK     the core has a separate clock with at most this frequency
-GHDL      program that reads VHDL (ghdl)
-LIBRARY   VHDL library of the files; util=FILE puts one file, or the files of a pattern, into
+CLOCK     the core has a separate clock with at most this frequency GHDL      program that reads
+          VHDL (ghdl) LIBRARY   VHDL library of the files; util=FILE puts one file, or the files of
+          a pattern, into
           another library
 ADDRESS   unit of the core's address: words or bytes
 PARAM     parameter or generic of TOP
@@ -41,13 +41,13 @@ USAGE = ("usage: make new-foreign NAME=my_uart TOP=module "
          "BUS=wishbone|axil|apb|avalon|memory|own|axis FILES='a.v b.v' [PORTS='write=we ...']")
 
 
-# Names that may belong to an interrupt.
+# Names of outputs that may be interrupts.
 ASKED = re.compile("irq|(?<!po)(?<!pr)(?<!h)int(r|errupt)?s?(_?n)?(_?o)?$|(^|_)int(_|$)|ev(en)?t|"
                    "alarm|attention", re.I)
 
 
 def check_pairs(option, pairs):
-    """Ends the program if a parameter or macro has no valid name, or occurs twice."""
+    """Ends the program if the name of a parameter or macro is invalid or occurs twice."""
     names = [pair.partition("=")[0] for pair in pairs]
     for name in names:
         if not re.fullmatch(r"[A-Za-z_]\w*", name, re.A):
@@ -133,8 +133,8 @@ class Request:
 
 
 def read_core(asked):
-    """Returns TOP's ports, the parameters of its instance, and texts in place of files that
-    Verilator does not take."""
+    """Returns TOP's ports, the parameters of its instance, and {file: text} for files that
+    Verilator does not accept unchanged."""
     ports, is_synthesised = read_module(asked.top, asked.files, asked.headers, asked.params,
                                         asked.defines, ghdl=asked.ghdl, library=asked.library,
                                         libraries=asked.libraries)
@@ -153,8 +153,8 @@ def read_core(asked):
 
 
 def slot_texts(asked, ports, params):
-    """Returns the files of the slot by name, keys of core.toml for its registers or interface,
-    the meaning of each port, and the last line of the report."""
+    """Returns the files of the slot by name, the keys that core.toml has for the registers or the
+    interface, the meaning of each port, and the last line of the report."""
     roles, latency = roles_of(asked.top, asked.bus, ports, asked.ports)
     if wide := [n for n, p in ports.items() if not roles[n] and len(p["bits"]) > 32]:
         left_out = " ".join(f"{'open' if ports[n]['direction'] == 'output' else 'low'}={n}"
@@ -185,13 +185,14 @@ def slot_texts(asked, ports, params):
 
 
 def from_here(text, folder):
-    """Makes names of files near the core's folder relative, because a repository may move."""
+    """Replaces absolute names of files near the core's folder by relative ones, because a
+    repository may be moved."""
     room = re.escape(os.path.dirname(os.path.abspath(folder)))
     return re.sub(rf'(?<=["I=]){room}(?=/)', "@FOLDER@/..", text)
 
 
 def toml(value):
-    """Returns a value as TOML writes it."""
+    """Returns a value in TOML's notation."""
     if isinstance(value, list):
         return "[" + "".join(f"\n    {toml(v)}," for v in value) + ("\n]" if value else "]")
     if isinstance(value, dict):
@@ -200,7 +201,8 @@ def toml(value):
 
 
 def manifest_of(asked, interface, pins, copies):
-    """Returns core.toml; `copies` replace files."""
+    """Returns the text of core.toml. `copies`: files that are replaced by a copy in the slot's
+    folder."""
     facts = dict(interface)
     if asked.clock:
         facts["clock_hz"] = int(asked.clock)
@@ -235,7 +237,8 @@ def main(words):
     asked.take_files()
     ports, params, copied = read_core(asked)
     texts, interface, said, last = slot_texts(asked, ports, params)
-    copies = {f: "copy_" + os.path.basename(f) for f in copied}  # next to the slot
+    # the copies are in the slot's folder
+    copies = {f: "copy_" + os.path.basename(f) for f in copied}
     texts.update({copies[f]: text for f, text in copied.items()})
     pins = interface.pop("pins", [])
     texts["core.toml"] = from_here(manifest_of(asked, interface, pins, copies), asked.folder)

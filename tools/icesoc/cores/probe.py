@@ -20,7 +20,8 @@ import time
 from icesoc import TREE
 
 RING_BYTES, READ_BYTES = 1 << 18, 4096  # probe.regs.json, probe_servant.h
-Change = collections.namedtuple("Change", "clock gap value")  # gap: changes before it were lost
+# gap: True if changes before this one were lost
+Change = collections.namedtuple("Change", "clock gap value")
 
 
 class Failed(Exception):
@@ -51,7 +52,7 @@ class Signals:
                          (state.names & 0xFFFFFFFF, self.names))
 
     def trigger(self, text):
-        """mask and value of "u_fir.sent=1,u_fir.count=0x10"."""
+        """Returns the mask and the value for a text such as "u_fir.sent=1,u_fir.count=0x10"."""
         mask = wanted = 0
         for word in text.split(",") if text else ():
             name, _, number = word.partition("=")
@@ -89,8 +90,8 @@ def signed(value):
 
 
 def read(probe, state, before, after):
-    """Returns the `before` changes before the trigger's change and the `after` changes after it.
-    Without a trigger, the newest change takes the place of the trigger's."""
+    """Returns the change that triggered, up to `before` changes before it and up to `after` changes
+    after it. If the trigger has not occurred, the newest change is used in its place."""
     size = 8 * state.words
     ring = RING_BYTES // size
     count = ring if state.wrapped else state.next
@@ -105,7 +106,7 @@ def read(probe, state, before, after):
     changes, clock = [], None
     for i in range(0, len(data), size):
         entry = int.from_bytes(data[i:i + size], "little")
-        low = entry - 2 & 0xFFFFFFFF  # an entry is stored two clocks after its clock
+        low = entry - 2 & 0xFFFFFFFF  # the stored time is two clocks after the change
         clock = low if clock is None else clock + (low - clock & 0xFFFFFFFF)
         changes.append(Change(clock, entry >> 32 & 1, entry >> 33))
     return changes
@@ -151,7 +152,7 @@ def write_vcd(path, signals, changes, clk_hz):
 
 
 def save(path, signals, probe, state, before, after):
-    """Writes the capture into a file; returns the messages about it."""
+    """Writes the capture into a file; returns messages about the capture."""
     changes = read(probe, state, before, after)
     if not changes:
         raise Failed("the probe has no capture")
@@ -218,7 +219,7 @@ def main():
     import Ice
     import plugged
     Ice.loadSlice("", [str(TREE / "ip/probe/Probe.ice")])
-    import Probes  # made by loadSlice
+    import Probes  # Ice.loadSlice creates this module
     communicator = None
     try:
         signals = Signals(args.map, args.probe)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""replay: drives a block in Verilator with a probe's capture of its inputs, and compares its
-outputs, clock by clock.
+"""replay: drives a block in Verilator with a probe's capture of the block's inputs, and compares
+the block's outputs with the capture, clock by clock.
 
     replay.py capture.vcd --scope u_fir.u_filter --top fir_filter build/main/gen/fir_filter.v
 
-The capture must contain all inputs of the block except clock and reset, and outputs to compare. The
-block begins in reset, because its state before the capture is unknown. Writes replay.v, and
-replay.fst with all inner signals of the block, into --out.
+The capture must contain all inputs of the block except clock and reset, and the outputs to compare.
+The block begins in reset, because its state before the capture is unknown. Writes replay.v, and
+replay.fst with all internal signals of the block, into --out.
 """
 
 import argparse
@@ -65,8 +65,8 @@ def fail(text):
 
 
 def read_vcd(path):
-    """Returns the header of a VCD file; names (below soc) and widths of signals by key; and for
-    each time its changes, {key: bits}."""
+    """Reads a VCD file. Returns its header; the names (below soc) and widths of signals by key;
+    and, for each time, the changes {key: bits}."""
     try:
         head, variables, changes = vcd.read(Path(path).read_text())
     except (OSError, ValueError) as e:
@@ -85,8 +85,8 @@ def read_vcd(path):
 
 
 def captured(path):
-    """Returns the widths of a probe's signals by their names; and (clock, {name: bits}) of each
-    moment."""
+    """Returns the widths of a probe's signals by name, and for each time of a change (clock, {name:
+    bits})."""
     head, signals, moments = read_vcd(path)
     hz = re.search(r"clk_hz (\d+)", head)
     if not hz or not moments:
@@ -145,7 +145,7 @@ def block(args, widths):
 
 
 def write_bench(args, widths, moments):
-    """Writes replay.v, and the rows of signals that it plays back."""
+    """Writes replay.v, and the values of the signals that it replays."""
     wiring, inputs, outputs = block(args, widths)
     bits, shown = 0, []
     for name, width in outputs[::-1] + inputs[::-1]:
@@ -172,11 +172,11 @@ def write_bench(args, widths, moments):
 
 
 def simulate(args):
-    """Runs the bench; returns its lines about differences."""
+    """Runs the bench. Returns the output lines that report differences."""
     files = [os.path.abspath(f) for f in args.files]
     folders = [word for f in args.I + [os.path.dirname(f) for f in files]
                for word in ("-y", os.path.abspath(f), "-I" + os.path.abspath(f))]
-    # set in Verilator's makefile
+    # Verilator's makefile uses OBJCACHE
     environment = {"OBJCACHE": shutil.which("ccache") or "", **os.environ}
     for command in (["verilator", "--binary", "--timing", "--trace-fst", "-Wno-fatal", "-Wno-lint",
                      "--top-module", "replay",

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Draws mutants of each proven module with Yosys' `mutate`, and expects the module's proof or its
-tests to fail (docs/regression.md#drawn-mutants).
+"""drawn: draws mutants of each proven module with Yosys' `mutate`, and expects the module's proof
+or its tests to fail (docs/regression.md#drawn-mutants).
 
-The score of a module is the share of caught mutants over all its proofs; mutants that are not bugs
-do not count. Leaves build/mutants/drawn.json. Exit status 1: the score of a module is too low.
+The score of a module is the share of mutants that its proofs and tests detect; mutants that are not
+bugs do not count. Writes build/mutants/drawn.json. Exit status 1: the score of a module is too low.
 """
 import argparse, collections, functools, json, os, pathlib, re, shutil, subprocess, sys, time
 from icesoc import TREE
@@ -18,7 +18,8 @@ TESTS = {
     "axis_filter": "test_ip_foreign_axis", "modem_api_": "test_modem_api",
     "modem_": "test_modem test_modem_api", "camera_|async_fifo": "test_ip_camera",
     "fsmc_": "test_fsmc_bridge test_fsmc_modes", "cdc_": "test_fsmc_bridge"}
-SECONDS = "20"  # s of CPU time for each step of a mutant's proof; a longer proof gets more
+# s of CPU time for each step of a mutant's proof; longer if the proof itself takes longer
+SECONDS = "20"
 DRAW = """setattr -set keep 1 w:f_*
 opt_clean
 write_rtlil plain.il
@@ -61,8 +62,8 @@ class Proof:
         self.work = out / self.name
 
     def run(self, folder, mutant, seconds=None):
-        """Runs prove.sh with additional commands of Yosys between reading and proving. Returns its
-        output and exit status."""
+        """Runs prove.sh; the Yosys commands `mutant` run after the files are read and before the
+        proof. Returns exit status and output of prove.sh."""
         limit = {"PROVE_SECONDS": seconds} if seconds else {}
         ran = subprocess.run(
             [self.script, self.module, self.depth, self.source, folder, *self.parameters],
@@ -81,9 +82,9 @@ class Proof:
         return (self.work / "list").read_text().splitlines()[:number]
 
     def lines_of_proof(self):
-        """Returns the lines of the module's proof in the form of Yosys' command select: the lines
-        of the module's file after `ifdef FORMAL or RULES, and all lines of the files included
-        there."""
+        """Returns the lines of the module's proof in the notation of Yosys' command select. These
+        are all lines of the module's file after `ifdef FORMAL or RULES, and all lines of the proof
+        files (*_proof.vh) that it includes."""
         lines = next(self.source.glob(f"**/{self.module}.v")).read_text().splitlines()
         first = next((n for n, line in enumerate(lines, 1)
                       if re.fullmatch("`(ifdef|elsif) (FORMAL|RULES)", line)), len(lines))
@@ -93,8 +94,8 @@ class Proof:
     def differs(self, folder, mutant):
         """Returns whether the mutant's outputs differ from the module's for some input that the
         proof's assumptions allow."""
-        # If parts are cut off, each named wire counts as an output, because those parts may read
-        # it.
+        # If the proof cuts off parts of the module, each named wire counts as an output, because
+        # the missing parts may read the wire.
         seen = "expose w:* w:$* %d\n" if any("delete" in text for text in self.parameters) else ""
         # commands of prove.sh that map to flip-flops and gates
         to_state = (self.work / "state.ys").read_text()
@@ -200,7 +201,7 @@ def by_tests(rows, copy, pool):
 
 
 def progress(results, number):
-    """Returns the results, and prints the progress after each tenth."""
+    """Returns the results. Prints the progress each time another tenth is done."""
     start, rows = time.monotonic(), []
     for row in results:
         rows.append(row)

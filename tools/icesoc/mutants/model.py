@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Replaces Verilator when tests are run with drawn mutants. A model contains all mutants of its
-modules, and the number MUTANT in the environment selects one when a test begins. Without MUTANT the
-module is unchanged.
+modules. When a test begins, the environment variable MUTANT selects one by number. Without MUTANT
+the module is unchanged.
 
 A mutant was drawn in the module as the proof reads it. In a model, its cell is found by kind,
 source line, and position among the cells with the same kind and line. If the mutated bit does not
-exist there, the last bit is used. DRAWN is the list that drawn.py writes.
+exist there, the last bit is used. The environment variable DRAWN names the list that drawn.py
+writes.
 """
 import collections, json, os, pathlib, re, subprocess, sys, tempfile
 
@@ -42,8 +43,8 @@ def module_of(name):
 
 
 def cells(path):
-    """Returns the cells of a design in Yosys' JSON as {module: {kind and source: [(cell, width of
-    each port)]}}, in the order of their creation."""
+    """Returns the cells of a design in Yosys' JSON as {module: {kind and source line: [(cell, width
+    of each port)]}}. The cells are in the order of their creation."""
     def made(item):
         return int((re.findall(r"\$(\d+)$", item[0]) or [0])[0])
 
@@ -61,7 +62,8 @@ def cells(path):
 
 
 def place(design, module, cell):
-    """Returns kind and source of a cell, and its index among such cells."""
+    """Returns the kind and source line of a cell, and the cell's index among the cells with the
+    same kind and line."""
     for alike, names in design[module].items():
         for number, (name, _) in enumerate(names):
             if name == cell:
@@ -76,8 +78,8 @@ def yosys(folder, script):
 
 
 def mutated(arguments, folder):
-    """Writes the file of a model's modules with all their mutants; returns None if there are
-    none."""
+    """Writes a file with a model's modules, including all their mutants. Returns the path of the
+    file, or None if the modules have no mutants."""
     def of(flag):
         return [a.removeprefix(flag) for a in arguments if a.startswith(flag)]
 

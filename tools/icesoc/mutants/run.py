@@ -104,7 +104,8 @@ def environment(copy):
 
 
 def restore(file):
-    """Restores a file, with a time after the build with the bug."""
+    """Restores a file. The file's time is the current time, so that the next build compiles it
+    again."""
     os.replace(f"{file}.orig", file)
     os.utime(file)
 
@@ -135,7 +136,7 @@ def attempt(test, copy, log):
                 break
         else:
             return "passes"
-    # A proof counts as failed only if a property fails, not if a file cannot be read.
+    # A failed proof counts only if a property failed, not if a file could not be read.
     said = re.search("an assertion fails|not proven|not reached", log.read_text(errors="replace"))
     return "does not build" if test.startswith("formal.") and not said else otherwise
 
@@ -198,8 +199,8 @@ def try_all(chosen, jobs):
         copies.put(WORK / str(number))
 
     def of_program(group):
-        """Tries the bugs of one program, or of one proof, in one copy, so that little is built
-        again."""
+        """Tries all bugs of one program, or of one proof, in the same copy, so that little has to
+        be built again."""
         copy = copies.get()
         try:
             for test in sorted({bug.test for bug in group}):

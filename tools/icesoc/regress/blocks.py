@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""blocks: collects the known facts of each block (one row per folder of the tree): the tests and
-proofs of this run, the lines covered, the mutants caught, the LUTs, and the last commit without a
-failure."""
+"""blocks: collects the known facts of each block; a block is a folder of the tree. The facts are
+the tests and proofs of this run, the lines covered, the mutants caught, the LUTs, and the last
+commit without a failure."""
 import collections
 import pathlib
 import re
@@ -23,8 +23,9 @@ class Blocks:
         return "/".join(path.split("/")[:-1][:2])
 
     def of_module(self, name):
-        """Returns the block of a module. If `name` is not a module: the block of a module with
-        which it begins, or of a module that begins with its first word; "" if not found."""
+        """Returns the block of the module `name`. If there is no such module, uses a module whose
+        name is the beginning of `name`, or else a module that begins with the first word of `name`.
+        Returns "" if there is none."""
         first = name.partition("_")[0] + "_"
         while name and name not in self.modules:
             name = name.rpartition("_")[0]
@@ -42,8 +43,8 @@ class Blocks:
 
 
 def last_green(history, block_of):
-    """Returns {block: newest commit at which one of its tests ran and none of its tests was
-    failing}."""
+    """Returns {block: commit}: the newest commit at which a test of the block passed and no test of
+    the block was failing."""
     failing, green = collections.defaultdict(set), {}
     for run in history.runs:
         ran = collections.defaultdict(set)

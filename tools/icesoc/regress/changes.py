@@ -11,8 +11,9 @@ SHOWN = 6  # files
 
 
 class Changes:
-    """Records the state of the tree, with uncommitted changes, as a tree object of git. Its objects
-    are stored in <out>/tree; the repository is not changed."""
+    """The state of the tree, including uncommitted changes, stored as a tree object of git, and
+    comparisons with earlier states. The object is stored in <out>/tree; the repository is not
+    changed."""
 
     def __init__(self, source, build, out):
         self.source, self.build, self.environment, self.tree = source, build, {}, ""
@@ -42,9 +43,9 @@ class Changes:
 
     @functools.cache
     def differing(self, since):
-        """Returns {path: (first different line, number of different lines)} since a tree or a
-        commit; None if git no longer has it. Uncommitted files are listed first, sources before
-        others."""
+        """Returns {path: (first different line, number of different lines)} for the changes since a
+        tree or a commit; None if git no longer has it. Uncommitted files are listed first, and
+        sources before other files."""
         status, text = self.git("diff", "--unified=0", "--no-color", "--no-ext-diff",
                                 "--no-renames", "--src-prefix=a/", "--dst-prefix=b/", since,
                                 self.tree)
@@ -68,11 +69,12 @@ class Changes:
         return Graph(self.source, self.build)
 
     def forget_graph(self):
-        """Discards the cached file graph of ninja, after a build has changed it."""
+        """Discards the cached file graph of ninja; called after a build, which changes this
+        graph."""
         self.__dict__.pop("graph", None)
 
     def of_test(self, test, since):
-        """Returns the differences since a tree or a commit in the files of a test."""
+        """Returns the changes since a tree or a commit, limited to the files that a test uses."""
         folders = test.reads()
         inputs = set()
         if test.unbuilt or test.is_program(self.build.resolve()):
@@ -83,15 +85,16 @@ class Changes:
                 if path in inputs or path.startswith(tuple(f + "/" for f in folders))}
 
     def touched(self, test, last_pass):
-        """Returns whether files of a test have changed since it last passed or, if it has never
-        passed here, since the commit."""
+        """Returns whether files that a test uses have changed since the test last passed. If it has
+        never passed here, compares with the last commit. Returns True if the changes are
+        unknown."""
         since = last_pass[1].get("tree") if last_pass else "HEAD"
         return not self.tree or not since or self.differing(since) is None or \
             bool(self.of_test(test, since))
 
     def since(self, last_pass, test, seed):
-        """Returns text such as "changed since it passed at 632b860abc: ip/fir/fir.v:12 (2 lines),
-        ...", or that nothing has changed; "" if neither is known."""
+        """Returns a text such as "changed since it passed at 632b860abc: ip/fir/fir.v:12 (2 lines),
+        ...", or a text that reports no changes. Returns "" if the changes are unknown."""
         if not self.tree:
             return ""
         end, noted = last_pass or (None, dict[str, str]())

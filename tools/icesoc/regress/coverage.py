@@ -33,8 +33,8 @@ class Share:
 
 class File:
     def __init__(self):
-        self.shares = collections.defaultdict(Share)  # share covered by kind: lines, toggles,
-                                                      # points
+        # covered share of the lines, toggles and points, by kind
+        self.shares = collections.defaultdict(Share)
         self.counts = collections.Counter()  # counts of the named cover points: `name: cover
                                              # property` in the RTL
         self.missed = []  # signals that never toggled, lines that never ran, points that were never
@@ -66,7 +66,7 @@ class Explanations:
         return ""
 
     def stale(self):
-        """Returns the rules that explain nothing: their points are covered or were removed."""
+        """Returns the rules without effect: all their points are covered, or no longer exist."""
         return [f"{below}: {points.pattern} ({'reached' if seen[True] else 'no such point'})"
                 for below, points, _, seen in self.rules if not seen[False]]
 

@@ -41,8 +41,8 @@ def write_finished(folder, results, ends, total):
 def run(words, results):
     """Runs CTest. Returns its exit status, and whether it was stopped."""
     ends, total = {}, 0
-    # In a process group of its own: Ctrl-C would reach the tests, which CTest then reports as
-    # failed.
+    # CTest gets a separate process group. Otherwise Ctrl-C would reach the tests, and CTest would
+    # report them as failed.
     program = start(["ctest", "--test-output-size-passed", "100000", *words], process_group=0,
                     stdout=subprocess.PIPE, text=True, errors="replace")
     try:
@@ -55,13 +55,14 @@ def run(words, results):
         if results.exists() or status < 128:
             return status, False
     except Interrupted as stop:
-        time.sleep(0.1)  # until CTest has logged the test that has just ended
+        time.sleep(0.1)  # gives CTest time to log the test that has just ended
         adopt_orphans()
         program.kill()
         program.wait()
         end_descendants()
         status = stop.status
-    # CTest writes its JUnit at its end; it was stopped, by us or by a signal.
+    # CTest was stopped, by us or by a signal, before it wrote its JUnit file, which it does only
+    # when it ends.
     write_finished(words[words.index("--test-dir") + 1], results, ends, total)
     return status, True
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""failures: collects for each failed test the reason, the log, a command that repeats it, the tests
-that fail alike, and a waveform."""
+"""failures: collects for each failed test the reason, the log, a command that repeats the test, the
+tests that fail with the same reason, and a waveform."""
 import dataclasses
 import os
 import pathlib
@@ -10,8 +10,8 @@ import shutil
 from icesoc.regress.junit import Result
 from icesoc.util.files import write
 
-# Lines printed by a runner, or at the end of a flight. Names, times and counts in them differ for
-# the same cause.
+# Lines that a test runner prints, or that end the log of a flight. Names, times and counts in them
+# may differ although the cause is the same.
 RUNNERS = re.compile(
     r"^\[|^at clock cycle|tests? (ran|FAILED|PASSED)|^\s*\d+ FAILED|note:|trace: |Running main|"
     r"^The mission failed|^To (write|debug) |^icesoc-sim: Cortex-M3: |"
@@ -27,7 +27,7 @@ OF_FILE = re.compile(
 # A message of a test about a value, or an exception of Python or Ice
 OF_VALUE = re.compile(r"\berror\b|(?<!as )\bexpected\b|\bdiffers?\b|"
                       r"^(\S+: )*(\w+\.)*(::\w+)*\w*(Error|Exception):|^what\(\): ", re.I)
-# GoogleTest's lines about two unequal values, and about a condition
+# GoogleTest's lines about two unequal values, and GoogleTest's lines about a condition
 EQUALITY = re.compile(r"(?m)^Expected equality of these values:"
                       r"\n +(.*)(?:\n +Which is: (.*))?\n +(.*)(?:\n +Which is: (.*))?$")
 CONDITION = re.compile(r"(?m)^Value of: (.*)\n +Actual: (.*)\nExpected: (.*)$")
@@ -37,19 +37,21 @@ CONDITION = re.compile(r"(?m)^Value of: (.*)\n +Actual: (.*)\nExpected: (.*)$")
 class Failure:
     result: Result
     reason: str  # line of the log with the error
-    bucket: str = ""  # the reason without its numbers; failures with the same bucket have the same
-                      # cause
+    # the reason without its numbers; failures with the same bucket probably have the same cause
+    bucket: str = ""
     repeat: str = ""  # one command
-    place: str = ""  # place from GoogleTest, such as "tests/sw/link/link_test.cpp:185", or ""
+    # place of the failure as printed by GoogleTest, such as "tests/sw/link/link_test.cpp:185", or
+    # ""
+    place: str = ""
     changed: str = ""  # text about files that have changed since the test passed, or ""
     log: str = ""  # file
     wave: str = ""  # path of an FST or VCD file, or ""
-    about: str = ""  # text that names the relevant signals: the assertion, or the reason
+    about: str = ""  # text that names the relevant signals: the assertion of a proof, or the reason
     scope: str = ""  # instance to look at first, such as "u_window.u_wrapper", or ""
-    own_assertion: bool = False  # for a proof: the assertion that fails is in the proven module
-                                 # itself
+    # for a proof: True if the failed assertion is in the proven module itself
+    own_assertion: bool = False
     save: str = ""  # path of the GTKWave save file, or ""
-    clock: int = 0  # clock of the failure in the waveform; 0: its end
+    clock: int = 0  # clock of the failure in the waveform; 0: the end of the waveform
 
     def entry(self):
         """Returns the message and the text of the failure for JUnit."""
@@ -60,7 +62,8 @@ class Failure:
 
 def comparison(match):
     """Returns the difference in a GoogleTest message, such as "status is 5, not ICE_OK, which is
-    0". Of two lists it is the first different element: "list differs at [2]: expected 5, got 4"."""
+    0". For two lists, returns the first different element: "list differs at [2]: expected 5, got
+    4"."""
     a, of_a, b, of_b = match.groups()
     if of_a and of_b and of_a[0] == of_b[0] == "{":
         got, expected = (text.strip("{ }").split(", ") for text in (of_a, of_b))
@@ -75,7 +78,8 @@ def comparison(match):
 def reason_of(log):
     """Returns the reason in a test's log: GoogleTest's lines after the first "Failure"; otherwise a
     compiler's first message about a file, the first line about an error, or the last line. If an
-    exception ends in a colon, the next line is included; of a diff, the first two lines."""
+    exception ends in a colon, the next line is included. If the line belongs to a diff, its next
+    line is included."""
     last, of_file, of_value, failure = "", "", "", None
     log = CONDITION.sub(r"\1 is \2, not \3", EQUALITY.sub(comparison, log))
     log = re.sub(r"((?:Error|Exception)\b.*:)\n+ *(?=\S)", r"\1 ", log)
@@ -115,7 +119,7 @@ def find_assertion(failure):
     first, last = int(at[3]), int(at[5])
     path = pathlib.Path(at[1].lstrip("|"))
     lines = path.read_text().splitlines()[first - 1:last] if path.exists() else []
-    if len(lines) > 1:  # the location by Yosys begins at the end of the previous statement
+    if len(lines) > 1:  # the location that Yosys prints begins at the end of the previous statement
         lines[0] = lines[0][int(at[4]):]
     failure.about = " ".join(filter(None, map(str.strip, lines)))
     asserts = next((i for i, line in enumerate(lines) if "assert" in line), max(0, len(lines) - 1))

@@ -10,8 +10,9 @@ KEPT_RUNS = 300
 
 
 class History:
-    """The stored runs. A run's `ends` are [name, how, seconds, print, seed] for each test and seed,
-    failures last; how: "p" (passed), "f" (failed) or "s" (skipped)."""
+    """The stored runs. The list `ends` of a run has an entry [name, how, seconds, print, seed] for
+    each test and seed, failures last. `how` is "p" (passed), "f" (failed) or "s" (skipped); `print`
+    is the fingerprint of the test."""
 
     def __init__(self, path, costs):
         self.path, self.runs, self.damaged = path, [], 0
@@ -43,8 +44,8 @@ class History:
         return self.ends[name][-1][0][0] if self.ends[name] else ""
 
     def now(self, test, seed=None):
-        """Returns how a test ended last with these sources (and with this seed). If there is no
-        such run, returns "f" if it failed last."""
+        """Returns how the last run with the current sources (and with this seed) of a test ended.
+        If there is no such run, returns "f" if the test failed in its last run."""
         return next((end[0] for end, _ in reversed(self.ends[test.name])
                      if end[2] == test.print and seed in (None, end[3])),
                     "f" if self.last(test.name) == "f" else "")
@@ -74,9 +75,9 @@ class History:
         return names
 
     def failing(self, tests):
-        """The seeds with which these tests have failed and have not passed since, nor before with
-        these sources: {(test, seed): {"test", "seed", "since" (seconds, Unix), "commit", "times"
-        (how often it failed)}}."""
+        """Returns the seeds with which these tests have failed, as {(test, seed): {"test", "seed",
+        "since" (seconds, Unix), "commit", "times" (how often it failed)}}. A seed is left out if
+        the test has passed with it since, or passed with it earlier with the current sources."""
         known, found = {test.name: test for test in tests}, {}
         for run in self.runs:
             for name, how, _, _, seed in run["ends"]:

@@ -38,8 +38,8 @@ def read_junit(path):
 
 
 def ended(line):
-    """Returns (name, outcome, seconds, number of tests of the run) of the line that CTest prints
-    when a test has ended, such as (..., "***Skipped", ...); None for any other line."""
+    """Parses a line that CTest prints when a test has ended. Returns (name, outcome, seconds,
+    number of tests of the run), with an outcome such as "***Skipped"; None for any other line."""
     found = re.match(r" *\d+/(\d+) Test +#\d+: (.*?) \.+ *(\S.*?) +([0-9.]+) sec", line)
     return found and (found[2], found[3], float(found[4]), int(found[1]))
 
@@ -74,9 +74,10 @@ def kind_of(result):
 
 
 def write_junit(path, results, begin, failed, **properties):
-    """Writes JUnit of all results, for CI systems: a suite for each program and seed, begun at
-    `begin` (RFC 3339), with these properties, except empty ones. `failed` returns the message and
-    the text of a failed result. Jenkins' junit-10.xsd has no properties of a test."""
+    """Writes the JUnit of all results, for CI systems. Each program and seed is a suite that began
+    at `begin` (RFC 3339) and has the given properties; empty properties are left out. `failed`
+    returns the message and the text of a failed result. A test has no properties, because Jenkins'
+    junit-10.xsd does not allow them."""
     suites = {}
     for result in results:
         suites.setdefault((result.name.split(".")[0], result.seed), []).append(result)
@@ -101,7 +102,8 @@ def write_junit(path, results, begin, failed, **properties):
             if result.status == "failed":
                 message, text = failed(result)
                 xml.SubElement(case, kind_of(result), message=message).text = text
-                log = re.sub(r"[^\t\n\x20-\uFFFD]", "?", result.log)  # characters that XML has
+                # characters that XML does not allow are replaced
+                log = re.sub(r"[^\t\n\x20-\uFFFD]", "?", result.log)
                 xml.SubElement(case, "system-out").text = log
             elif result.status == "skipped":
                 xml.SubElement(case, "skipped")

@@ -6,15 +6,16 @@ the test passed, prints the stored output instead.
 Usage: kept.py OWN COMMAND [WORD...]   OWN: work folder of the test, which is emptied first, or ""
 
 strace reports each file that the processes of the test open, look for or list, including programs
-and libraries. A stored result consists of the output and the state of each of these files: files
-of the tree by their content, other files by size and time of change. The result is valid as long
-as all these files are unchanged. Outside the tree, two things do not count: the names in a folder,
-and caches that every installation of a package writes. A package without any of these files
-therefore invalidates no result. All tests get the same environment.
+and libraries. A stored result consists of the output and the state of each of these files. For a
+file of the tree, the state is its content; for any other file, its size and time of change. The
+result is valid as long as all these files are unchanged. Outside the tree, two things do not count:
+the names in a folder, and caches that every installation of a package writes. Installing a package
+therefore invalidates a result only if the test uses a file of the package. All tests get the same
+environment.
 
 No result is stored for a test that fails, that is killed, or that used a file which changed during
-the test. FRESH=1 runs every test. The results are below XDG_CACHE_HOME (~/.cache) and shared by all
-clones; each command keeps its newest four.
+the test. FRESH=1 runs every test. The results are below XDG_CACHE_HOME (~/.cache), and all clones
+share them. The newest four results of each command are kept.
 """
 
 import datetime
@@ -49,8 +50,8 @@ def digest(data):
 
 
 def state(path, listed):
-    """Returns the observable state of a path: nothing, a folder (and its names, where it was
-    listed), a file."""
+    """Returns the observable state of a path: that it does not exist, or a file's state, or that it
+    is a folder, with the names in the folder if the test listed it."""
     try:
         status = os.stat(path)
         if stat.S_ISDIR(status.st_mode):
@@ -64,10 +65,11 @@ def state(path, listed):
 
 
 def touched(trace):
-    """Returns {path: (was it listed, did the run write it)} of strace's lines."""
+    """Parses the lines of strace. Returns {path: (whether the test listed it, whether the test
+    wrote it)}."""
     lines = pathlib.Path(trace).read_text(errors="surrogateescape").splitlines()
     whole = "\n".join(lines)
-    # folders that relative paths may start from
+    # folders to which relative paths may refer
     here = {os.getcwd(), *re.findall(r"AT_FDCWD<(/[^>]*)>", whole)}
     here |= {os.path.join(b, n) for n in re.findall(r'\bchdir\("([^"]*)"', whole) for b in here}
     paths = {}
@@ -105,7 +107,8 @@ def main():
             print(verdict["said"].replace("@ROOT@", ROOT), end="")
             return 0
     shutil.rmtree(own or "/dev/null/", ignore_errors=True)
-    begin = time.time_ns() - 50_000_000  # file times are as coarse as the clock of the kernel
+    # file times have the resolution of the kernel's clock, so the run counts as begun earlier
+    begin = time.time_ns() - 50_000_000
     with tempfile.TemporaryDirectory() as folder:
         trace, said = folder + "/trace", b""
         environment["TMPDIR"] = environment["HOME"] = folder
@@ -128,7 +131,7 @@ def main():
         seen = {}
         for path, (listed, written) in touched(trace).items():
             if own and path.startswith(own):
-                path = os.path.realpath(path)  # a link from there
+                path = os.path.realpath(path)  # a link that the test followed
             if (path + "/").startswith((own or "/dev/", folder + "/", compiled + "/", "/proc/",
                                         "/dev/", "/sys/")):
                 continue
@@ -138,7 +141,9 @@ def main():
                     continue
             read = not written and (listed or os.path.isfile(path)) and os.path.exists(path)
             if read and os.stat(path).st_mtime_ns > begin:
-                return 0  # another process has changed it since: the state that was read is unknown
+                # another process has changed the file since, so the state that the test read is
+                # unknown
+                return 0
             seen[portable(path)] = (listed, state(path, listed))
     date = datetime.datetime.now().strftime("%Y-%m-%d %H:%M")
     verdict = {"date": date, "said": portable(said.decode(errors="replace")), "seen": seen}

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """lights: summarises a run in seven statuses: tests, proofs, plan, mutants, coverage, size, speed.
 A status is green, red, or grey (not measured, or the sources have changed since). Each status
-depends only on its own figures, so that a bug of one kind turns one status red."""
+depends only on its own figures, so that a bug of one kind turns only one status red."""
 from icesoc.util.tree import tree_state
 
 
@@ -14,7 +14,8 @@ def missing(name, command):
 
 
 def judge(name, good, wrong, bad):
-    """Returns green with the text `good`, or red with the first few errors."""
+    """Returns a green status with the text `good` if `bad` is empty, otherwise a red status with
+    the first few errors."""
     if not bad:
         return light(name, "green", good)
     return light(name, "red", f"{len(bad)} {wrong}: {', '.join(bad[:3])}{', ...' * (len(bad) > 3)}")
@@ -69,7 +70,8 @@ def of_coverage(coverage):
 
 
 def of_entries(name, entries, command):
-    """Returns entries with a limit: a maximum, or a minimum if the unit begins with "at least"."""
+    """Returns the status of the entries that have a limit. It is a maximum, or a minimum if the
+    unit begins with "at least"."""
     limits = [each for each in entries if "limit" in each]
     bad = []
     for each in limits:
@@ -81,8 +83,8 @@ def of_entries(name, entries, command):
 
 
 def of_size(utilisation):
-    """Returns the status of size. A design without a figure failed; the result of `make synth`
-    decides."""
+    """Returns the status of size, which depends on the result of `make synth`. A design without a
+    figure counts as failed there."""
     if not utilisation:
         return missing("size", "make synth")
     if utilisation["failures"]:

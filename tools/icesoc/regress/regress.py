@@ -94,8 +94,8 @@ class Regression:
         return Changes(self.options.source, self.options.build, self.options.out)
 
     def choose(self, tests, built=True):
-        """Returns the tests that the options select. Before the build, only the programs of some
-        tests are known."""
+        """Returns the tests that the options select. Before the build, the cases of some programs
+        are unknown; for these programs, the whole program is selected."""
         o, chosen = self.options, []
         exact = any(test.name == o.name.text for test in tests)
         for test in tests:
@@ -119,8 +119,8 @@ class Regression:
         return chosen
 
     def _outdated(self, tests, known):
-        """Returns a test of each further program that is older than its sources, if these may have
-        a case of the name that is asked for."""
+        """Returns a test of each further program that is older than its sources, if its sources may
+        contain a case with the requested name."""
         o, found, known = self.options, {}, set(known)
         for test in tests:
             if test.program in known or test.unbuilt \
@@ -136,14 +136,15 @@ class Regression:
         return list(found.values())
 
     def _sources(self, test):
-        """The texts of a program's C++ files."""
+        """Returns the texts of a program's C++ files."""
         files = [self.options.source / file for file in self.graph.inputs(test.program)]
         return [file.read_text(errors="replace") for file in files
                 if file.suffix == ".cpp" and file.exists()]
 
     def _changed(self, test, built):
-        """Selects tests that failed last, but not those that passed last with these sources; also
-        tests that have never passed here, if their files differ from the commit."""
+        """Returns whether --changed selects a test. It selects a test that failed in its last run,
+        and a test that has passed but not with the current sources. If a test has never passed
+        here, it is selected if its files differ from the commit."""
         passed = self.history.last_pass(test.name)
         if self.history.last(test.name) == "f":
             return True
@@ -152,13 +153,15 @@ class Regression:
         return self.changes.touched(test, passed)
 
     def build(self):
-        """Builds, or lists, the targets of the chosen tests; their cases are known afterwards."""
+        """Builds the targets of the chosen tests, or lists them. After a build, the cases of all
+        programs are known."""
         o = self.options
         tests = list_tests(o.build)
         outputs = {line.rpartition(":")[0] for line in collect(
             ["ninja", "-C", o.build, "-t", "targets", "all"])[1].splitlines()}
         chosen, found = self.choose(tests, built=False), set()
-        for test in chosen:  # the list grows by the tests that set up fixtures
+        # the loop also visits the tests that set up fixtures, which are appended here
+        for test in chosen:
             found.update(targets_of(test, o.build, outputs))
             chosen += [other for other in tests if set(other.sets) & set(test.needs) and
                        other not in chosen]
@@ -176,7 +179,7 @@ class Regression:
             self.changes.forget_graph()
 
     def nothing(self, tests):
-        """Prints why no test is selected. Returns the exit status."""
+        """Prints the reason why no test is selected. Returns the exit status."""
         o = self.options
         if o.changed or o.rerun_failed:
             print(f"Nothing to run: no test {'changed' if o.changed else 'failed'} since the last "
@@ -203,7 +206,8 @@ class Regression:
         chosen = self.choose(tests)
         if chosen and o.select:
             write_numbers(o.select, chosen)
-        if not chosen or o.prepare or o.select:  # then CTest runs them without history
+        # with --prepare or --select, CTest runs the tests later, without history
+        if not chosen or o.prepare or o.select:
             return 0 if chosen else self.nothing(tests)
         if o.list:
             print("\n".join(test.name for test in chosen))
@@ -239,14 +243,15 @@ class Regression:
                 failures = self._examine(results, known, changes)
                 commit = self._note(chosen, results, failures, changes, stopped,
                                     time.monotonic() - start)
-                if failures and not interrupted:  # waveforms may take minutes
+                # waveforms may take minutes, so a report without them is written first
+                if failures and not interrupted:
                     write_reports(gather(history, tests, results, failures, o.source), failures,
                                   o.build / "page", o.out)
                     print(f"{o.out}/report.html is there; waveforms come into it, if there are any",
                           flush=True)
             if not interrupted:
                 add_waves(failures, known, o.source, o.build, o.jobs, o.waves)
-        except Interrupted as stop:  # the report is then written without waveforms
+        except Interrupted as stop:  # the final report is then written without waveforms
             interrupted = stop
             end_descendants()
         with signals_held():
@@ -256,7 +261,7 @@ class Regression:
                 of = {id(failure.result): failure for failure in failures}
                 write_junit(o.out / "junit.xml", results, begin, lambda each: of[id(each)].entry(),
                             commit=commit, stopped=stopped)
-            finally:  # a full disk must not hide the results
+            finally:  # the summary is printed even if the disk is full
                 summary(data, failures, o.out)
         return interrupted.status if interrupted else 1 if failures else 0
 
@@ -288,7 +293,8 @@ class Regression:
 
 
 def summary(data, failures, out):
-    groups = collections.defaultdict(list)  # ordered by first failure
+    # groups with the same reason, in the order of their first failure
+    groups = collections.defaultdict(list)
     for failure in failures:
         groups[failure.bucket].append(failure)
     for members in groups.values():

@@ -38,8 +38,8 @@ def measurements(build):
     """Returns the results that other commands left in build/, with the state of the tree that they
     measured."""
     data = {name: found for name, path in MEASURED.items() if (found := read(build / path))}
-    for file in data.get("coverage", {}).get("files", []):  # the remaining data are in the coverage
-                                                            # summary
+    # details of a file after the first 40 are only in the coverage summary
+    for file in data.get("coverage", {}).get("files", []):
         if (more := len(file["missed"]) - 40) > 0:
             file["missed"][40:] = [f"and {more} more"]
     mutants = build / "mutants/results.tsv"
@@ -56,14 +56,15 @@ def gather(history, tests, results, failures, source):
             "proofs": proofs_of(results)}
     del data["ends"]
     known = {test.name: test for test in tests}
-    now = {(r.name, r.seed) for r in results}  # in a run with one seed, the failures of that seed
-                                               # are in the results
+    # after a run with one seed, these tests are left out of the failing seeds: their failures are
+    # among the results
+    now = {(r.name, r.seed) for r in results}
     data["seeds"] = [kept for test, kept in history.failing(tests).items()
                      if test not in now or len({r.seed for r in results}) > 1]
     data["results"] = []
     for r in results:
         test = known.get(r.name)
-        ends = [end[:2] for end, _ in history.ends[r.name][-10:]]  # the newest last
+        ends = [end[:2] for end, _ in history.ends[r.name][-10:]]  # the last entry is the newest
         data["results"].append([r.name, r.status, r.seconds, test.place if test else "",
                                 test.labels[0] if test and test.labels else "", r.seed, ends])
     ran = {r.name for r in results}
@@ -84,14 +85,15 @@ def gather(history, tests, results, failures, source):
 
 
 def reasons_of(run):
-    """Returns why a run of the history is not green: where it was stopped, and its failures."""
+    """Returns the reasons why a run of the history is not green: where it was stopped, and its
+    failures."""
     stopped = run.get("stopped")
     return [*([f"stopped {stopped}"] if stopped else []), *run.get("reasons", [])]
 
 
 def write_reports(data, failures, libraries, out):
     style, script = page_parts(libraries)
-    # Drawings get the remaining space of the page.
+    # bytes of the page that remain for the drawings
     rest = LARGEST - len(style) - len(script) - len(json.dumps(data)) - 60_000
     drawn = [i for i, failure in enumerate(failures) if failure.wave]
     for i in drawn:

@@ -14,9 +14,10 @@ from icesoc.regress.tests import write_numbers
 from icesoc.util.errors import Interrupted, Stop
 from icesoc.util.process import children, collect, descendants, end_descendants
 
-SHORTEST_HANG = 30  # s; a test is never ended before it has used this CPU time, or has run for this
-                    # time without using the CPU
-IDLE = 10  # s; a test that uses less than 1 s of CPU time within this time counts as idle
+# s; a test is ended at the earliest after this CPU time, or after it has run for this time without
+# using the CPU
+SHORTEST_HANG = 30
+IDLE = 10  # s; a test that uses less than 1 s of CPU time within this period counts as idle
 
 
 class Progress:
@@ -29,9 +30,10 @@ class Progress:
         self.usual = {test.name: history.usual(test.name) for test in tests}
         self.running = {}  # start time by name, oldest first
         self.due = {}  # age in s at which a test is reported as late, by name
-        self.busy = {}  # by name: (CPU time, when it was reached), updated after each second of CPU
-                        # time
-        self.hangs = {}  # by name: (how the test was ended, stacks)
+        # test name -> (CPU time, when this CPU time was reached); updated after each second of CPU
+        # time
+        self.busy = {}
+        self.hangs = {}  # test name -> (reason why the test was ended, stacks)
         self.lock = threading.Lock()
 
     def start(self, name):
@@ -40,8 +42,9 @@ class Progress:
         self.due[name] = 60 if usual is None else max(10, 3 * usual)
 
     def watch(self, done, build):
-        """Names each test that takes three times its usual time (60 s if that is not known) with
-        its age, and again at twice that age, until `done` is set. Ends tests that hang."""
+        """Watches the running tests until `done` is set. Prints the name and age of a test that
+        takes three times its usual time (60 s if this time is unknown), and again whenever the age
+        has doubled. Ends tests that hang."""
         def cpu_of(name):
             return cpu_time(process_of(name, self.running))
         while not done.wait(1):
@@ -53,10 +56,10 @@ class Progress:
                         self.hangs[name] = f"Hang, ended after {how}{where}", stacks
 
     def late(self, cpu_of):
-        """Prints the names of late tests, and yields (name, time) of each test that hangs. A test
-        hangs if its CPU time, or the time for which it has run without using the CPU, is ten times
-        its usual time. A test that waits for a CPU does not hang. `cpu_of`: function that returns
-        the CPU time of a running test, given its name."""
+        """Prints the names of late tests, and yields (name, reason) for each test that hangs. A
+        test hangs if its CPU time reaches ten times its usual time, or if it has run for that long
+        and does not use the CPU. A test that waits for a CPU does not hang. `cpu_of`: function that
+        returns the CPU time of a running test, given its name."""
         for name, begin in list(self.running.items()):
             now, usual = time.monotonic(), self.usual.get(name)
             age, known = now - begin, "unknown" if usual is None else f"{usual:.1f} s"
@@ -64,7 +67,7 @@ class Progress:
                 self.due[name] = 2 * age
                 self._line(f"{name} has run for {age:.0f} s, usually {known}", True)
             limit = self.limit(name)
-            is_proof = name.startswith("formal.")  # limited by CPU time instead
+            is_proof = name.startswith("formal.")  # a proof has a limit of CPU time instead
             if age < limit or is_proof or name in self.hangs:
                 continue
             try:
@@ -80,13 +83,13 @@ class Progress:
                 yield name, f"{age:.0f} s without using the CPU, usually {known}"
 
     def limit(self, name):
-        """Returns the time at which a test hangs, s."""
+        """Returns the time after which a test hangs, s."""
         usual = self.usual.get(name)
         return max(SHORTEST_HANG, 10 * (60 if usual is None else usual))
 
     def left(self):
-        """Returns the estimated time left, the number of tests left if the times of some are
-        unknown, or for a test that is late the time at which it is ended."""
+        """Returns the estimated time left. If the times of some tests are unknown, returns the
+        number of tests left. If a test is late, returns the time left until the test is ended."""
         late = {name: time.monotonic() - begin for name, begin in list(self.running.items())
                 if time.monotonic() - begin >= max(10, 3 * (self.usual.get(name) or 20))}
         known = all(each is not None for each in self.seconds.values())
@@ -118,11 +121,12 @@ class Progress:
                 print(text, flush=True)
 
 
-GONE = (OSError, StopIteration, ValueError)  # errors that occur if a test has just ended
+# errors that occur if a test has just ended and its processes no longer exist
+GONE = (OSError, StopIteration, ValueError)
 
 
 def cpu_time(process):
-    """Returns the CPU time of a process, its ended children and all processes below it, s."""
+    """Returns the CPU time of a process, its ended children and all its descendants, s."""
     ticks = 0
     for pid in [process, *descendants(process)] if process else ():
         with contextlib.suppress(OSError):
@@ -141,12 +145,14 @@ def process_of(name, running):
 
 
 def end_hang(process, build):
-    """Ends a test's processes. Returns the functions in which the first of its programs was, and
-    the stacks of all; aborted, they print the chip's state (testbench/common/tell_on_abort.h)."""
+    """Ends a test's processes. Returns the functions that the first of its programs was executing,
+    and the stacks of all programs. The programs are aborted, so that they print the chip's state
+    (testbench/common/tell_on_abort.h)."""
     below = [process, *descendants(process)]
     stacks = ""
     for pid in below:
-        with contextlib.suppress(OSError):  # ended already, because of an earlier process
+        # the process may have ended because an earlier process was ended
+        with contextlib.suppress(OSError):
             program = os.readlink(f"/proc/{pid}/exe")
             if not program.startswith(f"{build}/"):
                 continue
@@ -164,7 +170,8 @@ def end_hang(process, build):
 
 
 def readable(log):
-    """Returns a log without colours (CTest writes a word for ESC) and without endless lines."""
+    """Returns a log without colours (CTest replaces ESC by a word) and with long lines
+    shortened."""
     def short(line):
         return line if len(line) <= 2000 else \
             f"{line[:1000]} ... {len(line)} characters ... {line[-500:]}"
@@ -200,8 +207,8 @@ def run_tests(tests, build, out, seed, jobs, history):
     watcher = threading.Thread(target=progress.watch, args=[done, str(build)], daemon=True)
     watcher.start()
     try:
-        # In a process group of its own: Ctrl-C would reach the tests, which CTest then reports as
-        # failed.
+        # CTest gets a separate process group. Otherwise Ctrl-C would reach the tests, and CTest
+        # would report them as failed.
         status, text = collect(
             ["ctest", "--test-dir", build, "-I", chosen.resolve(), "-j", jobs, "--output-junit",
              junit, "--test-output-size-passed", 4096, "--test-output-size-failed", 200000,
@@ -212,7 +219,7 @@ def run_tests(tests, build, out, seed, jobs, history):
         end_descendants()
     finally:
         done.set()
-        watcher.join()  # it may still be reading the stacks of a test that hangs
+        watcher.join()  # the watcher may still be reading the stacks of a test that hangs
     if sys.stdout.isatty():
         print("\r\033[K", end="")
     if interrupted:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""tests: every test that CTest knows, with its files and the targets that it needs, and the plan,
-which names the tests of each requirement in docs/."""
+"""tests: lists every test that CTest knows, with its files and the targets that it needs. Reads the
+plan, which names the tests of each requirement in docs/."""
 import dataclasses
 import fnmatch
 import functools
@@ -21,7 +21,7 @@ NOT_BUILT = "_NOT_BUILT"  # suffix that CTest gives to a program that is not bui
 
 class Name:
     """A selection of tests by name. A plain word selects names that contain it as a whole word, so
-    that `fir` does not select `first`; anything else is a regular expression."""
+    that `fir` does not select `first`. Any other text is a regular expression."""
 
     def __init__(self, text):
         self.text, self.is_word = text, bool(re.fullmatch(r"[A-Za-z]\w*", text))
@@ -55,11 +55,12 @@ class Test:
 
     @property
     def program(self):
-        """Returns the name of the program and of its target."""
+        """Returns the name of the test's program. The program's target has the same name."""
         return self.name.removesuffix(NOT_BUILT) if self.unbuilt else self.name.split(".")[0]
 
     def is_in(self, folder):
-        """Returns whether the test is in a folder of the tree or of tests/: hdl/fsmc, ip/fir."""
+        """Returns whether the test belongs to a folder, given relative to the tree or to tests/,
+        such as hdl/fsmc or ip/fir."""
         folder = folder.strip("/").removeprefix("tests/")
         return f"{self.path}/".startswith(f"{folder}/")
 
@@ -77,8 +78,8 @@ class Test:
         return ("bus", "hdl", "ip", "slice", "sw", "testbench", "tools", own)
 
     def compiles(self):
-        """Returns the files that the command of a test by GHDL names, and its programs; empty for
-        another test."""
+        """For a test that GHDL runs, returns the files that its command names, and its programs.
+        For any other test, returns an empty result."""
         return [word for word in self.command if word.startswith("/")] \
             if self.name.startswith("vhdl.") else []
 
@@ -90,8 +91,9 @@ class Test:
         return set(re.findall("[A-Za-z0-9]+", f"{self.place}/{kind}/{more}"))
 
     def _may_begin(self, pattern):
-        """Returns whether the name of a case of this program can match; the pattern begins with `^`
-        and letters."""
+        """Returns whether the name of a case of this program may match `pattern`. The answer is no
+        only if each alternative of the pattern begins with `^` and letters that do not fit the
+        program's name."""
         for some in re.findall(r"(?:\([^()]*\)|[^|()])+", pattern):
             begins = re.match(r"\^(?:\(([\w|]+)\)(?![?*{])|((?:\w(?![?*{]))+))", some)
             if not begins or any(word.startswith(self.program) or self.program.startswith(word)
@@ -100,10 +102,10 @@ class Test:
         return False
 
     def may_hold(self, name, sources):
-        """Returns whether a case of a program that is not built, or is older than its sources, may
-        match a Name. `sources`: texts of the program's source files. The words of a case for
-        several values or types are in different places of the text. Suites and cases begin with
-        capitals."""
+        """Returns whether a case of a program may match a Name, if the program is not built or is
+        older than its sources. `sources`: texts of the program's source files. The name of a case
+        for several values or types is composed of words from different places of the text. Names of
+        suites and cases begin with capitals."""
         if not self._may_begin(name.pattern):
             return False
         text = re.sub("//.*", "", "\n".join(sources))
@@ -172,14 +174,15 @@ def targets_of(test, build, outputs):
         target = path.lstrip("/")
         if f"{build}{path}".startswith(test.folder + "/") and target not in outputs:
             continue  # the test itself creates this file
-        name = os.path.basename(target)  # Ice adds .so to the name of a plugin
+        name = os.path.basename(target)  # the command names a plugin of Ice without the suffix .so
         targets.append("synth_inputs" if target == "gen" else target if target in outputs
                        else name if name in outputs else "all")
     return targets
 
 
 def fingerprint(tests, source, build):
-    """Sets `Test.print` of each: of the program's file, or of the files that a script reads."""
+    """Sets `Test.print` of each test: a hash of the program's file, or of the files that a script
+    reads."""
     @functools.cache
     def of_file(path):
         try:
@@ -225,20 +228,20 @@ class Graph:
             if path not in seen:
                 seen.add(path)
                 left += self.made.get(path, [])
-        # paths in the files of ccache are relative
+        # paths in the dependency files of ccache are relative
         real = (os.path.normpath(self.build / path) for path in seen)
         return {path[len(source):] for path in real if path.startswith(source)}
 
 
 @dataclasses.dataclass
 class Requirement:
-    page: str  # "bus" of docs/bus.md
+    page: str  # name of the page: "bus" for docs/bus.md
     text: str
     patterns: list  # test names; * matches anything
 
     def matches(self, test):
-        """Returns whether a test proves this requirement; a program that is not built stands for
-        all of its cases."""
+        """Returns whether a test proves this requirement. A program that is not built counts as all
+        of its cases."""
         return any(may_match(pattern, test) for pattern in self.patterns)
 
 
@@ -271,8 +274,8 @@ def unmatched(requirement, tests):
 
 
 def judge_plan(plan, tests, history):
-    """Returns for each requirement the last results of its tests, preferring results with these
-    sources."""
+    """Returns a row for each requirement with the last results of its tests; results with the
+    current sources are preferred."""
     rows = []
     for each in plan:
         mine = [test for test in tests if each.matches(test)]

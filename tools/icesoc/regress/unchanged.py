@@ -3,10 +3,10 @@
 only the other tests.
 
 When a test passes, a digest of its inputs is stored. The inputs are:
-- of a test program: its bytes, and the files below the tree or the build folder whose absolute
+- for a test program: its bytes, and all files in the tree or the build folder whose absolute
   paths these bytes contain (from compile definitions). A folder stands for all files in it.
-- of any other test: all files of the tree, and the programs of the build.
-- of both: the seed, and the versions of the packages in cmake/setup.sh and of all packages that
+- for any other test: all files of the tree, and the programs of the build.
+- for both: the seed, and the versions of the packages in cmake/setup.sh and of all packages that
   these depend on. Other packages of the machine do not count.
 """
 import functools
@@ -22,7 +22,7 @@ from icesoc.util.process import collect
 from icesoc.util.tree import tracked
 
 STATUS = pathlib.Path("/var/lib/dpkg/status")
-# Files that the build makes for programs, and not for its own later steps
+# Files of the build that programs use; excludes files that only later steps of the build use
 USED = re.compile(r"\.(so|elf|bin|json|vh|list|inc)$|/(?!test_|fuzz_)[\w-]+$")
 
 
@@ -105,7 +105,7 @@ class Inputs:
 
     @functools.cached_property
     def all(self):
-        """Returns the digest of the tree and of what is built from it."""
+        """Returns the digest of the tree and of all files that are built from it."""
         return self.files(self.tracked + self.made)
 
     def files(self, paths):
@@ -138,7 +138,8 @@ class Inputs:
 
 
 class Passes:
-    """The passes of the tests in a build folder: digest of the inputs by name of the test."""
+    """The stored passes of the tests in a build folder: name of the test -> digest of its
+    inputs."""
 
     def __init__(self, source, build, seed):
         self.path, self.inputs = build / "passes.json", Inputs(source, build, seed)
@@ -151,16 +152,16 @@ class Passes:
             self.kept = {}
 
     def changed(self, label, all_tests):
-        """Returns the tests with a label that have not passed with their current inputs, and the
-        number of the others."""
+        """Returns the tests with a label that have not passed with their current inputs, or all its
+        tests with `all_tests`. Also returns the number of tests left out."""
         some = [test for test in self.tests.values() if not label or label in test.labels]
         left = [test for test in some if all_tests or not test.command or
                 self.kept.get(test.name) != self.prints[test.name]]
         return left, len(some) - len(left)
 
     def note(self, junit):
-        """Adds the passes in these results, unless an input has changed meanwhile, and removes
-        the failures."""
+        """Stores the tests that passed according to these results, unless an input has changed
+        meanwhile, and removes the tests that failed."""
         now = Inputs(self.inputs.source, self.inputs.build, self.inputs.seed)
         for result in read_junit(junit) if junit.exists() else ():
             name = result.name

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""waves: repeats a failed test of RTL, or a failed flight, with a waveform of the clocks around the
-failure, and prepares the end of a waveform for the page's drawing."""
+"""waves: repeats a failed RTL test, or a failed flight, and records a waveform of the clocks around
+the failure. Also prepares the end of a waveform for the drawing on the page."""
 import collections
 import dataclasses
 import json
@@ -23,11 +23,11 @@ MOST_CHANGES, FEWEST_CHANGES, MOST_SIGNALS = 400, 25, 200  # limits of a drawing
 
 @dataclasses.dataclass
 class Scene:
-    """What is repeated: the program of a test, or the recording of a flight, around a clock."""
-    program: str  # target in the build with waveforms; "" for a test by GHDL
+    """The run to repeat, around a clock: the program of a test, or the recording of a flight."""
+    program: str  # target in the build with waveforms; "" for a test under GHDL
     clock: int
     flight: str = ""  # folder of the recording
-    slot: int = 0  # slot of the last core that the processor was informed about; 0: no core
+    slot: int = 0  # number of the slot whose core was last reported to the processor; 0: no core
     before: int = 2000
     after: int = 20
 
@@ -45,7 +45,8 @@ def scene_of(failure, test):
                 event = json.loads(line)
             except ValueError:
                 continue
-            # The last core reported to the processor, or otherwise the modem
+            # slot of the last core that was reported to the processor; without one, the modem is
+            # shown
             slot = event.get("slot", -1)
             if slot >= FIRST_CORE or slot >= 0 and not scene.slot:
                 scene.clock = event["ns"] // 10
@@ -58,7 +59,8 @@ def scene_of(failure, test):
         scene = Scene("", int(int(match[1]) * CLOCKS_PER_SECOND * SECONDS[match[2]]))
     else:
         return None
-    if "e2e" in test.labels:  # the program of a mission runs longer than that of a block
+    # a mission runs longer than the test of a block, so more clocks are recorded
+    if "e2e" in test.labels:
         scene.before, scene.after = 150_000, 50_000
     return scene
 
@@ -72,8 +74,8 @@ def instance_in(slot, build):
 
 
 def instances(changed, source, build):
-    """Returns the names of instances of the modules and entities in a text of changes, starting
-    with the first file. The top of a model has the name of the module."""
+    """Returns the names of the instances of all modules and entities that a text of changed files
+    names, in the order of these files. At the top of a model, the name of the module is used."""
     texts = None
     for path in re.findall(r"((?:hdl|bus|ip)/[^\s:,]*\.(?:sv|vhdl|v|vhd))(?=[:, ]|$)", changed):
         file = source / path
@@ -93,8 +95,8 @@ def instances(changed, source, build):
 
 
 def scope_in(signals, names):
-    """Returns the first of these names that is the name of an instance in the waveform, in the
-    waveform's spelling (GHDL writes small letters); "" if there is no such instance."""
+    """Returns the first of these names that is an instance in the waveform, spelled as in the
+    waveform (GHDL writes lower-case letters); "" if there is no such instance."""
     scopes = {scope.lower(): scope for signal in signals for scope in signal.scopes}
     return next((scopes[name.lower()] for name in names if name.lower() in scopes), "")
 
@@ -105,8 +107,9 @@ def rows_below(scope, signals):
 
 
 def save_file(wave, build, folder, first):
-    """GTKWave's save file: the first rows, and the ports of the models below `folder` and below the
-    folder of the tested block: tests/hdl/fifo, hdl/fifo."""
+    """Returns the text of GTKWave's save file: the rows `first`, then the ports of the models that
+    are below `folder` or below the folder of the tested block. For example, tests/hdl/fifo tests
+    hdl/fifo."""
     rows = [*first]
     for place in sorted({folder, folder.removeprefix("tests/")}) if folder else []:
         for header in sorted((build / place).rglob("verilated_*/V*.h")):
@@ -143,8 +146,8 @@ def repeat(failure, scene, source, tested, jobs, wave):
 
 
 def add_wave(failure, test, scene, source, tested, jobs):
-    """Writes a waveform of a failure, with the build in build/trace for Verilog, or prints why this
-    is impossible."""
+    """Writes a waveform of a failure, or prints the reason why this is impossible. For Verilog,
+    uses the build in build/trace."""
     base = failure.log.removesuffix(".log")
     wave = os.path.abspath(f"{base}.fst")
     build, names = repeat(failure, scene, source, tested, jobs, wave)
@@ -163,7 +166,8 @@ def add_wave(failure, test, scene, source, tested, jobs):
 
 
 def add_waves(failures, tests, source, build, jobs, limit):
-    """Adds waveforms, and prints the steps; a test that cannot be traced gets no waveform."""
+    """Adds waveforms to failures, and prints the steps. A test that cannot be traced gets no
+    waveform."""
     made = 0
     for failure in failures:
         test = tests.get(failure.result.name)
@@ -177,7 +181,8 @@ def add_waves(failures, tests, source, build, jobs, limit):
         print(f"Waveform of {failure.result.name} around clock {scene.clock} ...", flush=True)
         try:
             add_wave(failure, test, scene, source, build, jobs)
-        except (Stop, OSError) as error:  # the report is more important than a waveform
+        # the report must be written even if a waveform cannot be made
+        except (Stop, OSError) as error:
             print(f"  none: {error}")
 
 
@@ -189,9 +194,9 @@ class Signal:
 
 
 def shown(bits, width):
-    """Returns a value as hexadecimal number, or "x" or "z" if one of its bits is x or z. A single
-    bit is returned unchanged. VCD omits leading bits that are 0, or equal to the first written bit
-    x or z."""
+    """Returns a value as a hexadecimal number, or "x" or "z" if any of its bits is x or z. A single
+    bit is returned unchanged. VCD omits leading bits that are 0, or that repeat a first bit x or z;
+    they are added."""
     bits = bits.rjust(width, bits[0] if bits[0] in "xz" else "0")
     strange = bits.lstrip("01")
     digits = (len(bits) + 3) // 4
@@ -204,7 +209,7 @@ def read_vcd(text):
     signals, moments = {}, []
     _, variables, changes = vcd.read(text)
     for each in variables:
-        if not each.name.startswith("smt_"):  # these are signals of the solver
+        if not each.name.startswith("smt_"):  # names that begin with smt_ are signals of the solver
             signal = Signal(each.scopes, each.name, each.width * (each.kind != "string"))
             known = signals.get(each.key)
             if not known or signal.depth < known.depth:
@@ -213,7 +218,7 @@ def read_vcd(text):
         signal = signals.get(key)
         if key is None:
             moments = [moments[0] if moments else now, now]
-        # Proofs' traces repeat unchanged values at each step.
+        # The trace of a proof repeats unchanged values at each step.
         elif signal and not (signal.changes and signal.changes[-1][1] == value):
             signal.changes.append((now, value))
     return [signal for signal in signals.values() if signal.changes], moments

@@ -61,7 +61,7 @@ def svd_of(slots):
 
 
 def fields_of(r):
-    """Returns a register's fields; a register without fields gets one named WORD."""
+    """Returns a register's fields. A register without fields gets one field, named WORD."""
     return r.fields or [Field("WORD", 0, r.width, r.doc, r.access, r.reset)]
 
 
@@ -70,10 +70,11 @@ def address_of(r):
 
 
 def split(slot):
-    """Returns the registers in the slot, and those that an adapter makes accessible.
+    """Returns two lists: the registers in the slot, and the registers that an adapter makes
+    accessible.
 
-    The latter share their addresses in the slot, so they have a separate address map, <SLOT>_PAGES,
-    in which they have their byte addresses in the core.
+    All registers behind an adapter share a few addresses in the slot. They therefore have a
+    separate address map, <SLOT>_PAGES, in which each has its byte address in the core.
     """
     registers = slot.block.registers
     return ([r for r in registers if r.page < 0], [r for r in registers if r.page >= 0])
@@ -93,7 +94,7 @@ def rdl_register(r):
 
 
 def rdl_access(r, f):
-    """Returns the access to a field in SystemRDL; the core itself may change values that it
+    """Returns the access to a field in SystemRDL's terms. The core itself may change values that it
     stores."""
     more = "".join(f" {flag};" for flag in ("hwset", "hwclr") if getattr(f, flag))
     if f.access == "rw" and r.storage == "core":

@@ -2,7 +2,7 @@
 """generate: writes the files that describe the registers of a block to hardware and software.
 
 <block>_regs.vh (Verilog localparams), <block>_regs.h (C90 macros), <block>_regs_pkg.vhd (VHDL
-package) and <block>_regs.md (page for people). With --block also the register block itself:
+package) and <block>_regs.md (page for people). With --block, also writes the register block itself:
 <block>_regs.v with its proof, and <block>_regs.vhd.
 """
 import argparse
@@ -33,7 +33,7 @@ def table_rows(b):
 
 
 def cell(text):
-    """Returns a text in the form for a cell of a Markdown table."""
+    """Returns a text that is escaped for a cell of a Markdown table."""
     return re.sub(r"([\\|*`<\[])", r"\\\1", text)
 
 
@@ -69,8 +69,8 @@ def views(block, has_block):
 
 
 def save(path, text):
-    """Writes a text. If the file has this text already, its time is not changed, so that nothing is
-    built again."""
+    """Writes a text. If the file already has this text, its time is not changed, so that the build
+    does not repeat later steps."""
     path = Path(path)
     if not path.is_file() or path.read_bytes() != text.encode():
         path.write_bytes(text.encode())

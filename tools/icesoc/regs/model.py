@@ -20,7 +20,8 @@ ACCESSES = {
     "w1s": "write 1 to set",
     "ws": "write acts, reads as 0",
 }
-# Possible owners of a register's value, by its access; the first owner is the default.
+# Parts of the hardware that may hold a register's value, by the register's access. The first is the
+# default.
 STORAGES = {
     "ro": ("core",),
     "rw": ("flip-flops", "ram", "core", "memory"),
@@ -34,7 +35,7 @@ MIXED = ("rw", "w1c", "w1s")  # registers that may contain ro fields
 
 
 class Wrong(Exception):
-    """An error in the input; its text is for the user."""
+    """An error in the input; its text is the message for the user."""
 
 
 def check(holds, text):
@@ -43,7 +44,7 @@ def check(holds, text):
 
 
 def reset_of(text):
-    """Returns a reset value: None for a register that reset does not change."""
+    """Returns a reset value, or None for "none": reset does not change the register."""
     return None if text == "none" else int(text or "0", 16)
 
 
@@ -59,8 +60,8 @@ class Field:
     access: str = ""  # "ro", or "" for the access of the register
     reset: int | None = 0
     has_reset: bool = False  # True: the description contains the reset value
-    hwset: bool = False  # True: the core may set all bits
-    hwclr: bool = False  # True: the core may clear all bits
+    hwset: bool = False  # True: the core may set any bit of the field
+    hwclr: bool = False  # True: the core may clear any bit of the field
 
     @property
     def msb(self):
@@ -82,14 +83,16 @@ class Register:
     access: str
     doc: str
     width: int = 32
-    page: int = -1  # byte address in the core of a register that is accessed through an adapter;
-                    # -1: in the slot
+    # byte address in the core, if the register is accessed through an adapter; -1: the register is
+    # in the slot itself
+    page: int = -1
     fields: list = field(default_factory=list)
     reset: int | None = 0  # reset value of a register without fields
     storage: str = ""
     lock: str = ""  # name of the input that blocks writes while it is high
     registered: bool = False  # True: pulses come from flip-flops, one clock after the write
-    strobes: tuple = ()  # "read", "write": outputs that are high in the clock of such an access
+    # "read", "write": kinds of access for which an output is high in the clock of the access
+    strobes: tuple = ()
 
     @property
     def parts(self):
@@ -143,12 +146,14 @@ class Register:
 
     @property
     def reads(self):
-        """Returns whether the register block gives a pulse for each read."""
+        """Returns whether the register block has an output with a pulse for each read of the
+        register."""
         return "read" in self.strobes
 
     @property
     def has_write_strobe(self):
-        """Returns whether the register block gives a pulse for each write."""
+        """Returns whether the register block has an output with a pulse for each write of the
+        register."""
         return self.is_written and ("write" in self.strobes or self.storage == "core" and not all(
             self.is_pulse(p) for p in self.parts if p.access != "ro"))
 
@@ -158,8 +163,8 @@ class Event:
     name: str
     bit: int
     doc: str
-    watched: bool = False  # True: outputs indicate that the event is pending, and that it is being
-                           # cleared
+    # True: one output is high while the event is pending, and another when it is being cleared
+    watched: bool = False
 
     @property
     def lower(self):
@@ -181,8 +186,8 @@ class Port:
     is_out: bool
     width: int
     doc: str
-    owner: str  # name of the register, field or event to which the port belongs
-    group: str = ""  # comment before the port
+    owner: str  # name of the register, field or event that the port serves
+    group: str = ""  # comment above the port, if the port begins a group
     is_reg: bool = False
 
 
@@ -190,7 +195,7 @@ class Block:
     """The registers of a block."""
 
     def __init__(self, description, is_built=False):
-        """`is_built`: the build has already checked the description by its schema."""
+        """`is_built`: the build has already checked the description against the schema."""
         if not is_built and (found := problems(description, SCHEMA)):
             raise Wrong("; ".join(found))
         check(("type" in description) == ("version" in description),
@@ -246,8 +251,8 @@ class Block:
 
     @property
     def has_register_block(self):
-        """Returns whether a register block can be generated: the registers are those of a slot,
-        without pages."""
+        """Returns whether a register block can be generated. The registers must be in a slot, and
+        none may be accessed through an adapter."""
         return self.is_slot and all(r.page < 0 for r in self.registers)
 
     @property
@@ -263,8 +268,8 @@ class Block:
 
     @property
     def ram_bits(self):
-        """Returns the address bits of the LUT RAM: as few low bits of the word as distinguish its
-        words."""
+        """Returns the number of address bits of the LUT RAM: as few low bits of the word number as
+        distinguish the words in the RAM."""
         words = [r.word for r in self.stored_in("ram")]
         return next(n for n in range(2, 5) if len({w % (1 << n) for w in words}) == len(words))
 

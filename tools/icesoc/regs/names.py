@@ -36,10 +36,11 @@ class Collision(Exception):
 
 
 class Spelled:
-    """Names of one scope in the generated files, with the names in the description."""
+    """Names of one scope in the generated files, and the names in the description from which they
+    are derived."""
 
     def __init__(self):
-        self.owners = {}  # name in upper case -> its origin
+        self.owners = {}  # name in upper case -> its name in the description
 
     def add(self, spelled, owner):
         if spelled.upper() not in self.owners:
@@ -53,7 +54,7 @@ class Spelled:
 
 def constants(b):
     """Returns the names of a block's constants in C, Verilog and VHDL, without the block's prefix.
-    Rejects a block with two constants of one name."""
+    Rejects a block if two of its constants have the same name."""
     spelled = Spelled()
     if b.is_slot:
         spelled.add("TABLE", "the table of all registers")
@@ -85,8 +86,7 @@ def full_name(register, field):
 
 
 def check_ports(b):
-    """Rejects a block with a register block that would have two ports or signals of the same
-    name."""
+    """Rejects a block if two ports or signals of its register block would have the same name."""
     spelled = Spelled()
     for name, _, _ in SLOT_PORTS:
         spelled.add(name, f"the port {name} of every slot")
@@ -95,5 +95,5 @@ def check_ports(b):
 
 
 def rdl(name):
-    """Returns a name in the form for SystemRDL: keywords are escaped."""
+    """Returns a name in the form for SystemRDL, in which keywords are escaped."""
     return "\\" + name if name in RDL_KEYWORDS else name

@@ -6,8 +6,8 @@
 Reads a flat subset: addrmap, reg and field. Register n of an addrmap gets word FIRST + n, after the
 three words that every slot has. An addrmap that begins with ID, EVENT and MASK, as in icesoc.rdl,
 already contains these words. An addrmap <SLOT>_PAGES contains the words that are reached through
-the slot's PAGE. Anything that a register description cannot express is an error with its line
-(rdl_properties.py).
+the slot's register PAGE. If a register description cannot express something, this is an error with
+its line (rdl_properties.py).
 """
 import argparse
 import json
@@ -88,7 +88,7 @@ def bits_of(instance, name, next_bit):
 
 
 class Fields:
-    """The fields of a register, in the form of a description."""
+    """The fields of a register, in the form used in a description."""
 
     def __init__(self, register, name):
         self.fields, self.accesses, self.strobes = [], [], set()
@@ -149,7 +149,7 @@ def register_of(instance, word):
     made = {"word": word, "name": name, "access": kinds.pop() if len(kinds) == 1 else "rw",
             "doc": text_of(register)}
     if set(found.accesses) == {"ro", "ws"} and found.overlap:
-        made["storage"] = "core"  # the read value differs from the written value
+        made["storage"] = "core"  # software reads a value other than the one that it wrote
     elif len(found.accesses) > 1 and len(set(found.accesses)) > 1:
         others = set(found.accesses) - {"ro"}
         if len(others) > 1 or others == {"ws"}:
@@ -175,7 +175,7 @@ def register_of(instance, word):
 
 
 def addresses_of(component):
-    """Returns (instance, byte address, bytes) of the registers of an addrmap."""
+    """Returns (instance, byte address, number of bytes) for each register of an addrmap."""
     alignment = number_of(component, "alignment", 1)
     if alignment < 1 or alignment & alignment - 1:
         fail(component.lines.get("alignment", component.line),
@@ -205,7 +205,8 @@ def addresses_of(component):
 
 
 def unit_of(placed, component):
-    """Returns the distance of words in bytes, which all registers of a bus have in common."""
+    """Returns the difference between the addresses of consecutive words, in bytes. It is the same
+    for all registers of a bus."""
     sizes = {size for *_, size in placed}
     if all(address % 4 == 0 for _, address, _ in placed) and max(sizes) <= 4:
         return 4 if len(placed) > 1 else min(sizes)

@@ -14,8 +14,8 @@ TAKEN = {
 # registers have in any case.
 WITHOUT_EFFECT = {"donttest", "dontcompare", "hdl_path", "hdl_path_slice", "hdl_path_gate",
                   "hdl_path_gate_slice", "encode", "littleendian", "lsb0", "internal"}
-# Values with which software sees no difference to a missing property; other values are errors. A
-# property set to false is off.
+# Values for which software sees the same behaviour as without the property; other values are
+# errors. A property that is set to false counts as missing.
 OFF: dict[str, set[str]] = {
     "precedence": {"sw"}, "onread": set(), "rclr": set(), "rset": set(), "swwe": set(),
     "swwel": set(), "we": set(), "wel": set(), "hwenable": set(), "hwmask": set(), "anded": set(),
@@ -55,8 +55,9 @@ def is_standard(name):
 
 
 def problem_of(kind, name, value, declared):
-    """Returns why a property of a component cannot be taken, or "". `kind`: addrmap, reg, field;
-    root and defaults may have any. `declared`: names of the properties declared in the file."""
+    """Returns the reason why a property of a component cannot be converted, or "". `kind`: addrmap,
+    reg or field, or root or defaults, which may have any property. `declared`: names of the
+    properties declared in the file."""
     if name in declared:
         return ""
     if not is_standard(name) and name not in TAKEN:
@@ -73,7 +74,7 @@ def problem_of(kind, name, value, declared):
 
 
 def name_problem(text):
-    """Returns why a word cannot be a name, or ""."""
+    """Returns the reason why a text cannot be a name, or ""."""
     if text.lower() != text or text not in names.RDL_KEYWORDS:
         return ""
     return f"'{text}' is a keyword; write \\{text} for a name"

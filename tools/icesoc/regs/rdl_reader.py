@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """rdl_reader: reads SystemRDL 2.0 into a tree of components.
 
-The flat subset: addrmap, reg and field, named or not, with properties and defaults. Enums and the
-declarations of properties are skipped. Everything else is an error with its line.
+It reads a flat subset: addrmap, reg and field, named or not, with properties and defaults. Enums
+and the declarations of properties are skipped. Everything else is an error with its line.
 """
 import re
 from dataclasses import dataclass, field
@@ -37,21 +37,21 @@ def number(text):
 
 
 def unquoted(text):
-    """Returns a string's text in one line: \\" and \\\\ are a quote and a backslash."""
+    """Returns the text of a string in one line. \\" becomes a quote, and \\\\ a backslash."""
     return re.sub(r"\s+", " ", re.sub(r'\\(["\\])', r"\1", text[1:-1])).strip()
 
 
 @dataclass
 class Component:
-    kind: str  # root, addrmap, reg, field
+    kind: str  # kind of component: root, addrmap, reg or field
     parent: "Component"
     line: int
-    properties: dict = field(default_factory=dict)  # name to text
+    properties: dict = field(default_factory=dict)  # property name -> text
     defaults: dict = field(default_factory=dict)
-    lines: dict = field(default_factory=dict)  # line numbers of properties
+    lines: dict = field(default_factory=dict)  # property name -> line number
     types: dict = field(default_factory=dict)
     children: list = field(default_factory=list)
-    # defaults that were set before this component, in the components around it
+    # defaults that surrounding components had set before this component
     inherited: dict = field(default_factory=dict)
 
     def __post_init__(self):
@@ -62,8 +62,8 @@ class Component:
         return self.types.get(name) or (self.parent and self.parent.find_type(name))
 
     def get(self, name, otherwise=None):
-        """Returns the text of a property: "true" if it has no value, or its default if it is not
-        set."""
+        """Returns the text of a property. It is "true" if the property has no value, and
+        `otherwise` or the default if the property is not set."""
         if name in self.properties:
             return self.properties[name]
         return self.inherited.get(name, otherwise)
@@ -79,7 +79,7 @@ class Instance:
     line: int
     msb: int | None = None
     lsb: int | None = None
-    width: int | None = None  # width of a field that is given by its width
+    width: int | None = None  # number of bits of a field that is declared by its width only
     reset: int | None = None
     address: int | None = None
 
@@ -88,14 +88,15 @@ class Reader:
     def __init__(self, path):
         with open(path, encoding="utf-8-sig") as f:
             text = f.read()
-        # Comments keep their line ends; strings may contain comment marks.
+        # Blanks replace comments, but line ends are kept. A comment mark in a string does not begin
+        # a comment.
         text = re.sub(r'"(?:[^"\\]|\\.)*"|//[^\n]*|/\*.*?\*/',
                       lambda m: m[0] if m[0][0] == '"' else re.sub(r"[^\n]", " ", m[0]), text,
                       flags=re.S)
         self.tokens = [(m.lastgroup, m[0], text.count("\n", 0, m.start()) + 1)
                        for m in TOKEN.finditer(text)]
         self.at, self.last = 0, text.count("\n") + 1
-        self.declared = set()  # properties that the file declares
+        self.declared = set()  # names of the properties that the file declares
         for n, (_, token, line) in enumerate(self.tokens):
             if token == '"':
                 self.fail("this text has no closing quote", line)
@@ -245,7 +246,7 @@ class Reader:
                     self.take()
                     made.msb, made.lsb = first, self.take_number()
                 else:
-                    made.width = first  # index of the next free bit
+                    made.width = first  # the field begins at the next free bit
                 self.take("]")
             if self.peek() == "=":
                 self.take()

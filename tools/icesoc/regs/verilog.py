@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: MIT
-"""verilog: Verilog expressions for register blocks, used by the templates *.v.j2."""
+"""verilog: returns Verilog expressions for register blocks; the templates *.v.j2 use them."""
 import textwrap
 
 COLUMNS = 100
 
 
 def span(width):
-    """Returns the range of a vector; empty for one bit."""
+    """Returns the range of a vector, such as [31:0]; empty for one bit."""
     return "" if width == 1 else f"[{width - 1}:0]"
 
 
 def cut(vector, lsb, width, of=32):
-    """Returns `width` bits of a vector of `of` bits."""
+    """Returns the expression for `width` bits of a vector, starting with bit `lsb`. The vector has
+    `of` bits."""
     if width == of:
         return vector
     return f"{vector}[{lsb}]" if width == 1 else f"{vector}[{lsb + width - 1}:{lsb}]"
@@ -22,8 +23,8 @@ def number(value, width):
 
 
 def padded(parts, width=32, indent=0):
-    """Returns a vector of (lsb, width, expression) parts, with zeros between them; on several lines
-    if it is too long for one that has `indent` columns before it."""
+    """Returns a concatenation of (lsb, width, expression) parts, with zeros between them. It has
+    several lines if one line with `indent` columns in front would be too long."""
     texts, top = [], width
     for lsb, wide, text in sorted(parts, reverse=True):
         if lsb + wide < top:
@@ -40,7 +41,7 @@ def padded(parts, width=32, indent=0):
 
 
 def shown(r, indent=0):
-    """Returns the read value of a register."""
+    """Returns the expression for the read value of a register."""
     return padded([(p.lsb, p.width, r.port(p) + ("_o" if r.holds(p) else "_i")) for p in r.parts],
                   32, indent)
 
@@ -50,19 +51,20 @@ def event_inputs(b, indent=0):
 
 
 def aligned(rows, mark):
-    """Returns lines of (left, right) with the mark between them aligned in one column."""
+    """Returns lines that consist of a left text, the mark and a right text; the marks are aligned
+    in one column."""
     broad = max((len(left) for left, _ in rows), default=0)
     return [f"{left:{broad}}{mark}{right}" for left, right in rows]
 
 
 def write_signals(b):
-    """Returns (name, word, lock) of the pulses of writes."""
+    """Returns (name, word, lock) for each signal that is high in the clock of a write."""
     return [("event", "EVENT", ""), ("mask", "MASK", "")] + [
         (r.lower, r.name, r.lock) for r in b.own_registers if r.is_written]
 
 
 def write_wires(b):
-    """Returns the declarations of the pulses of writes."""
+    """Returns the declarations of the signals that are high in the clock of a write."""
     rows = [(f"{name}_write", f"write && bus_addr_i == {b.prefix}_{word}"
              f"{f' && !{lock}_i' if lock else ''};") for name, word, lock in write_signals(b)]
     return ["    wire " + line for line in aligned(rows, " = ")]
@@ -90,7 +92,7 @@ def outputs(b):
 
 
 def read_cases(b):
-    """Returns the cases of the read multiplexer; the words in the RAM are one case."""
+    """Returns the cases of the read multiplexer. All words in the RAM share one case."""
     label = b.prefix + "_"
     short = [("ID:", f"{label}ID_VALUE"), ("EVENT:", padded([(0, b.event_bits, "events")])),
              ("MASK:", padded([(0, b.event_bits, "mask")]))]
@@ -105,15 +107,16 @@ def read_cases(b):
 
 
 def declared(port, is_last):
-    """Returns the lines of a port."""
+    """Returns the lines that declare a port."""
     kind = "input  wire" if not port.is_out else "output reg " if port.is_reg else "output wire"
     line = f"    {kind} {span(port.width):6} {port.name}{'' if is_last else ','}"
     return commented(line, port.group, port.doc, "// ")
 
 
 def commented(line, group, doc, mark):
-    """Returns the lines of a port: the comment of the group that it begins, the port, and its own
-    comment after or before it."""
+    """Returns the lines of a port: the title of the group if the port begins one, the port, and the
+    port's comment. The comment follows the port on the same line, or stands before the port if it
+    is too long."""
     doc, before = plain(doc), "    " + mark
     lines = wrapped(group, before, before) if group else []
     if doc and len(line) + 1 + len(mark) + len(doc) > COLUMNS:
@@ -127,8 +130,8 @@ def wrapped(text, first, others):
 
 
 def plain(text):
-    """Returns a text for a comment: without the commands of tools, and without ends that continue
-    the line."""
+    """Returns a text that is safe in a comment: tools do not read it as a command, and its end does
+    not continue the line."""
     text = text.replace("/*", "/ *").replace("*/", "* /")
     if text.split(" ")[0].lower() in ("verilator", "synopsys", "synthesis", "pragma", "psl",
                                       "xilinx", "altera", "coverage", "lint_checking"):
@@ -142,7 +145,7 @@ def tail(text, mark):
 
 
 def table(b, mark):
-    """Returns the list of registers for the head of a file."""
+    """Returns the list of registers for the comment at the head of a file."""
     broad = max(len(r.name) for r in b.registers)
     lines = []
     for r in b.registers:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""vhdl: VHDL expressions for register blocks, used by the templates *.vhd.j2."""
+"""vhdl: returns VHDL expressions for register blocks; the templates *.vhd.j2 use them."""
 from icesoc.regs.names import SLOT_PORTS
 from icesoc.regs.verilog import aligned, commented, write_signals
 
@@ -15,7 +15,7 @@ def part(vector, lsb, width, of=32):
 
 
 def bits(value, width):
-    """Returns a constant."""
+    """Returns a constant of `width` bits."""
     if width == 1:
         return f"'{value}'"
     return "(others => '0')" if value == 0 else f'"{value:0{width}b}"'
@@ -73,7 +73,7 @@ def vhdl_outputs(b):
 
 
 def vhdl_reads(b):
-    """Returns (label, [(target, value)]) of the read multiplexer."""
+    """Returns (label, [(target, value)]) for each case of the read multiplexer."""
     n, arms = b.event_bits, []
     data = f"bus_rdata_o({n - 1} downto 0)"
     arms.append(("ID", [("bus_rdata_o",
@@ -88,7 +88,8 @@ def vhdl_reads(b):
 
 
 def word_cover(b):
-    """Returns the existing words as choices of a case: 0 to 10 | 13."""
+    """Returns the words of the block's registers in the form of a choice of a VHDL case, such as 0
+    to 10 | 13."""
     words, runs = sorted(r.word for r in b.registers), []
     for word in words:
         if runs and runs[-1][1] == word - 1:

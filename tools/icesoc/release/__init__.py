@@ -1,2 +1,3 @@
 # SPDX-License-Identifier: MIT
-"""release: what leaves this tree: IceC for other firmware projects, and the files of a release."""
+"""release: makes the files that are published: IceC for other firmware projects, and the files of a
+release."""

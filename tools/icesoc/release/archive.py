@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""archive: tar and zip files, checksums and signatures. Equal input gives equal bytes."""
+"""archive: makes tar and zip files, checksums and signatures. Equal input gives equal bytes."""
 import gzip
 import hashlib
 import io
@@ -12,7 +12,8 @@ from pathlib import Path
 
 from icesoc.util.errors import Stop
 
-SIGNATURES = {".sec": ("minisign", ".minisig"), "": ("gpg", ".asc")}  # key: suffix of the key file
+# suffix of the key file -> (program that signs, suffix of the signature)
+SIGNATURES = {".sec": ("minisign", ".minisig"), "": ("gpg", ".asc")}
 
 
 def tar(path, folder, files, seconds, programs=()):
@@ -36,7 +37,7 @@ def tar_of_folder(path, folder, source, seconds):
 
 def zip_(path, files, seconds):
     """Writes a zip file with `files`, name to bytes."""
-    when = time.gmtime(max(seconds, 315532800))[:6]  # times in zip files begin with 1980
+    when = time.gmtime(max(seconds, 315532800))[:6]  # zip files cannot store times before 1980
     with zipfile.ZipFile(path, "w") as made:
         for name in sorted(files):
             entry = zipfile.ZipInfo(name, when)
@@ -73,8 +74,8 @@ def sign(path, key):
         raise Stop(f"release: {program} is missing: apt-get install "
                    + ("gnupg" if program == "gpg" else program), 2)
     signature.unlink(missing_ok=True)
-    # The default comment of minisign contains the time; without it a signature depends only on the
-    # file.
+    # The default comment of minisign contains the time. Without this comment, the signature depends
+    # only on the file.
     words = (["gpg", "--batch", "--yes", "--armor", "--local-user", key, "--output", signature,
               "--detach-sign", path] if program == "gpg" else
              ["minisign", "-S", "-s", key, "-t", path.name, "-x", signature, "-m", path])

@@ -34,7 +34,7 @@ class Release:
     tree: Path  # folder with the same files, unpacked
     origin: Path  # folder of the working tree
     out: Path
-    folders: list  # folders with Debian packages; empty: packages are built
+    folders: list  # folders with Debian packages; if the list is empty, the packages are built
 
     def path(self, name):
         return self.out / name.replace("VERSION", self.version)
@@ -47,7 +47,8 @@ class Release:
 
 
 def read_commit(tree):
-    """Returns the commit, its time, its files and the names of its programs, as in Release."""
+    """Returns the commit, its time, its files and the names of its executable files: fields of
+    Release."""
     git = ["git", "-C", str(tree)]
     commit = output([*git, "rev-parse", "HEAD"], check=False, stderr=subprocess.DEVNULL).strip()
     if not commit:
@@ -62,8 +63,9 @@ def read_commit(tree):
 
 
 def number(tree, commit, files):
-    """Returns the version of a commit. If it has unreleased changes, this is the last version and
-    the number of the commit; a released version always belongs to one commit."""
+    """Returns the version of a commit. If CHANGELOG.md has unreleased changes, the version consists
+    of the last version and the hash of the commit. Fails if the version is already released as
+    another commit."""
     text = files["CHANGELOG.md"].decode()
     newest = version.newest(text)
     if version.unreleased(text):
@@ -105,9 +107,9 @@ def site(release):
 
 
 def packages(release):
-    """Copies the Debian packages of the given folders, which `./icesoc package` has built from the
-    same commit on each release of Debian. Without folders they are built, from the working tree,
-    which must equal the commit."""
+    """Copies the Debian packages in the given folders. `./icesoc package` must have built them from
+    the same commit, on each release of Debian. Without folders, builds the packages from the
+    working tree, which must equal the commit."""
     for folder in release.folders:
         copy_packages(release, Path(folder))
     if release.folders:
@@ -154,9 +156,9 @@ MAKERS = dict(zip(PARTS, (source, icec, changes, site, packages, bill), strict=T
 
 
 def build(tree, out, parts, key, folders=()):
-    """Makes these parts in an empty folder, with SHA256SUMS and, if there is a key, a signature.
-    `folders` have the Debian packages, if these are built already. Returns the version and the
-    files, the signature last."""
+    """Makes the given parts in an empty folder, with SHA256SUMS and, if there is a key, a
+    signature. `folders` contain the Debian packages if these are built already. Returns the version
+    and the paths of the files; the signature is the last one."""
     commit, seconds, files, programs = read_commit(tree)
     with tempfile.TemporaryDirectory() as work:
         for name, data in files.items():

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""components: reads sw/components.toml, the list of what other firmware projects can use."""
+"""components: reads sw/components.toml, the list of the components that other firmware projects can
+use."""
 import dataclasses
 import re
 import tomllib
@@ -9,7 +10,8 @@ from icesoc import TREE
 from icesoc.util.errors import Stop
 
 LIST = "sw/components.toml"
-SHARED = ["sw/base"]  # headers that every component may include; they are part of the component
+# headers that every component may include; they are copied into each component
+SHARED = ["sw/base"]
 
 
 @dataclasses.dataclass
@@ -37,7 +39,7 @@ class Component:
 
 
 def read(tree=TREE):
-    """Returns the components by name, each after those that it needs."""
+    """Returns the components by name. Each comes after the components that it needs."""
     known = {}
     for name, its in tomllib.loads((Path(tree) / LIST).read_text(encoding="utf-8")).items():
         try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""packs: IceC in the forms of package managers for firmware.
+"""packs: puts IceC into the forms of package managers for firmware.
 
 All forms contain the single files of the components (single_file.py), because the layered sources
 have headers with common names such as link.h. `library` returns the files of one folder that is a
@@ -35,7 +35,8 @@ Set limits such as `-DICE_MESSAGE_MAX=1024` for all files of the program; `src/i
 
 
 def limits(tree=TREE):
-    """Returns IceC's numbers that a program may choose: (name, value, help), in order."""
+    """Returns the limits of IceC that a program may choose, in the order of ice_config.h: (name,
+    default value, help)."""
     text = (tree / CONFIG).read_text(encoding="utf-8")
     found = re.findall(r"/\*((?:(?!\*/).)*)\*/\n#ifndef (\w+)\n#define \2 (\w+)\n#endif", text,
                        re.S)
@@ -82,7 +83,8 @@ def zephyr_cmake(tree=TREE):
 
 
 def sources(version, tree=TREE):
-    """Returns the single files and the licence, with what is common to all forms."""
+    """Returns the files that all forms have in common: the single files of the components, README
+    and licence."""
     files = {f"src/{name}": text for name, text in single_file.files(None, tree, version).items()}
     rows = "\n".join(f"| `src/{its.name}.c`, `src/{its.name}.h` | {its.title}"
                      + (f"; needs {', '.join(its.needs)}" if its.needs else "") + " |"
@@ -109,8 +111,8 @@ def library(version, tree=TREE):
 
 
 def pdsc(version, date, changes, tree=TREE):
-    """Returns the description of the CMSIS-Pack. `date` is the release's, such as 2026-11-28;
-    `changes` is its section of the changelog."""
+    """Returns the description of the CMSIS-Pack. `date` is the date of the release, such as
+    2026-11-28; `changes` is the section of the changelog about it."""
     package = ET.Element("package", {
         "schemaVersion": SCHEMA, "xmlns:xs": "http://www.w3.org/2001/XMLSchema-instance",
         "xs:noNamespaceSchemaLocation": "PACK.xsd"})

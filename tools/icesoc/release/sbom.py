@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""sbom: the bill of materials of a release, in SPDX 2.3 (https://spdx.github.io/spdx-spec/v2.3).
+"""sbom: writes the bill of materials of a release, in SPDX 2.3
+(https://spdx.github.io/spdx-spec/v2.3).
 
 It lists every file of the source archive with its licence, the other files of the release, and
-what is needed to build: the Debian packages of cmake/setup.sh and the sources that
+everything that the build needs: the Debian packages of cmake/setup.sh and the sources that
 icesoc.util.fetch downloads.
 """
 import hashlib
@@ -35,7 +36,7 @@ def debian(setup):
 
 
 def checksum(kind, digest):
-    """Returns an SPDX checksum of a digest in hexadecimal digits, or of a hash."""
+    """Returns an SPDX checksum. The digest is given in hexadecimal digits, or as a hash object."""
     text = digest if isinstance(digest, str) else digest.hexdigest()
     return {"algorithm": kind, "checksumValue": text}
 

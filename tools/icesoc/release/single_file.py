@@ -3,9 +3,9 @@
 
     tools/python -m icesoc.release.single_file FOLDER [COMPONENT...]
 
-The C file contains all sources, one after the other. A file-local name that two sources use gets
-the name of the source as a prefix, and each source ends by undefining its macros. The header
-contains every header that programs include.
+The C file contains all sources, one after the other. If two sources use the same file-local name,
+it gets the name of the source as a prefix. Each source ends with #undef lines for its macros. The
+header contains every header that programs include.
 """
 import argparse
 import re
@@ -21,7 +21,8 @@ from icesoc.util.files import write
 
 TOKEN = re.compile(r'/\*.*?\*/|"(?:\\.|[^"\\])*"|\'(?:\\.|[^\'\\])*\'|[A-Za-z_]\w*|->|\s+|.', re.S)
 INCLUDE = re.compile(r'^#include ([<"])([^">]+)[">].*\n', re.M)
-MINIMAL = ("ICEC_MINIMAL", "LINK_MINIMAL")  # the minimal layers are not part of any component
+# macros of the minimal layers, which do not belong to any component
+MINIMAL = ("ICEC_MINIMAL", "LINK_MINIMAL")
 
 
 def plain(text):
@@ -31,7 +32,8 @@ def plain(text):
 
 
 def outer(text):
-    """Returns the declarations at file level: function bodies become {}, initialisers vanish."""
+    """Returns the declarations at file level. Function bodies become {}, and initialisers are
+    removed."""
     parts, depth = [], 0
     text = re.sub(r"^#(.*\\\n)*.*\n", "", plain(text), flags=re.M)
     for token in re.findall(r"[{}]|[^{}]+", text):
@@ -58,7 +60,7 @@ def declared(statement):
 
 
 def local_names(text):
-    """Returns the names that a C file has for itself: static functions and data, types, enumerators
+    """Returns the names that are local to a C file: static functions and data, types, enumerators
     and tags."""
     text, found = outer(text), set()
     for match in re.finditer(r"\bstatic\b([^;{]*?(?:=\s*\{[^}]*\}[^;{]*)?)[;{]", text):
@@ -71,7 +73,8 @@ def local_names(text):
 
 
 def renamed(text, names, stem):
-    """Returns the text with `stem_` in front of these names, except where they are members."""
+    """Returns the text with `stem_` in front of these names. Names of members of structures are not
+    changed."""
     parts, before = [], ""
     for token in TOKEN.findall(text):
         parts.append(f"{stem}_{token}" if token in names and before not in (".", "->") else token)
@@ -82,7 +85,8 @@ def renamed(text, names, stem):
 
 def full(text):
     """Returns the text without the parts for the minimal layers."""
-    lines, stack = [], []  # stack: for each open #if, whether it is ours and whether it holds
+    # stack: for each open #if, whether it tests a macro of MINIMAL, and whether its text is kept
+    lines, stack = [], []
     for line in text.splitlines(keepends=True):
         words = line.split()
         if words and words[0] in ("#if", "#ifdef", "#ifndef"):
@@ -117,7 +121,8 @@ class Joiner:
 
     def __init__(self, component, known, tree=TREE):
         self.component, self.known, self.tree = component, known, Path(tree)
-        self.system = {"h": [], "c": []}  # headers of the C library, in the order of their use
+        # headers of the C library, in the order in which they are first included
+        self.system = {"h": [], "c": []}
         self.features = []  # macros that choose what the C library declares
         self.done = set()
         self.foreign = set()  # headers of the components that this one needs
@@ -125,7 +130,8 @@ class Joiner:
             self.foreign |= Joiner(known[name], known, tree).public()
 
     def public(self):
-        """Returns the paths of the headers that programs see, with those they include."""
+        """Returns the paths of the headers that programs include, and of the headers that these
+        include."""
         if not self.done:
             for path in self.component.headers:
                 self.header(path, "h")
@@ -146,7 +152,8 @@ class Joiner:
                    f"{self.component.name} ({components.LIST})")
 
     def header(self, path, kind):
-        """Returns the text of a header with the headers it includes, unless it is there already."""
+        """Returns the text of a header, including the headers that it includes. Returns nothing if
+        the output already contains the header."""
         if path in self.done or path in self.foreign:
             return ""
         self.done.add(path)
@@ -161,7 +168,8 @@ class Joiner:
         return f"\n/* ---- {Path(path).name} ---- */\n\n{body}\n"
 
     def joined(self, text, path, kind):
-        """Returns a text with its #includes replaced."""
+        """Returns a text in which each #include of a local header is replaced by the text of the
+        header."""
         def replace(match):
             if match[1] == "<":
                 if match[2] not in self.system["h"] + self.system["c"]:

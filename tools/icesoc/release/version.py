@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""version: the version of the product. It is written in one place, CHANGELOG.md.
+"""version: reads the version of the product from CHANGELOG.md, the only place in which it is
+written.
 
-    tools/python -m icesoc.release.version     prints it
+    tools/python -m icesoc.release.version     prints the version
 """
 import re
 

@@ -38,8 +38,8 @@ class SiteError(Exception):
 
 
 def adopted(tree):
-    """Returns the pages outside docs/ that are part of the site: the pages above, and one per
-    core."""
+    """Returns the pages outside docs/ that are part of the site: the pages in ADOPTED, and one page
+    per core."""
     cores = {f"ip/{path.parent.name}/README.md": f"reference/cores/{path.parent.name}"
              for path in sorted(tree.glob("ip/*/README.md"))}
     return {source: target for source, target in {**ADOPTED, **cores}.items()
@@ -47,11 +47,11 @@ def adopted(tree):
 
 
 def relink(text, source, target, moved):
-    """Returns a page's text with its links changed for its place in the site.
+    """Returns the text of a page with its links changed for its place in the site.
 
     `source` and `target` are the page's paths in the tree and in the site; `moved` maps paths of
-    pages in the tree to paths in the site, both without a leading slash. A link to a file that is
-    not a page becomes the name of the file, set as code.
+    pages in the tree to paths in the site. Paths have no leading slash. A link to a file that is
+    not a page is replaced by the name of the file, set as code.
     """
     def replaced(match):
         label, link = match[1], match[2]
@@ -73,7 +73,8 @@ def relink(text, source, target, moved):
 
 
 def stage(tree, pages, helps):
-    """Copies the pages of docs/, the adopted ones and the generated ones into `pages`."""
+    """Copies the pages of docs/ and the pages outside docs/ into `pages`, and writes the generated
+    pages there."""
     shutil.rmtree(pages, ignore_errors=True)
     shutil.copytree(tree / "docs", pages, ignore=shutil.ignore_patterns("CMakeLists.txt", "*.sh"))
     moved = adopted(tree)
@@ -100,12 +101,12 @@ def run(words, what, log):
 
 
 def make_self_contained(html):
-    """Repairs what Debian's package of the theme takes from a web server of the machine.
+    """Makes the site independent of a web server.
 
-    Its style sheet imports /javascript/normalize.css, and its script is a module that imports
-    another one. A browser loads neither from files, so the menu that follows the reader and the
-    choice between light and dark would not work. Raises SiteError if another file is named by
-    an absolute path.
+    In Debian's package of the theme, the style sheet imports /javascript/normalize.css, and the
+    script is a module that imports another module. A browser loads neither from files, so the menu
+    that follows the reader and the choice between light and dark would not work. Raises SiteError
+    if a page still uses a file with an absolute path.
     """
     style = html / "_static/styles/furo.css"
     text = style.read_text()
@@ -134,7 +135,7 @@ def build(tree, out, helps):
         inputs=" ".join(f'"{folder}"' for folder in folders), output=f'"{out / "doxygen"}"',
         filter=Path(__file__).with_name("doxygen_filter.py")))
     run(["doxygen", out / "Doxyfile"], "doxygen", out / "doxygen.log")
-    # Sphinx's cache, which names the folders of this run, is not part of the site.
+    # Sphinx's cache contains the paths of this machine, so it is stored outside the site.
     run(["sphinx-build", "-q", "-W", "--keep-going", "-b", "html", "-d", out / "doctrees", "-D",
          f"breathe_projects.icesoc={out / 'doxygen/xml'}", out / "pages", out / "html"],
         "Sphinx", out / "sphinx.log")

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""doxygen_filter: turns the project's plain C comments into Doxygen's.
+"""doxygen_filter: turns the project's plain C comments into Doxygen comments.
 
 Usage: doxygen_filter.py FILE. A comment on separate lines documents the following code; a comment
 after code documents that code. The first comment documents the file.

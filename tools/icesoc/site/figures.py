@@ -15,7 +15,7 @@ import sys
 import zlib
 from pathlib import Path
 
-KEYWORD = b"Description"  # PNG's keyword for such a text
+KEYWORD = b"Description"  # keyword of the PNG chunk with the text
 
 PICTURE = "docs/pictures/{}.png"
 MISSION = PICTURE.format("mission")
@@ -23,8 +23,8 @@ MISSION = PICTURE.format("mission")
 # Output of `make run` in README.md, which is the text in the picture of the same flight.
 TRANSCRIPT = re.compile(r"(?<=Ice's log lines\):\n\n```\n).*?(?=```)", re.S)
 
-# Page or picture: texts in it, in which a name in braces stands for a figure. A name that has no
-# source must have the same figure wherever it stands.
+# Page or picture -> texts in it, in which a name in braces stands for a figure. If a figure has no
+# source, it must be the same in all places that contain its name.
 PLACES = {
     "README.md": [
         "| {minimal}; {unlinked} without `--gc-sections` |",
@@ -91,7 +91,7 @@ def put_text(picture, text):
     """Puts a text into a PNG file, after its header."""
     data = Path(picture).read_bytes()
     chunk = b"zTXt" + KEYWORD + b"\0\0" + zlib.compress(text.encode("utf-8"), 9)
-    header = 8 + 12 + 13  # signature, and the header's chunk
+    header = 8 + 12 + 13  # the signature and the chunk IHDR have this length together
     Path(picture).write_bytes(
         data[:header] + struct.pack(">I", len(chunk) - 4) + chunk
         + struct.pack(">I", zlib.crc32(chunk)) + data[header:])
@@ -110,8 +110,8 @@ def content(tree, place):
 
 
 def rows(tree):
-    """Returns the first number of each row of docs/figures.md that has one column of figures, and
-    the limit of a row, if it has one, as `limit of NAME`."""
+    """Returns {name: figure} for the rows of docs/figures.md with one column of figures: the first
+    number of the row. If a row has a limit, `limit of NAME` is the limit."""
     found = {}
     for name, value, limit in re.findall(
             r"^\| ([^|]+) \| ([\d,.]+) [^|]*\| (?:limit ([\d.]+))?[^|]*\|$",
@@ -150,14 +150,15 @@ def values(tree):
 
 
 def pattern(text):
-    """Returns a place's text as a regular expression, and the names of its figures."""
+    """Returns the text of a place as a regular expression, and the names of the figures in it."""
     names = re.findall(r"\{([\w.]+)\}", text)
     parts = [re.escape(part).replace(r"\ ", r"\s+") for part in re.split(r"\{[\w.]+\}", text)]
     return re.compile(r"([\d,]+(?:\.\d+)?)".join(parts)), names
 
 
 def differences(tree, places=None):
-    """Yields a line for each figure that differs from its source or from the place before."""
+    """Yields a line for each figure that differs from its source, or from the same figure in an
+    earlier place."""
     known = {name: (value, "its source") for name, value in values(tree).items()}
     for place, texts in (places or PLACES).items():
         contained = content(tree, place)
@@ -176,7 +177,8 @@ def differences(tree, places=None):
 
 
 def correct(tree, given=None):
-    """Writes the figures into the pages: `given`, then those of the sources. Pictures are left."""
+    """Writes figures into the pages: the figures in `given`, then those that have a source.
+    Pictures are not changed."""
     known = {**values(tree), **(given or {})}
     readme = Path(tree, "README.md")
     was = readme.read_text()

@@ -30,7 +30,7 @@ class Parameter:
 
 @dataclasses.dataclass
 class Port:
-    """A port; `clock` is the clock that it belongs to, or "asynchronous"."""
+    """A port. `clock` is the name of its clock, or "asynchronous"."""
     name: str
     direction: str  # input, output or inout
     width: str  # as written, such as [31:0]; empty for one bit
@@ -65,8 +65,8 @@ def first_comment(lines, mark):
 
 
 def section(text, begin):
-    """Returns the text between the parenthesis at `begin` and the matching one, and where it ends.
-    Parentheses in comments do not count."""
+    """Returns the text between the parenthesis at `begin` and the matching one, and the index of
+    the end. Parentheses in comments do not count."""
     depth, at = 0, begin
     while at < len(text):
         if text.startswith(("//", "--"), at):
@@ -90,7 +90,8 @@ def included(name, root):
 
 
 def expand(text, root):
-    """Replaces `include lines of a port list by the lines of these files, without their heads."""
+    """Replaces each `include line of a port list by the lines of the included file, without the
+    comment at its head."""
     lines = []
     for line in text.splitlines():
         match = INCLUDE.search(line)
@@ -132,7 +133,7 @@ def name_clocks(ports):
 
 
 def read_verilog(path, root):
-    """Returns the module of a Verilog file, or nothing if it declares none."""
+    """Returns the module in a Verilog file, or None if the file declares none."""
     text = path.read_text()
     match = re.search(r"^module\s+(\w+)\s*", text, re.M)
     if not match:
@@ -149,7 +150,7 @@ def read_verilog(path, root):
 
 
 def read_vhdl(path):
-    """Returns the entity of a VHDL file, or nothing if it declares none."""
+    """Returns the entity in a VHDL file, or None if the file declares none."""
     text = path.read_text()
     match = re.search(r"^entity\s+(\w+)\s+is", text, re.M | re.I)
     if not match:
@@ -172,7 +173,7 @@ def read_vhdl(path):
 
 
 def finished(name, path, text, mark, parameters, ports):
-    """Returns the entity, with its summary and the clocks of its ports."""
+    """Returns the entity, completed with its summary and the clocks of its ports."""
     comment = first_comment(text.splitlines(keepends=True), mark)
     summary, _, rest = comment.partition("\n\n")
     summary = re.sub(rf"^{name}:\s*", "", " ".join(summary.split()))
@@ -181,5 +182,6 @@ def finished(name, path, text, mark, parameters, ports):
 
 
 def read(path, root):
-    """Returns the entity in a file, or nothing. `root` is the tree, for include files."""
+    """Returns the module or entity in a file, or None. `root` is the tree, in which include files
+    are found."""
     return read_vhdl(path) if path.suffix == ".vhd" else read_verilog(path, root)

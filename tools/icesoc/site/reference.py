@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """reference: writes the generated pages of the site's reference part.
 
-Each function takes the tree and the folder of staged pages, `pages`.
+The functions that write pages take the tree and `pages`, the folder of the pages for Sphinx.
 """
 import json
 import re
@@ -15,9 +15,9 @@ from icesoc.site import hdl, symbol
 ROOMS = {"bus": "Register bus", "hdl/cdc": "Clock-domain crossings", "hdl/ddr": "Memory ports",
          "hdl/fsmc": "FSMC bridge", "hdl/modem": "Modem controller", "hdl/system": "Platform",
          "hdl/bringup": "Tester of a new board", "hdl": "Chip"}
-# Files that contain properties or models, and no hardware.
+# Files that contain properties or models instead of hardware.
 NOT_HARDWARE = re.compile(r"(_proof|_rules|cdc_skew|idle_proof)$")
-# Headers of the C API, by the component that a firmware links.
+# Headers of the C API, grouped by the component to which they belong.
 HEADERS = {
     "icec": ("IceC: Ice in C90", ["icec.h", "ice_stream.h", "ice_value.h", "ice_port.h",
                                   "ice_config.h", "tcp_endpoint.h", "xbee_endpoint.h"]),
@@ -49,7 +49,7 @@ def write(path, text):
 
 
 def paragraphs(comment):
-    """Returns a file's comment as Markdown: indented parts and tables as blocks of code."""
+    """Returns the comment of a file as Markdown; indented parts and tables become code blocks."""
     parts = []
     for part in re.split(r"\n\s*\n", comment):
         lines = part.splitlines()
@@ -61,7 +61,7 @@ def paragraphs(comment):
 
 
 def constraint_lines(entity, tree):
-    """Returns the lines of the chip's constraint file that name a pin of the entity."""
+    """Returns those lines of the chip's constraint file that contain a pin of the entity."""
     pins = [p.name for p in entity.ports if p.clock == "asynchronous" and "_async" not in p.name]
     found = []
     for line in (tree / "synth/ise/chip.ucf").read_text().splitlines():
@@ -107,7 +107,8 @@ def entity_page(entity, tree, figures):
 
 
 def write_hdl(tree, pages):
-    """Writes a page for each module of the platform, and one with links to them for each room."""
+    """Writes a page for each module of the platform, and for each folder a page with links to its
+    modules."""
     figures = json.loads((tree / "synth/baseline.json").read_text())
     names = []
     for room, title in ROOMS.items():

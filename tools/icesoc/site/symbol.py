@@ -2,7 +2,8 @@
 """symbol: draws the ports of a module as an SVG: inputs on the left, outputs on the right."""
 from html import escape
 
-STEP, HEAD, MARGIN, CHAR = 18, 30, 60, 7.3  # px; CHAR: width of a monospaced character
+# px; the last one is the width of a monospaced character
+STEP, HEAD, MARGIN, CHAR = 18, 30, 60, 7.3
 STYLE = """<style>
 .box { fill: none; stroke: currentColor; stroke-width: 1.5; }
 .line { stroke: currentColor; stroke-width: 1; }
@@ -13,7 +14,7 @@ text { font: 12px ui-monospace, monospace; fill: currentColor; }
 
 
 def rows(ports):
-    """Returns the ports with None between groups."""
+    """Returns the ports as rows of the drawing, with None as a gap between groups."""
     result, group = [], None
     for port in ports:
         if result and port.group != group:

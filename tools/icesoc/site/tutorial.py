@@ -15,7 +15,7 @@ from pathlib import Path
 @dataclasses.dataclass
 class Step:
     """A command of the page with its expected output, or a file with its content."""
-    line: int  # line of the page, starting with 1
+    line: int  # line number in the page, starting with 1
     command: str = ""
     expected: list = dataclasses.field(default_factory=list)
     status: int = 0
@@ -24,7 +24,7 @@ class Step:
 
 
 class Mismatch(Exception):
-    """The page and the program differ; the text names the line of the page."""
+    """The program's output differs from the page; the text names the line of the page."""
 
 
 def steps(text):
@@ -68,8 +68,8 @@ def _block(number, language, lines, before):
 
 
 def compare(expected, printed):
-    """Returns the first expected line that the output does not have in its place; None if all
-    lines are there and no others."""
+    """Compares the output with the expected lines. Returns the first expected line that is missing
+    or in the wrong place, or the first additional line; None if the output is as expected."""
     at, skipping = 0, False
     for line in expected:
         if line == "...":
@@ -87,8 +87,8 @@ def compare(expected, printed):
 
 
 def follow(page, folder, execute, begin="", brief=False):
-    """Follows a page in a folder. `execute(command)` returns exit status and output. Steps up to
-    the command `begin` are left out, and the long ones if `brief`."""
+    """Follows a page in a folder. `execute(command)` returns exit status and output. Skips the
+    steps up to the command `begin` and, if `brief`, the blocks that are marked as long."""
     todo = steps(Path(page).read_text())
     if begin:
         at = next((n for n, step in enumerate(todo) if step.command == begin), None)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""baseline: the accepted figures of all designs (synth/baseline.json), the growth since, and
-the state of each design, in one of four words."""
+"""baseline: the accepted figures of all designs (synth/baseline.json), the growth since they were
+accepted, and the state of each design (see STATES)."""
 import json
 import subprocess
 
@@ -15,9 +15,11 @@ NAMED_CHANGES = 6
 
 MEASURED, ACCEPTED, CHANGED, NEVER = STATES = (
     "measured now",         # figures of the current sources, from this run or from the cache
-    "as accepted",          # not synthesised here, but these sources produced the accepted figures
+    # not synthesised here, but the accepted figures were measured with these sources
+    "as accepted",
     "changed since",        # the sources differ from those of the last measured or accepted figures
-    "never measured here")  # as above, and the sources of the accepted figures, if any, are unknown
+    # the sources differ, or it is not known with which sources the accepted figures were measured
+    "never measured here")
 
 
 def state_of(run, source_hash, accepted):
@@ -41,7 +43,8 @@ def short_version(yosys):
 
 
 def clock_text(mhz):
-    """Returns a clock as the terminal, the page and the accepted figures round it."""
+    """Returns a clock as text. The terminal, the page and the accepted figures all use this
+    rounding."""
     return f"{mhz:.1f}"
 
 
@@ -73,7 +76,7 @@ def read_baseline(file):
 
 
 def written(baseline):
-    """Returns the text of the file with one line per instance, so that differences between commits
+    """Returns the text of the file. Each instance has one line, so that differences between commits
     are readable."""
     def compact(value):
         return json.dumps(value, separators=(",", ":"))
@@ -94,9 +97,9 @@ def written(baseline):
 
 
 def accept(report, file):
-    """Records the figures of measured designs, keeps those of others, and drops designs that no
-    longer exist. Refuses figures above a limit of synth/designs.json: limits are changed only
-    there."""
+    """Replaces the accepted figures of the measured designs, keeps the figures of other designs,
+    and drops designs that no longer exist. Rejects figures above a limit of synth/designs.json; a
+    limit can only be changed there."""
     old = report.baseline
     # Figures of two versions of Yosys are not comparable.
     same = short_version(old["yosys"]) == short_version(report.yosys)
@@ -127,7 +130,8 @@ def by_signal(costs):
 
 
 def changes(before, after):
-    """Returns (name, more LUTs, more flip-flops) of each change, largest growth first."""
+    """Returns (name, additional LUTs, additional flip-flops) for each change, largest growth
+    first."""
     names = sorted({*before, *after})
     rows = [(name, after.get(name, Cost()).lut - before.get(name, Cost()).lut,
              after.get(name, Cost()).ff - before.get(name, Cost()).ff) for name in names]
@@ -135,7 +139,7 @@ def changes(before, after):
 
 
 def grown(title, changed):
-    """Returns lines below a title, or nothing if nothing grew."""
+    """Returns a title and a line for each change, or nothing if nothing grew."""
     lines = []
     for name, luts, ffs in changed[:NAMED_CHANGES]:
         if luts + ffs > 0:
@@ -165,8 +169,8 @@ def judge(row, baseline, yosys, goal):
         return ([f"{name}: synthesis failed"] if row.main.wanted else []), []
     failures = [f"{name}: synthesis for {other.family} failed" for other in row.others
                 if other.wanted and other.error]
-    # Another version of Yosys gives other figures, so only the version of the accepted figures is
-    # judged.
+    # Another version of Yosys gives other figures, so figures are only judged if they come from the
+    # same version as the accepted figures.
     comparable = short_version(baseline["yosys"]) in ("", short_version(yosys))
     if not comparable:
         return failures, [f"{text} (by another Yosys than the limit was set with)"
@@ -192,7 +196,7 @@ def judge(row, baseline, yosys, goal):
 
 
 def git(source, *words):
-    """Returns the output of git, "" without git."""
+    """Returns the output of git, or "" if git fails or is missing."""
     try:
         done = subprocess.run(["git", "-C", source, *words], text=True, stdout=subprocess.PIPE,
                               stderr=subprocess.DEVNULL)

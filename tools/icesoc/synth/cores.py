@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""cores: computes the cost of each core in the chip: the core itself, its registers, its slot of
-the decoder, and its memory port."""
+"""cores: computes the cost of each core in the chip. The cost has four parts: the core itself, its
+registers, its slot in the decoder, and its memory port."""
 import re
 
 from icesoc.regs.model import Block
@@ -18,15 +18,17 @@ class NotInChip(Stop):
 
 
 def read_map(file):
-    """Returns the numbers of the chip's map by name, such as SLOT_FIR; {} without a map."""
+    """Returns the numbers in the chip's address map by name, such as SLOT_FIR; {} if the file does
+    not exist."""
     if not file.exists():
         return {}
     return {c.name: c.value for c in Block.read(file, is_built=True).constants}
 
 
 def slot_cost(library, options, map, wanted):
-    """Returns the cost of a slot in the decoder: the cost with the chip's number of slots, minus
-    the cost with one slot fewer. `wanted` False: only from the cache, zero if a cost is missing."""
+    """Returns the cost of one slot in the decoder: the cost of the decoder with the chip's number
+    of slots, minus the cost with one slot fewer. If `wanted` is False, both costs are only taken
+    from the cache, and the result is zero if one is missing."""
     runs = [Run(Design(f"bus_decoder{slots}", "bus_decoder", parameters={"SLOTS": slots}), "xc6s",
                 wanted) for slots in (map["SLOT_COUNT"], map["SLOT_COUNT"] - 1)]
     carry_out(runs, library, options)
@@ -40,10 +42,11 @@ def slot_cost(library, options, map, wanted):
 
 
 def core_table(costs, map, slot, names, where):
-    """Returns a row for each core of the map that the chip has, or only for `names`, the most LUTs
-    first: sums of LUT, flip-flops, block RAM and DSP, then LUT / flip-flops of each part of the
-    core. The cost of the arbiter is divided by the number of ports. Raises NotInChip if the chip
-    lacks a name; `where`: source of the chip's figures."""
+    """Returns a table with a row for each core of the map that the chip has, or only for `names`;
+    the core with the most LUTs is first. A row has the sums of LUTs, flip-flops, block RAM and DSP,
+    then LUTs / flip-flops of each part of the core. The cost of the arbiter is divided by the
+    number of ports. Raises NotInChip if the chip lacks a name. `where`: text that names the source
+    of the chip's figures."""
     def cost_of(pattern):
         return sum((cost for path, signals in costs.items() if re.fullmatch(pattern, path)
                     for cost in signals.values()), Cost())

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """equivalence: proves that a netlist behaves like its RTL in each clock, starting with the first.
 
-Yosys puts both side by side, with one output that is high if any of their outputs differ
-(synth/yosys/equivalence.ys). abc first finds registers that are always equal (lcorr), then other
-equal signals (scorr). Then it finds the clock in which an output differs (bmc3), or the proof
-(pdr). Initial values that the RTL leaves undefined are taken from the netlist's flip-flops; other
-undefined values are 0. With several clocks, their edges are inputs, so any order of edges is
-proven.
+Yosys puts the netlist and the RTL side by side, with one output that is high if any of their
+outputs differ (synth/yosys/equivalence.ys). abc first finds registers that are always equal
+(lcorr), then other equal signals (scorr). It then looks for a clock in which an output differs
+(bmc3), and for a proof (pdr). Initial values that the RTL leaves undefined are taken from the
+netlist's flip-flops; other undefined values are 0. If there are several clocks, their edges are
+inputs of the problem, so the proof covers any order of edges.
 """
 import json
 import pathlib
@@ -22,8 +22,8 @@ from icesoc.util.errors import Stop
 from icesoc.util.files import digest, write
 from icesoc.util.process import collect as command
 
-BOXES = {"DCM_CLKGEN", "BUFGCE"}  # clock primitives, which are the same in both copies; the logic
-                                  # around them is proven
+# clock primitives; they are the same in RTL and netlist, and the logic around them is proven
+BOXES = {"DCM_CLKGEN", "BUFGCE"}
 SOLVE = """read_rtlil {file}
 splitnets
 setattr -unset init w:*
@@ -41,14 +41,15 @@ aigmap
 opt_clean
 write_aiger -zinit {file}.aig
 """
-# One clock in reset, because registers with one-hot states may be initialised to no state, which
+# Simulates one clock in reset. Otherwise a one-hot state register might begin with no state, which
 # never happens in the RTL.
 IN_RESET = "sim -clock in_clk_i -reset in_rst_i -rstlen 1 -n 1 -zinit -w miter"
 
 
 def attributes_of(module):
-    """Yosys commands that let registers begin with 1: by the RTL, otherwise by the
-    netlist; and whether all registers have one clock's rising edge."""
+    """Returns the Yosys commands that set registers to 1 initially, and whether all registers use
+    the rising edge of one clock. The initial value of a register comes from the RTL, or from the
+    netlist if the RTL does not define it."""
     begin, ones, nets = {}, {}, module["netnames"]
     for net in nets.values():
         for bit, value in zip(net["bits"], reversed(net["attributes"].get("init", ""))):
@@ -110,7 +111,7 @@ def proof(mapped, design, family, library, options, models, seconds):
 
 
 def solved(file, commands, is_plain, options, seconds):
-    """Returns "" if the output is never high, otherwise the result."""
+    """Returns "" if the output is never high, otherwise a text with the result of the solvers."""
     write(solve := file.with_suffix(".solve.ys"),
           SOLVE.format(file=file, initial="\n".join(commands),
                        clocks="" if is_plain else "clk2fflogic"))
@@ -119,9 +120,10 @@ def solved(file, commands, is_plain, options, seconds):
         raise Stop(said)
     with open(f"{file}.aig", "rb") as aiger:
         has_state = aiger.readline().split()[3] != b"0"
-    # bmc3 finds most differences soon, and pdr then looks for a proof. If scorr has left no
-    # register, newer versions of pdr do not decide, and sat does. -T limits the wall-clock time,
-    # which is useless on a busy machine; ulimit limits CPU seconds.
+    # bmc3 finds most differences soon, and pdr then looks for a proof. If scorr has removed all
+    # registers, newer versions of pdr give no result, and sat is used instead. The option -T limits
+    # only the wall-clock time, which depends on the load of the machine; ulimit limits the CPU
+    # time.
     whole, less = f"{file}.aig", f"{file}.less.aig"
     steps = ([(whole, "bmc3 -F 20 -T 10"),
               (whole, f"lcorr -C 30000; scorr; write_aiger {less}; bmc3 -F 50 -T {seconds // 5}"),
@@ -140,8 +142,8 @@ def solved(file, commands, is_plain, options, seconds):
 
 
 def simulated(tests, junit):
-    """Returns (what the tests with these prefixes show according to a JUnit file, whether each ran
-    and all passed, their seconds)."""
+    """Evaluates the tests with these prefixes in a JUnit file. Returns (text with the result,
+    whether tests of every prefix ran and all passed, duration in s)."""
     cases = list(xml.etree.ElementTree.parse(junit).iter("testcase")) if junit else []
     of = {prefix: [case for case in cases if re.match(f"{prefix}[^a-z_]", case.get("name"))]
           for prefix in tests.split()}
@@ -154,8 +156,9 @@ def simulated(tests, junit):
 
 
 def table_of(plan, library, options, models, o):
-    """Returns (one row per design: its proof, or the tests of its block on its netlist; number of
-    failures). Small designs come first; each result is printed when it is known."""
+    """Returns (rows, number of failures). A row is a design with the result of its proof, or of the
+    tests of its block on its netlist. Small designs come first; each result is printed when it is
+    known."""
     rows, failed = {}, []
 
     def work(design):

@@ -2,11 +2,11 @@
 """merge_ucf: merges MIG's constraints with other constraints into one file for ngdbuild.
 
 Usage: merge_ucf.py MIG.ucf OTHER.ucf... > all.ucf
-MIG writes names as if its core were the top. Here the core is the instance u_mig of chip.v, so
-inner names get this prefix. c3_sys_clk and c3_sys_rst_i become the pads sys_clk_i and sys_rst_i. A
-bit is written as <n>, as in XST. VCCAUX, locations and I/O standards of OTHER replace MIG's. Each
-change is printed on stderr. Exit status 1: a statement is not understood, or two statements of
-OTHER contradict each other."""
+MIG writes names as if its core were the top module. Here the core is the instance u_mig of chip.v,
+so names inside the core get this prefix. c3_sys_clk and c3_sys_rst_i become the pads sys_clk_i and
+sys_rst_i. The index of a bit is written as <n>, as in XST. VCCAUX, locations and I/O standards of
+OTHER replace MIG's. Each change is printed on stderr. Exit status 1: a statement is not understood,
+or two statements of OTHER contradict each other."""
 
 import os
 import re
@@ -27,8 +27,8 @@ def statements(path):
 
 
 def keys(statement):
-    """Returns the settings that may occur only once: VCCAUX, and location, standard and period of a
-    net."""
+    """Returns the keys of the settings in a statement that may occur only once: VCCAUX, and
+    location, standard and period of a net."""
     if re.match(r"(?i)CONFIG\s+VCCAUX", statement):
         return ["VCCAUX"]
     net = re.match(r'(?i)NET\s+"?([^"\s]+)"?\s+(.*)', statement)

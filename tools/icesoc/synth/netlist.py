@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""netlist: a flat, mapped netlist as Yosys writes it (write_json), as a graph of cells and bits.
+"""netlist: represents a flat, mapped netlist from Yosys (write_json) as a graph of cells and bits.
 
-Bits are numbered by Yosys from 2; negative numbers stand for constants.
+Yosys numbers the bits, starting with 2; negative numbers stand for constants.
 """
 import dataclasses
 import functools
@@ -17,7 +17,7 @@ MEMORY_LUTS = {
     "RAM32M": 4, "RAM64M": 4, "RAM32X1D": 2, "RAM64X1D": 2, "RAM16X1D": 2, "RAM128X1D": 4,
     "RAM32X1S": 1, "RAM64X1S": 1, "RAM16X1S": 1, "RAM128X1S": 2, "RAM256X1S": 4, "RAM32X2S": 2,
     "RAM64X2S": 2, "RAM32X4S": 4, "RAM32X8S": 8, "RAM64X1S_1": 1,
-    "TRELLIS_DPR16X4": 6,  # four of data and two of the write port
+    "TRELLIS_DPR16X4": 6,  # four LUTs of data and two of the write port
 }
 LUT_INPUTS = {"INV": 1} | {f"LUT{n}": n for n in range(1, 7)}
 LATCHES = {"LDCE", "LDPE", "LDCPE", "LD"}
@@ -63,20 +63,20 @@ class Cell:
     type: str
     pins: list
     named: bool = False  # True: the name is from the design, not from the tool
-    sources: frozenset = frozenset()  # names of the files of the block that the cell is from, and
-                                      # of the block's instance
+    # file names of the modules that contain the cell, and of the module that instantiates them
+    sources: frozenset = frozenset()
 
     def bits(self, port):
         return next((pin.bits for pin in self.pins if pin.port == port), [])
 
     def bit(self, port):
-        """Returns the only bit of a port; UNDEFINED if the port has no bits."""
+        """Returns the bit of a port with one bit; UNDEFINED if the port is not connected."""
         return (self.bits(port) or [UNDEFINED])[0]
 
 
 class Name(typing.NamedTuple):
-    """A name that the source gives to a bit: "u_modem.u_at.state", and the index in a vector or
-    -1."""
+    """A name that the source gives to a bit, such as "u_modem.u_at.state", and the bit's index in
+    the vector, or -1 if it is not a vector."""
     name: str
     index: int = -1  # type: ignore[assignment]  # tuple.index is not used
 
@@ -95,8 +95,8 @@ class Netlist:
     def __init__(self, cells=(), top=""):
         self.top = top
         self.cells, self.ports = [], []
-        self.names = {}    # bit -> its Names; first the one that most likely belongs to the driver
-        self.sources = {}  # name -> its attribute src from Yosys
+        self.names = {}    # bit -> its Names; the first is most likely the name that the driver has
+        self.sources = {}  # name -> value of its attribute src, set by Yosys
         self.driver = {}   # bit -> number of the cell that drives it
         self.readers = {}  # bit -> numbers of the cells that read it
         for cell in cells:
@@ -114,11 +114,12 @@ class Netlist:
         self.cells.append(cell)
 
     def name_of(self, bit):
-        """Returns the name with its index, "" if the source has no name for the bit."""
+        """Returns the first name of a bit with its index; "" if the source has no name for the
+        bit."""
         return str(self.names[bit][0]) if bit in self.names else ""
 
     def driver_type(self, bit):
-        """Returns the type of the cell that drives a bit; "" if none does."""
+        """Returns the type of the cell that drives a bit; "" if no cell drives it."""
         return self.cells[self.driver[bit]].type if bit in self.driver else ""
 
     def fanout(self, bit):
@@ -127,9 +128,9 @@ class Netlist:
 
 @functools.lru_cache(1 << 16)
 def rank(name):
-    """Returns the sort key of a name of a bit; the name of the driver comes first. It is not a name
-    made by GHDL (n123_o), not an input of an inner block, and the deepest name, since outputs are
-    passed up."""
+    """Returns the sort key of a name of a bit. The most useful name is sorted first: not a name
+    made by GHDL (n123_o), not an input of an inner block, and as deep in the hierarchy as possible,
+    because outer blocks only pass outputs on."""
     last = name.rpartition(".")[2]
     return (bool(re.match(r"n\d+(_|$)", last)), len(last) > 2 and last.endswith("_i"),
             -name.count("."), len(name), name)
@@ -137,7 +138,8 @@ def rank(name):
 
 @functools.lru_cache(1 << 16)
 def files_of(attribute):
-    """"hdl/soc.v:1.2-3.4|/usr/share/yosys/xilinx/ff_map.v:5.6-7.8" -> {"soc.v"}"""
+    """Returns the names of the design's files in an attribute src:
+    "hdl/soc.v:1.2-3.4|/usr/share/yosys/xilinx/ff_map.v:5.6-7.8" gives {"soc.v"}."""
     return frozenset(place.rpartition(":")[0].rpartition("/")[2] for place in attribute.split("|")
                      if place and "/share/yosys/" not in place)
 
@@ -157,14 +159,14 @@ def read_netlist(file):
         n.ports.append(Port(name, port["direction"] != "output", port["direction"] != "input",
                             bits_of(port["bits"])))
     for name, cell in sorted(module["cells"].items()):
-        if cell["type"][0] == "$":  # scopes and similar cells, which are not hardware
+        if cell["type"][0] == "$":  # a cell such as $scopeinfo, which is not hardware
             continue
         pins = [Pin(port, cell["port_directions"][port] == "output", bits_of(bits))
                 for port, bits in sorted(cell["connections"].items())]
         n.add(Cell(name, cell["type"], pins, cell["hide_name"] == 0,
                    files_of(cell["attributes"].get("src", ""))))
     for name, net in sorted(module["netnames"].items()):
-        if net["hide_name"] != 0 or "$func$" in name:  # a call of a function
+        if net["hide_name"] != 0 or "$func$" in name:  # a hidden name, or a wire of a function call
             continue
         n.sources[name] = net["attributes"].get("src", "")
         bits = bits_of(net["bits"])
@@ -177,8 +179,8 @@ def read_netlist(file):
     return n
 
 
-# Ports of Spartan-6 block RAMs, in the order of synth/primitives/block_ram.v; of the last kind port
-# A writes words of 36 bits, and B reads them.
+# Ports of Spartan-6 block RAMs, in the order of the ports in synth/primitives/block_ram.v. "SDP" is
+# the RAMB8BWER with words of 36 bits: port A writes and port B reads.
 RAM_PORTS = {
     "RAMB16BWER": "CLKA ENA RSTA WEA ADDRA DIA+DIPA DOA+DOPA "
                   "CLKB ENB RSTB WEB ADDRB DIB+DIPB DOB+DOPB",
@@ -192,14 +194,15 @@ RAM_SIZES = {"clk": 1, "en": 1, "rst": 1, "we": 4, "data": 36}
 
 
 def with_models(file):
-    """Returns the text of a netlist (write_json) in which each block RAM is a block_ram, and each
-    multiplier of ECP5 is a multiplier of Yosys."""
+    """Returns the text of a netlist (write_json) for which all cells have models: each block RAM
+    becomes a block_ram, and each multiplier of ECP5 becomes a multiplier of Yosys."""
     whole = json.loads(pathlib.Path(file).read_text())
     (module,) = whole["modules"].values()
     free = 1 + max((bit for net in module["netnames"].values() for bit in net["bits"]
                     if isinstance(bit, int)), default=1)
     for net in module["netnames"].values():
-        net["attributes"].pop("init", None)  # flip-flops have the initial value as a parameter
+        # flip-flops already have the initial value as a parameter
+        net["attributes"].pop("init", None)
     for cell in module["cells"].values():
         if cell["type"] in ("RAMB16BWER", "RAMB8BWER"):
             free = make_block_ram(cell, free)
@@ -211,8 +214,8 @@ def with_models(file):
 
 
 def make_block_ram(cell, free):
-    """Changes the cell to a block_ram. The netlist uses bits below `free`; returns the new
-    `free`."""
+    """Changes the cell into a block_ram. Numbers of bits below `free` are in use; returns the new
+    value of `free`."""
     given, log2 = cell["parameters"], 14 if cell["type"] == "RAMB16BWER" else 13
     is_wide, lanes = given.get("RAM_MODE") == "SDP", 4 if log2 == 14 else 2
 
@@ -220,7 +223,8 @@ def make_block_ram(cell, free):
         return given.get(name, "").rjust(size, "0")[-size:]
 
     def word(name, port):
-        """Returns the 36 bits of a word, highest first: parity and data."""
+        """Returns the 36 bits of a word as text: first the parity bits, then the data bits, both
+        from high to low."""
         if log2 == 14:
             return bits(f"{name}_{port}", 36)
         a, own = bits(f"{name}_A", 18), bits(f"{name}_{port}", 18)
@@ -243,11 +247,13 @@ def make_block_ram(cell, free):
     connections = {}
     for port, names in zip(RAM_NAMES, RAM_PORTS["SDP" if is_wide else cell["type"]].split()):
         size, joined = RAM_SIZES.get(port.partition("_")[0], log2), []
-        for name in names.split("+"):  # Yosys may give a port more bits than the primitive has
+        # bits that the primitive does not have are cut off, since Yosys may connect more
+        for name in names.split("+"):
             room = lanes if name[:3] in ("DIP", "DOP") or name[:2] == "WE" else \
                 8 * lanes if size == 36 else size
             joined += cell["connections"].get(name, [])[:room]
-        if size == 36 and len(joined) == 18:  # two of four bytes, and their parity
+        # the port has only two of the four bytes and their parity bits; the bytes between are empty
+        if size == 36 and len(joined) == 18:
             joined[16:16] = [None] * 16
         joined = (joined + [None] * size)[:size]
         is_output = port.endswith("_o")
@@ -259,8 +265,8 @@ def make_block_ram(cell, free):
 
 
 def finish_block_ram(cell, made, connections):
-    """The cell becomes a block_ram. Rows that no address reaches are left out: a proof and a
-    simulator are quicker."""
+    """Completes the change of a cell into a block_ram. Rows that no address can reach are left out,
+    because this makes proofs and simulations faster."""
     used = max([6] + [place + 1 for port in "ab" if int(made[f"WIDTH_{port.upper()}"], 2)
                       for place, bit in enumerate(connections[f"addr_{port}_i"]) if bit != "0"])
     connections |= {port: connections[port][:used] for port in ("addr_a_i", "addr_b_i")}
@@ -271,14 +277,15 @@ def finish_block_ram(cell, made, connections):
                                  for port in connections}}
 
 
-# Lattice FPGA-TN-02204 (ECP5 memory): output of a port while it writes a word.
+# Output of a block RAM's port while the port writes a word (Lattice FPGA-TN-02204, ECP5 memory).
 ECP5_MODES = {"NORMAL": "NO_CHANGE", "WRITETHROUGH": "WRITE_FIRST",
               "READBEFOREWRITE": "READ_FIRST"}
 
 
 def make_block_ram_of_ecp5(cell, free):
-    """As make_block_ram, of bytes of nine bits each. Words of 36 bits have the data pins of both
-    ports. Bits 0 to 3 of such a word's address enable its bytes."""
+    """Changes the cell into a block_ram, as make_block_ram does. An ECP5 block RAM has bytes of
+    nine bits. A word of 36 bits uses the data pins of both ports. Bits 0 to 3 of the address of
+    such a word enable its bytes."""
     given, pins, made, connections = cell["parameters"], cell["connections"], {}, {}
     number = lambda name, low, count: given.get(name, "").replace("x", "0")[::-1][
         low:low + count].ljust(count, "0")  # noqa: E731
@@ -293,7 +300,7 @@ def make_block_ram_of_ecp5(cell, free):
         width, own = int(given.get(f"DATA_WIDTH_{port}", "10010"), 2), port.lower()
         address = [pin(f"AD{port}{n}") for n in range(14)]
         enable, bytes = pin(f"WE{port}"), max(1, width // 9)
-        resets = pin(f"RST{port}")  # while this signal is high, a write is blocked
+        resets = pin(f"RST{port}")  # a write is blocked while this signal is high
         if given.get(f"REGMODE_{port}", "NOREG") != "NOREG" or width < 9 or \
                 "0" not in (resets, enable) or given.get(f"CLK{port}MUX") == "INV":
             raise ValueError("block RAM DP16KD has a mode without a model")
@@ -306,8 +313,8 @@ def make_block_ram_of_ecp5(cell, free):
         data, shown = ["0"] * 36, list(range(free, free + 36))
         for name, place in zip(names, places):
             data[place] = pin(f"DI{name}")
-            if enable != "1":  # otherwise it writes or is idle: the pins show the word that the
-                               # other port reads
+            # if WE is always 1, the port never reads, and its output pins belong to the other port
+            if enable != "1":
                 shown[place] = pins.get(f"DO{name}", [shown[place]])[0]
         free += 36
         low = {9: 3, 18: 4, 36: 5}[width]
@@ -324,7 +331,7 @@ def make_block_ram_of_ecp5(cell, free):
 
 
 def make_product(cell):
-    """Changes a multiplier of ECP5 without registers to Yosys' own."""
+    """Changes an ECP5 multiplier without registers into a multiplier of Yosys."""
     pins, given = cell["connections"], cell["parameters"]
     signs = {pins.get(f"SIGNED{port}", ["0"])[0] for port in "AB"}
     if signs not in ({"0"}, {"1"}) or any(

@@ -11,22 +11,25 @@ FOR_OWNER = "(for) "
 
 
 def name_or(n, owners, bit):
-    """Returns the name of a net in the source, or "(for) " and the name of its load."""
+    """Returns the name of a net in the source. If the source has no name for the net, returns
+    "(for) " and the signal to which its driver is assigned (owners.py)."""
     if bit not in n.driver and bit in n.names:
-        return str(n.names[bit][-1])  # the name in the top module, not of an instance's input
+        # the name in the top module; the other names belong to inputs of instances
+        return str(n.names[bit][-1])
     name = n.name_of(bit)
     return name if name or bit not in n.driver else FOR_OWNER + owners[n.driver[bit]]
 
 
 def without_index(signal):
-    """Of "u_modem.state[3]" that is "u_modem.state"."""
+    """Returns a signal without its index: "u_modem.state" for "u_modem.state[3]"."""
     return signal.rpartition("[")[0] if signal.endswith("]") else signal
 
 
 def nets_of(n, owners, by_clock, count=20):
-    """Returns lists of {name, kind, ends, flipFlops, ns}, most ends first, without clocks. kind:
-    synchronous or asynchronous for a reset; otherwise the type of the cell that drives the net. ns:
-    longest path to a flip-flop of a clock, speed grade -3."""
+    """Returns the nets with the highest fan-out, the clocks and the resets, each as a list of
+    {name, kind, ends, flipFlops, ns}, most ends first. The list of nets contains no clocks. kind:
+    synchronous or asynchronous for a reset, otherwise the type of the cell that drives the net. ns:
+    longest path that ends at a flip-flop of a clock, at speed grade -3."""
     pins, clocked, clocks, resets = {}, set(), {}, {}
     for cell in n.cells:
         register = netlist.is_register(cell.type)
@@ -66,13 +69,14 @@ def lines_of(file):
 
 
 def place_of(n, signal):
-    """Returns file and line of the declaration of a signal ("u_modem.state[3]"); "" if unknown. For
-    a core in VHDL it is the line that GHDL gives; GHDL also invents names for intermediate values
-    (n71_o)."""
+    """Returns file and line of the declaration of a signal such as "u_modem.state[3]"; "" if
+    unknown. For a core in VHDL, it is the line that GHDL reports. GHDL also invents names for
+    intermediate values (n71_o)."""
     whole = without_index(signal.removeprefix(FOR_OWNER))
     name = whole.rpartition(".")[2]
-    # "./hdl/soc.v:62.26-69.2|./hdl/modem/modem.v:97.88-97.94": locations of instances, then of the
-    # declaration, which is as wide as the name.
+    # An attribute src such as "./hdl/soc.v:62.26-69.2|./hdl/modem/modem.v:97.88-97.94" lists the
+    # locations of instances, then the location of the declaration. The declaration is recognised
+    # because it is as wide as the name.
     places = re.findall(r"([^|:]+):(\d+)\.(\d+)-(\d+)\.(\d+)", n.sources.get(whole, ""))
     for file, line, begin, last, end in places:
         if line == last and int(end) - int(begin) == len(name):

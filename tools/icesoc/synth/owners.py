@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""owners: finds the owner of each cell of a flat netlist, an instance path and a signal of the
-source, and the cost of each.
+"""owners: finds the owner of each cell of a flat netlist, and the cost of each owner. An owner is a
+signal of the source, with its instance path.
 
-A flip-flop is its register's. Logic is the named wire's that it drives; where optimisation has left
-no name, it belongs to the logic that it feeds most.
+The owner of a flip-flop is its register. The owner of logic is the named wire that the logic
+drives. If optimisation has removed the name, it is the owner of the cells that the logic drives
+most often.
 """
 import re
 import typing
@@ -17,10 +18,10 @@ DECODER = "u_platform.u_bus_decoder"
 
 class Cost(typing.NamedTuple):
     lut: int = 0     # number of look-up tables, including those used as memory
-    memory: int = 0  # number of these used as memory or shift register
+    memory: int = 0  # number of LUTs used as memory or shift register; `lut` includes them
     ff: int = 0      # number of flip-flops and latches
     carry: int = 0   # number of carry chain segments of 4 bits
-    ram: float = 0   # number of block RAMs of 16 or 18 Kbit; a half counts 0.5
+    ram: float = 0   # number of block RAMs of 16 or 18 Kbit; half a block RAM counts as 0.5
     dsp: int = 0
 
     def __add__(self, other):
@@ -36,7 +37,7 @@ def cost_of(cell):
 
 
 def costs_of(n, owners):
-    """Returns {instance path, "" for the top: {signal: Cost}}."""
+    """Returns {instance path: {signal: Cost}}; the path of the top is ""."""
     costs = {}
     for cell, owner in zip(n.cells, owners):
         cost = cost_of(cell)
@@ -48,9 +49,9 @@ def costs_of(n, owners):
 
 
 def owners_of(n, files_along):
-    """Returns the signal to which each cell belongs, with its path, such as "u_modem.u_at.state";
-    "" if nothing near it has a name. `files_along(path)` returns the names of the files of the
-    modules along an instance path."""
+    """Returns the owner of each cell: a signal with its path, such as "u_modem.u_at.state"; "" if
+    no cell near it has a name. `files_along(path)` returns the names of the files of the modules
+    along an instance path."""
     finder = Finder(n, files_along)
     owners = [finder.owner_of(cell) for cell in range(len(n.cells))]
     give_slot_reads(n, owners)
@@ -61,8 +62,8 @@ class Finder:
     def __init__(self, n, files_along):
         self.n, self.files_along = n, files_along
         self.files = {}
-        self.owners = {}  # None marks an owner that is being looked for, so that a loop finds no
-                          # owner
+        # cell -> owner; None while the owner is being determined, so that a loop ends
+        self.owners = {}
 
     def owner_of(self, index):
         if index not in self.owners:
@@ -72,7 +73,8 @@ class Finder:
 
     def find(self, cell):
         if cell.named and cell.type not in COMBINATIONAL:
-            return re.sub(r"(\.\d+)+$", "", cell.name)  # "u_fifo.words.0.1" -> "u_fifo.words"
+            # a memory cell such as "u_fifo.words.0.1" belongs to the memory "u_fifo.words"
+            return re.sub(r"(\.\d+)+$", "", cell.name)
         driven = [bit for pin in cell.pins if pin.output for bit in pin.bits]
         for bit in driven:
             if bit in self.n.names:
@@ -86,7 +88,8 @@ class Finder:
         return max(sorted(votes), key=votes.get, default="")
 
     def name_for(self, cell, names):
-        """The best of several names of one net is the one in the module that the cell is from."""
+        """Returns the best of several names of one net: a name in the module that contains the
+        cell."""
         for name in names:
             path = name.name.rpartition(".")[0]
             if path not in self.files:
@@ -97,9 +100,10 @@ class Finder:
 
 
 def give_slot_reads(n, owners):
-    """Assigns the logic that reads registers to the block in the slot. Optimisation merges this
-    logic with the multiplexer of the bus decoder and removes names, so all of it counts for the
-    decoder at first. Logic with inputs from one block and the decoder belongs to that block."""
+    """Assigns logic that reads registers to the block in the slot. Optimisation merges this logic
+    with the multiplexer of the bus decoder and removes its names, so all of it is first assigned to
+    the decoder. Logic whose inputs come from only one block and the decoder is then assigned to
+    that block."""
     behind = {}
 
     def block_of(cell):

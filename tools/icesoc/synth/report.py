@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """report: prints the figures as text on the terminal, and writes them as JSON for machines and as
-one HTML page that needs no network; writes differences between two reports as Markdown."""
+one HTML page that needs no network. It also writes the differences between two reports as
+Markdown."""
 import dataclasses
 import itertools
 
@@ -47,7 +48,7 @@ class Report:
 
 
 class Table:
-    """A table with columns as wide as needed; the first column is left-aligned."""
+    """A table whose columns are as wide as needed; the first column is left-aligned."""
 
     def __init__(self, head, rows=()):
         self.rows = [[str(cell) for cell in row] for row in [head, *rows]]
@@ -65,7 +66,7 @@ class Table:
         return "\n".join(lines) + "\n"
 
 
-# Explains the ranges in the tables.
+# Text that explains the ranges in the tables.
 ERRORS = (f"as mapped, routed: nine of ten of {slices.MAPPED.count} published reports of map, of "
           f"{timing.ROUTED.count} of TRCE, are in this range; their medians are "
           f"{slices.MAPPED.median:.2f} and {timing.ROUTED.median:.2f} of the estimate")
@@ -99,7 +100,7 @@ def paper_table(plan, row):
 
 
 def ranged(value, values, text=str):
-    """Returns a figure and its range for the netlist in other orders: "863 (858-865)"."""
+    """Returns a figure and the range of its values in all orders of a netlist: "863 (858-865)"."""
     return text(value) + (f" ({text(min(values))}-{text(max(values))})" if len(values) > 1 else "")
 
 
@@ -137,7 +138,8 @@ def design_table(plan, rows, accepted):
 
 
 def cost_table(library, row, depth=2):
-    """Returns a table of the instances of a design, each with the cost of all below it."""
+    """Returns a table of the instances of a design. The cost of an instance includes all instances
+    below it."""
     paths = {"": Cost()}
     for path, cost in baseline.by_instance(row.figures["costs"]).items():
         names = path.split(".") if path else []
@@ -155,7 +157,8 @@ def cost_table(library, row, depth=2):
 
 
 def path_table(plan, row, count=5):
-    """Returns the longest paths, with the netlist in the order whose clock is reported."""
+    """Returns a table of the longest paths, taken from the order of the netlist whose clock is
+    reported."""
     mhz = plan.chip["mhz"]
     return Table([f"longest paths, estimated, at {clock_text(row.figures['mhz'])} MHz", "to",
                   "levels", "ns (-3)", "ns (-2)", f"of {mhz:g} MHz"],
@@ -166,7 +169,7 @@ def path_table(plan, row, count=5):
 
 
 def pads_table(row):
-    """Returns a table of the longest path of each pad, slowest first, with the range after
+    """Returns a table of the longest path at each pad, slowest first, with its range after
     routing."""
     return Table(["paths of pads, estimated", "from", "to", "levels", "ns (-3)", "ns (-2)",
                   "routed (-2)"],
@@ -185,7 +188,7 @@ def states_text(rows):
 
 
 def show(report):
-    """Writes the requested designs to the terminal."""
+    """Prints the figures of the requested designs on the terminal."""
     wanted = [row for row in report.rows if row.main.wanted]
     for row in wanted:
         if row.design.paper and row.figures:
@@ -235,7 +238,7 @@ def entries(report):
                 more |= {"peer": report.plan.paper[key],
                          "ratio": round(f[key] / report.plan.paper[key], 3)}
             add(key, f[key], unit, more)
-        if row.design.paper:  # the pages repeat it
+        if row.design.paper:  # the pages repeat this figure
             sites = sites_of_map(f)
             add("sites", sites, f"LUT sites, estimated; as mapped {slices.SITES_OF_MAP.of(sites)}")
         goal = report.plan.chip["mhz"]
@@ -256,9 +259,9 @@ def entries(report):
 
 
 def differences(before, after):
-    """Returns the differences between two files of entries as a table in Markdown. A design in only
-    one file is shown as new or gone. If a design was not measured, its state is shown instead, such
-    as `changed since`."""
+    """Returns the differences between two files of entries as a table in Markdown. A design that is
+    only in one file is shown as new or removed. If a design was not measured, its state is shown
+    instead, such as `changed since`."""
     designs = {}  # name -> {kind of figure: [before, after]}
     for number, report in enumerate((before, after)):
         for entry in report["entries"]:

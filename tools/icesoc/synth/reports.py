@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""reports: the estimates held against published reports of XST, map and TRCE (synth/reports.json),
-which say how far they err (docs/utilisation.md).
+"""reports: compares the estimates with published reports of XST, map and TRCE (synth/reports.json),
+which shows how accurate the estimates are (docs/utilisation.md).
 
-A report of map alone calibrates slices. A report with sources that Yosys also reads has a netlist:
-its counts, the longest path of the reported clock as steps {type, fan-out, delay of the cell, delay
-of its net, ns}, and the end of that path.
+A report that comes only from map calibrates the estimate of slices. For a report whose sources
+Yosys can also read, synth/reports.json contains a netlist: its counts, the steps of the longest
+path of the reported clock {type, fan-out, delay of the cell, delay of its net, ns}, and the end of
+that path.
 """
 import math
 import statistics
@@ -16,13 +17,13 @@ from icesoc.synth.slices import Range
 from icesoc.synth.sources import read_json
 from icesoc.util.errors import Stop
 
-MAP = ("sites", "ff", "slices", "one", "two")  # "one", "two": number of sites with one and with two
-                                               # functions
+# "one" and "two" are the numbers of sites with one function and with two functions
+MAP = ("sites", "ff", "slices", "one", "two")
 NETLIST = ("lut", "memory", "through", "ff", "path", "end")
 
 
 def fault_of(report):
-    """Returns why the report cannot be read, or ""."""
+    """Returns the reason why the report cannot be read, or ""."""
     for key, kind in (("at", str), ("device", str), ("tool", str), ("files", dict)):
         if not isinstance(report.get(key), kind):
             return f"no {key}"
@@ -56,19 +57,20 @@ def estimated(report):
 
 
 def clock_ratios(reports, kind):
-    """Returns the ratios of published to estimated clock for the designs with such a report."""
+    """Returns the ratios of published clock to estimated clock, for the designs with a report of
+    this kind."""
     return [estimated(report) / report[kind] for report in reports if kind in report]
 
 
 def site_ratios(reports):
-    """Returns the ratios of the sites in map's reports to the sites estimated from Yosys's
-    netlists."""
+    """Returns the ratios of published to estimated LUT sites. The published number is from map's
+    report; the estimate is computed from Yosys' netlist."""
     return [report["map"]["sites"] / slices.map_sites(n["lut"], n["memory"], n["through"])
             for report in reports if (n := report.get("netlist"))]
 
 
 def left_out(values, fitted):
-    """Yields each value, together with what is fitted to the other values."""
+    """Yields each value, together with the result of the function `fitted` for all other values."""
     return [value / fitted(values[:i] + values[i + 1:]) for i, value in enumerate(values)]
 
 
@@ -78,23 +80,23 @@ def nine_of_ten(errors):
 
 
 def range_of(ratios):
-    """Returns the median of the ratios, and the range of errors if each ratio is predicted by the
-    median of the others."""
+    """Returns the median of the ratios, and the range of errors. For an error, each ratio is
+    predicted as the median of all other ratios."""
     median = statistics.median(ratios)
     low, high = nine_of_ten(left_out(ratios, statistics.median))
     return Range(median, median * low, median * high, len(ratios))
 
 
 def best_share(maps):
-    """Returns the share of flip-flops that predicts the slices of these reports best, in
-    hundredths."""
+    """Returns the share of flip-flops, in hundredths, with which the slices of these reports are
+    predicted best."""
     return min((n / 100 for n in range(151)), key=lambda share: sum(
         abs(math.log(slices.occupied(m["sites"], m["ff"], share) / m["slices"])) for m in maps))
 
 
 def slices_range(maps):
-    """Returns the range of the ratios of published to predicted slices, each predicted with the
-    share that fits the others best."""
+    """Returns the range of the ratios of published to predicted slices. For each report, the
+    prediction uses the share that fits all other reports best."""
     shares = [best_share(maps[:i] + maps[i + 1:]) for i in range(len(maps))]
     errors = [m["slices"] / slices.occupied(m["sites"], m["ff"], share)
               for m, share in zip(maps, shares)]
@@ -103,12 +105,12 @@ def slices_range(maps):
 
 
 def paired(m):
-    """Returns the share of functions that need no separate site."""
+    """Returns the share of functions that need no separate site in a report of map."""
     return m["two"] / (m["one"] + 2 * m["two"])
 
 
 def text(reports):
-    """Returns the comparison as text, with the figures that timing.py and slices.py use."""
+    """Returns a text with the comparison, and with the constants for timing.py and slices.py."""
     rows = [["design", "device", "sites of map", "estimated", "MHz estimated", "XST", "routed",
              "XST / estimated", "routed / estimated"]]
     for report in (r for r in reports if "netlist" in r):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""runner: runs Yosys' syntheses in parallel, caches each result under the hash of its sources, and
-computes the figures of a run.
+"""runner: runs the syntheses with Yosys in parallel, caches each result under the hash of its
+sources, and computes the figures of a run.
 
 The cache stores the figures as JSON: {"lut", "ff", ...: counts; "cells": counts by Yosys cell type;
 "costs": {path: {signal: Cost}}; and the figures of slices.py, timing.py, nets.py}. "clocks" are the
@@ -28,7 +28,8 @@ from icesoc.util.errors import Stop
 from icesoc.util.files import digest, write
 from icesoc.util.process import collect as command
 
-# The figures of a netlist are determined by the sources of these modules.
+# Hash of the modules that compute the figures of a netlist. If one of them changes, cached figures
+# are computed again.
 TOOL = digest(pathlib.Path(module.__file__).read_text() for module in (
     nets, netlist, owners, slices, timing, sys.modules[__name__]))
 
@@ -40,8 +41,8 @@ class Run:
     wanted: bool = True  # False: results are only taken from the cache
     netlist: pathlib.Path = None  # path of the netlist written by Yosys
     figures: dict = None
-    error: str = ""  # reason for missing figures
-    known: bool = False  # True: another state of the sources was synthesised here
+    error: str = ""  # reason why the figures are missing
+    known: bool = False  # True: the design was synthesised here with other sources
     begun: float = 0  # time of the start, by time.monotonic()
     spent: float = None  # duration, s; 0: cached
 
@@ -56,8 +57,7 @@ class Options:
     cache: pathlib.Path
     yosys: str = "yosys"
     jobs: int = 1
-    luts: dict = dataclasses.field(default_factory=dict)  # numbers of LUTs of designs, as far as
-                                                          # they are known
+    luts: dict = dataclasses.field(default_factory=dict)  # design -> number of LUTs, if known
 
 
 @functools.cache
@@ -75,13 +75,13 @@ DECLARES_MEMORY = re.compile(r"\b(?:reg|logic|bit)\b[^;]*?\w\s*\[[^];]*\]\s*[;,=
 
 def script_of(run, library, options, output, more="", memory=False):
     """Returns the Yosys script of a run. `more`: a further library of cells that the sources
-    instantiate. `memory`: the design has a memory although the sources declare none. A design with
-    limits keeps Yosys' whole libraries, because with fewer modules its mapping changes by
-    chance."""
+    instantiate. `memory`: the design has a memory although the sources declare none. For a design
+    with limits, the script contains all modules of Yosys' libraries, because fewer modules would
+    change the mapping at random."""
     includes = "".join(f" -I{folder}" for folder in library.include_folders)
     files, listed = library.files_of(run.design.top), [m.file for m in library.modules.values()]
-    # SystemVerilog has additional keywords, and packages are listed before the modules that use
-    # them.
+    # SystemVerilog has additional keywords, so its files are read separately. Packages come before
+    # the modules that use them.
     system = sorted((f for f in files if f.suffix.lower() == ".sv"), key=listed.index)
     sources = "".join(f' "{file}"' for file in files if file not in system)
     if system:
@@ -98,13 +98,15 @@ def script_of(run, library, options, output, more="", memory=False):
         script = script.replace("@NO_MEMORY@", NO_MEMORY).replace("-run map_memory:",
                                                                   "-run map_ffram:")
     orders = ""
-    if run.orders:  # elaborated again: an earlier copy would change the first mapping
+    # the design is elaborated a second time, because a copy of the first elaboration would change
+    # the first mapping
+    if run.orders:
         orders = f"design -reset\n{script.partition('@MAP@')[0]}design -save unmapped\n"
     for order in range(1, run.orders + 1):
         permuted = mapping.replace("@ORDER@", f"permute,-S,{order};strash;")
         orders += (f"design -load unmapped\n{permuted}select A:top\n"
                    f"json -o {netlist_of_order(run.netlist, order)}\nselect -clear\n")
-    # Texts from an order are filled in after ORDERS.
+    # "ORDERS" is replaced first, because its text contains some of the other placeholders.
     for place, text in (("MAP", mapping.replace("@ORDER@", "")), ("ORDERS", orders),
                         ("NO_MEMORY", ""), ("CELLS", cells), ("MORE", more), ("SOURCES", sources),
                         ("INCLUDES", includes), ("PARAMETERS", parameters),
@@ -114,7 +116,8 @@ def script_of(run, library, options, output, more="", memory=False):
 
 
 def yosys_by(script, output, options):
-    """Runs a script with Yosys that writes `output`, completely or not at all."""
+    """Runs a script that writes `output` with Yosys. `output` is written completely or not at
+    all."""
     part, log = pathlib.Path(f"{output}.part"), output.with_suffix(".log")
     write(output.with_suffix(".ys"), script(part))
     status, said = command([options.yosys, "-q", "-s", output.with_suffix(".ys")])
@@ -127,7 +130,7 @@ def yosys_by(script, output, options):
                           "(docs/guides/foreign-core.md)")
         raise Stop("\n".join([*errors, f"whole log: {log}"]))
     if output.exists() and output.read_bytes() == part.read_bytes():
-        part.unlink()  # files made from the unchanged output are kept
+        part.unlink()  # the old file is kept, so that files made from it remain valid
     else:
         part.replace(output)
 
@@ -149,7 +152,7 @@ def synthesise(run, library, options):
 
 
 def figures_of(n, spartan6, files_along):
-    """Returns the figures of one netlist; timing and nets only for Spartan-6."""
+    """Returns the figures of one netlist. Timing and nets are only computed for Spartan-6."""
     owner = owners.owners_of(n, files_along)
     types = [cell.type for cell in n.cells]
     costs = owners.costs_of(n, owner)
@@ -185,15 +188,15 @@ def places_of(n, figures):
 
 
 def together(orders):
-    """Returns the figures of a design from the netlists of all orders of its ports. Counts are
-    those of the order with the median of LUTs; the clock is that of the order with the median
-    clock; the longest paths are those of the slowest order."""
+    """Returns the figures of a design, given the figures of all orders of its netlist. Counts are
+    from the order with the median number of LUTs, the clock is from the order with the median
+    clock, and the longest paths are from the slowest order."""
     if len(orders) == 1:
         return orders[0] | {"luts": [orders[0]["lut"]], "clocks": [orders[0]["mhz"]]}
     by_lut = sorted(orders, key=lambda figures: figures["lut"])
     by_clock = sorted(orders, key=lambda figures: figures["mhz"])
     middle, setting, slowest = by_lut[len(orders) // 2], by_clock[len(orders) // 2], by_clock[0]
-    pads = {}  # (kind, port) -> the longest path of all orders
+    pads = {}  # (kind, port) -> the longest path among all orders
     for path in (path for figures in orders for path in figures["timing"]["pads"]):
         key = path["kind"], path["port"]
         pads[key] = max(path, pads.get(key, path), key=lambda p: p["ns"])
@@ -215,15 +218,16 @@ def read_figures(text):
 
 
 def place(run, library, options, version):
-    """Sets run.netlist, where Yosys writes the netlist of these sources."""
-    run.netlist = pathlib.Path()  # the hash does not depend on the path of the output
+    """Sets run.netlist to the path at which Yosys writes the netlist of these sources."""
+    # cleared first, so that the hash does not depend on the path of the output
+    run.netlist = pathlib.Path()
     sources = digest([library.hash_of(run.design.top), version,
                       script_of(run, library, options, "")])
     run.netlist = options.cache / f"{run.design.name}.{run.family}.{sources}.json"
 
 
 def carry_out_one(run, library, options, version):
-    """Returns whether the synthesis succeeded."""
+    """Carries out one run. Returns whether the synthesis succeeded."""
     top = run.design.top
     place(run, library, options, version)
     stem, kept = f"{run.design.name}.{run.family}.", run.netlist.with_suffix(f".{TOOL}.figures")
@@ -247,9 +251,9 @@ def carry_out_one(run, library, options, version):
 
 def time_left(runs, options, now):
     """Returns a line such as "11 of 55 designs, about 3:20 left: soc, vision". The time of a design
-    on an idle machine is estimated from its LUTs; the finished runs, or the load, show how much
-    slower this machine is. The progress of a design that is synthesised in several orders is the
-    number of netlists already written."""
+    on an idle machine is estimated from its number of LUTs. The finished runs, or the load, show
+    how much slower this machine is. For a design that is synthesised in several orders, the number
+    of netlists already written shows its progress."""
     def expected(run):
         return 1 + options.luts.get(run.design.name, 100) * (1 + run.orders) / 200
 
@@ -273,8 +277,8 @@ def time_left(runs, options, now):
 
 
 def carry_out(runs, library, options):
-    """Carries out all runs. Prints each finished run on stderr, and every ten seconds the remaining
-    time. A failed run does not stop the others."""
+    """Carries out all runs. Prints each finished run on stderr, and the remaining time every ten
+    seconds. A failed run does not stop the others."""
     version = version_of(options.yosys)
     options.cache.mkdir(parents=True, exist_ok=True)
     wanted, terminal, over = [r for r in runs if r.wanted], threading.Lock(), threading.Event()
@@ -299,12 +303,13 @@ def carry_out(runs, library, options):
                 print(f"[{done}/{len(wanted)}] {run.design.name} for {run.family}: {result} "
                       f"({run.spent:.1f} s)", file=sys.stderr)
 
-    def size(run):  # designs with limits first, since these are checked; then the largest
+    # designs with limits come first, because their figures are checked; then the largest designs
+    def size(run):
         files = library.files_of(run.design.top)
         return (not run.design.limits, -sum(file.stat().st_size for file in files))
 
     threading.Thread(target=tell, daemon=True).start()
-    sys.setrecursionlimit(1 << 20)  # recursion is as deep as the logic of a design
+    sys.setrecursionlimit(1 << 20)  # the functions recurse as deep as the logic of a design
     threading.stack_size(512 << 20)
     try:
         in_parallel(options.jobs, work, sorted(runs, key=size))
@@ -313,7 +318,7 @@ def carry_out(runs, library, options):
 
 
 def in_parallel(jobs, work, items):
-    """Calls work(item) for each, `jobs` at a time; raises the first exception."""
+    """Calls work(item) for each item, with `jobs` calls at a time; raises the first exception."""
     with concurrent.futures.ThreadPoolExecutor(max(1, jobs)) as pool:
         try:
             for future in [pool.submit(work, item) for item in items]:
@@ -334,8 +339,8 @@ def filled(script, words):
 
 
 def mapped(design, family, library, options):
-    """Returns the run of a design with a netlist: the first of all orders, or the run without
-    orders."""
+    """Returns a run of the design whose netlist exists. This is a run with all orders, whose first
+    netlist is used, or a run without orders, which is carried out if necessary."""
     options.cache.mkdir(parents=True, exist_ok=True)
     version = version_of(options.yosys)
     for orders in (design.orders, 0):
@@ -348,7 +353,8 @@ def mapped(design, family, library, options):
 
 
 def write_for_simulation(design, family, library, options, file, models):
-    """Writes the netlist of a design's figures as Verilog, for primitives with models."""
+    """Writes the netlist from which the figures of a design are computed as Verilog. All its
+    primitives have models."""
     run = mapped(design, family, library, options)
     words = {"NETLIST": file.with_suffix(".json"), "TOP": design.top,
              "SIMULATION": SIMULATION[run.family], "MODELS": " ".join(map(str, models))}
@@ -359,14 +365,15 @@ def write_for_simulation(design, family, library, options, file, models):
 
 
 def write_edif(design, library, options, folder):
-    """Writes a design as EDIF, FOLDER/<name>.edf, by the script edif.ys, and its Verilog to
+    """Writes a design as EDIF into FOLDER/<name>.edf with the script edif.ys, and as Verilog into
     FOLDER/verilog."""
     verilog = folder / "verilog"
     shutil.rmtree(verilog, ignore_errors=True)
     verilog.mkdir(parents=True)
     headers = {file.name: file for include in reversed(library.include_folders)
-               for file in include.glob("*.vh")}  # of two files with one name, that in the first
-                                                  # folder is used
+               # if two folders contain a file of the same name, the file in the first folder is
+               # used
+               for file in include.glob("*.vh")}
     for file in [*headers.values(), *library.files_of(design.top)]:
         shutil.copy(file, verilog)
     run = Run(design, "edif", netlist=folder / f"{design.name}.edf")

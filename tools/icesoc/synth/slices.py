@@ -13,18 +13,19 @@ from icesoc.synth.netlist import LUT_INPUTS, MEMORY_LUTS, UNDEFINED
 
 SITES, FLIP_FLOPS, MUXES, SHARED_INPUTS = 4, 8, 2, 5
 
-# Fraction of flip-flops that do not share a site with a LUT; map makes (sites + share * flip-flops)
-# / 4 slices. The figure comes from published reports (reports.py).
+# Fraction of flip-flops that do not share a site with a LUT. map needs (sites + fraction *
+# flip-flops) / 4 slices. The value is fitted to published reports (reports.py).
 USUAL_SHARE = 0.74
-# Fraction of functions that need no separate site, because two functions share one: 2 to 31 % in
-# the reports, 14 % on average. A lower value is used, because map needs more sites than estimated
-# (reports.py).
+# Fraction of functions that need no separate site, because two functions share one. In the reports
+# it is 2 to 31 %, and 14 % on average. A lower value is used, because map needs more sites than
+# estimated (reports.py).
 USUAL_PAIRING = 0.11
 
 
 class Range(typing.NamedTuple):
-    """Ratios of published to estimated figures of `count` designs, each predicted by the other
-    designs: the median, and the range of nine of ten."""
+    """Ratios of published to estimated figures: the median, and the range that contains nine of
+    ten. `count` is the number of designs; the estimate for each design is fitted to the other
+    designs."""
     median: float
     low: float
     high: float
@@ -35,7 +36,7 @@ class Range(typing.NamedTuple):
 
 
 MAPPED = Range(median=1.02, low=0.73, high=1.40, count=58)
-# The same of LUT sites, of reports whose sources Yosys reads.
+# The same ratios for LUT sites, from reports whose sources Yosys can read.
 SITES_OF_MAP = Range(median=1.11, low=0.92, high=1.57, count=14)
 
 
@@ -44,15 +45,15 @@ def occupied(sites, flip_flops, share):
 
 
 def map_sites(luts, memory, through):
-    """Returns the number of LUT sites as map counts them, including route-throughs; some sites
-    contain two functions. `memory`: number of LUTs that are RAM or shift registers."""
+    """Returns the number of LUT sites as map counts them. Some sites contain two functions, and
+    route-throughs also take sites. `memory`: number of LUTs that are RAM or shift registers."""
     return memory + (1 - USUAL_PAIRING) * (luts - memory + through)
 
 
 def sites_for(luts):
-    """Returns the number of LUT6 sites for these sets of inputs. Two functions share a site if
-    together they have at most five inputs. Greedy: the partner with most inputs in common is first;
-    LUTs without common inputs stay apart, as in map."""
+    """Returns the number of LUT6 sites for LUTs with these sets of inputs. Two LUTs share a site if
+    together they have at most five inputs. The method is greedy: each LUT takes the partner with
+    most inputs in common. LUTs without common inputs do not share a site, as in map."""
     readers = {}
     for i, inputs in enumerate(luts):
         if len(inputs) <= SHARED_INPUTS:
@@ -68,7 +69,8 @@ def sites_for(luts):
             continue
         common = {}
         for bit in inputs:
-            if len(readers[bit]) <= 64:  # the loads of a reset are not neighbours
+            # a signal with many loads, such as a reset, is no reason to share a site
+            if len(readers[bit]) <= 64:
                 for k in readers[bit]:
                     if k not in placed:
                         common[k] = common.get(k, 0) + 1
@@ -80,20 +82,20 @@ def sites_for(luts):
 
 
 def through_sites(n, carry):
-    """Returns the number of carry bits whose S is not driven by a separate LUT: each takes a site
-    as a route-through."""
+    """Returns the number of carry bits whose input S is not driven by a separate LUT. Each of these
+    takes a site as a route-through."""
     return sum(bit >= 0 and n.driver_type(bit) not in LUT_INPUTS for bit in carry.bits("S"))
 
 
 def control_set(cell):
-    """Returns clock, enable and set or reset of a flip-flop."""
+    """Returns the control set of a flip-flop: clock, enable, and set or reset."""
     resets = (cell.bit(port) for port in ("R", "S", "CLR", "PRE"))
     return (cell.bit("C"), cell.bit("CE"), next((b for b in resets if b != UNDEFINED), UNDEFINED))
 
 
 def slices_of(n):
-    """Returns the estimate ("slices"); "low", the minimum for any placer; "high", which one of
-    twenty published designs exceeds; and the counts from which these are computed."""
+    """Returns the estimate ("slices"), a minimum for any placer ("low"), an upper bound that one of
+    twenty published designs exceeds ("high"), and the counts from which they are computed."""
     luts, sets = [], {}  # sets: control set -> [flip-flops fed by a separate LUT, others]
     memory = carry = through = wide = flip_flops = 0
     for cell in n.cells:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""sources: finds the Verilog files that a module needs, by their instances, and the designs to
-synthesise, with their limits (synth/designs.json)."""
+"""sources: finds the Verilog files that a module needs by following its instances, and reads the
+list of designs to synthesise, with their limits (synth/designs.json)."""
 import dataclasses
 import functools
 import json
@@ -21,7 +21,9 @@ def tokens(text):
     """Returns the words and punctuation of a text, without properties. An include directive becomes
     the token `include and the name."""
     result = []
-    branches = []  # conditions around a word: True: dropped; False: its other branch is
+    # one entry per open `ifdef: True if its text is dropped, False if the text after `else will be
+    # dropped
+    branches = []
     condition = ""
     for string, word, mark in TOKEN.findall(text):
         if condition:
@@ -43,7 +45,7 @@ def is_name(token):
 
 
 def closing(t, opened):
-    """Returns the index after the parenthesis that closes the one at `opened`."""
+    """Returns the index after the parenthesis that closes the parenthesis at `opened`."""
     depth = 0
     for i in range(opened, len(t)):
         depth += {"(": 1, ")": -1}.get(t[i], 0)
@@ -62,14 +64,15 @@ class Module:
     """A module, or a SystemVerilog package, which is treated as an instance of its users."""
     file: pathlib.Path
     is_package: bool = False
-    # Instance name -> module names: several in branches of `ifdef or generate.
+    # Instance name -> module names. There are several if branches of `ifdef or generate use the
+    # same name.
     instances: dict = dataclasses.field(default_factory=dict)
     includes: set = dataclasses.field(default_factory=set)
 
 
 class Library:
-    """All modules of *.v of these folders, then of these files; of two modules with one name the
-    first counts."""
+    """All modules in the *.v files of these folders, then in these files. If two modules have the
+    same name, the first one counts."""
 
     def __init__(self, folders, include_folders, files=()):
         self.include_folders = list(include_folders)
@@ -81,7 +84,8 @@ class Library:
                 self.scan(file)
         for file in files:
             self.scan(file)
-        for module in self.modules.values():  # other names are not instances
+        # a name that is not a module does not mark an instance
+        for module in self.modules.values():
             module.instances = {name: known for name, types in module.instances.items()
                                 if (known := [t for t in types if t in self.modules])}
 
@@ -102,7 +106,8 @@ class Library:
 
     def scan(self, file):
         t = self.all_tokens(file) + ["", ""]
-        current, outside = None, {}  # imports outside modules apply to everything after them
+        # an import outside a module applies to everything after the import
+        current, outside = None, {}
         for i, token in enumerate(t[:-2]):
             if token in ("module", "package") and is_name(t[i + 1]):
                 current = None
@@ -136,13 +141,14 @@ class Library:
         return sorted({self.modules[module].file for module in self.reach(top)})
 
     def all_files_of(self, top):
-        """Returns the files of the module, and the files that they include."""
+        """Returns the files that the module and its instances need, and the files that these
+        include."""
         names = sorted(set().union(*(self.modules[module].includes for module in self.reach(top))))
         return self.files_of(top) + [file for name in names if (file := self.included(name))]
 
     @functools.cache
     def hash_of(self, top):
-        """Returns a hash that changes with any of these files."""
+        """Returns a hash of these files; it changes if any of them changes."""
         return digest(map(read, self.all_files_of(top)))
 
     def module_at(self, top, path):
@@ -157,7 +163,7 @@ class Library:
         return module
 
     def files_along(self, top, path):
-        """Returns the names of the files of the modules along such a path, including the top."""
+        """Returns the names of the files of all modules along such a path, including the top."""
         names = path.split(".") if path else []
         modules = [self.module_at(top, ".".join(names[:n])) for n in range(len(names) + 1)]
         return {self.modules[module].file.name for module in modules if module}
@@ -175,8 +181,9 @@ class Design:
     pads: dict = dataclasses.field(default_factory=dict)  # output port -> greatest delay from any
                                                           # pad, ns, grade -2
     paper: bool = False  # True: the paper has figures for the design
-    orders: int = 0  # number of further orders of inputs and outputs for mapping, because the clock
-                     # of a single order depends on chance
+    # number of further orders of inputs and outputs in which the design is mapped; the clock of a
+    # single order depends on chance
+    orders: int = 0
 
 
 @dataclasses.dataclass
@@ -193,8 +200,8 @@ class Plan:
 
 
 def sentence_of(file, module):
-    """Returns the sentence "// name: one sentence" at the head of a file, or that of a converted
-    core."""
+    """Returns the sentence in "// name: one sentence" at the head of a file. For a converted core,
+    reads the head of its VHDL file."""
     begin = f"// {module}: "
     return next((line.removeprefix(begin) for line in read(file).split("\n", 8)[:8]
                  if line.startswith(begin)), "")
@@ -209,8 +216,9 @@ def read_json(file):
 
 
 def read_plan(file, library, root):
-    """The designs of the file, then every other module in a separate file; `*_rules` and
-    `*_proof` are properties, not hardware."""
+    """Returns the plan: the designs in the file, and a design for every other module that has a
+    file of its own name. `*_rules` and `*_proof` are left out, because they are properties, not
+    hardware."""
     j = read_json(file)
     designs = [Design(**design) for design in j["designs"]]
     for design in designs:
@@ -219,7 +227,7 @@ def read_plan(file, library, root):
     tops = {design.top for design in designs}
     for name, module in sorted(library.modules.items()):
         is_hardware = not name.endswith(("_rules", "_proof")) and not module.is_package
-        # Of a converted core only the core itself.
+        # From a converted core, only the core itself becomes a design.
         if name not in tops and is_hardware and module.file.stem == name:
             designs.append(Design(name, name, sentence_of(module.file, name)))
     for design in designs:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """timing: estimates the longest paths of a Spartan-6 netlist, as XST does before placement.
 
-Cell delays are the delays that XST 14.7 prints for speed grade -3. The delay of a net depends only
-on its fan-out. Grade -2 is slower by the factor SLOW_GRADE. Clock skew and placement are not known
-here; ROUTED is the ratio of published clocks to their estimates. Paths between pads and registers
-contain XST's buffers (pads_of).
+The delays of cells are those that XST 14.7 prints for speed grade -3. The delay of a net depends
+only on its fan-out. Grade -2 is slower by the factor SLOW_GRADE. Clock skew and placement are not
+known here; ROUTED is the ratio of published clocks to our estimates. Paths between pads and
+registers include the buffers that XST inserts (pads_of).
 """
 import typing
 
@@ -12,8 +12,8 @@ from icesoc.synth import netlist
 from icesoc.synth.netlist import LUT_INPUTS
 from icesoc.synth.slices import Range
 
-# Approximate delay of grade -2 divided by the delay of grade -3. DS162: 0.26 and 0.21 ns (LUT),
-# 0.53 and 0.45 ns (clock to out).
+# Approximate ratio of the delays of grade -2 to the delays of grade -3. In DS162, the delays of
+# grade -2 and -3 are 0.26 and 0.21 ns for a LUT, and 0.53 and 0.45 ns from clock to output.
 SLOW_GRADE = 1.2
 
 # delays, ns, grade -3
@@ -21,20 +21,20 @@ CLOCK_TO_OUT, LUT, SETUP, ENABLE_SETUP, RESET_SETUP = 0.447, 0.205, 0.102, 0.322
 CARRY_IN, CARRY_BIT, CARRY_OUT, WIDE_MUX = 0.172, 0.019, 0.180, 0.140
 RAM_CLOCK, RAM_SETUP, LUT_RAM_CLOCK, LUT_RAM_SETUP = 1.850, 0.400, 0.900, 0.300
 MULTIPLIER_CLOCK, MULTIPLIER_SETUP, MULTIPLY, MULTIPLIER_ADD = 4.700, 1.500, 4.560, 2.687
-# Fan-out and delay of a net: points between which it is interpolated.
+# (fan-out, delay in ns) of a net; delays between these points are interpolated
 NET_DELAYS = ((0, 0.0), (1, 0.580), (2, 0.617), (5, 0.715), (16, 1.004), (26, 1.207), (88, 1.799))
 
 # delays of the input and output buffer of LVCMOS, ns
 PAD_IN, PAD_OUT = 1.222, 2.571
 
-# Ratio of published clock after routing to the estimate: median and 90 % range of `count` designs,
-# each predicted by the others (reports.py).
+# Ratio of the published clock after routing to the estimated clock: median, and range that contains
+# 90 % of `count` designs. The estimate for each design is fitted to the others (reports.py).
 ROUTED = Range(median=1.22, low=0.92, high=1.57, count=11)
 
 
 def delay_range(ns):
-    """Returns the range of a delay after routing, as text: nine of ten published longest paths lie
-    in it."""
+    """Returns the range of a delay after routing, as text. Nine of ten published longest paths are
+    in such a range."""
     return f"{ns / ROUTED.high:.1f}-{ns / ROUTED.low:.1f}"
 
 
@@ -58,8 +58,9 @@ def is_unclocked(cell):
 
 
 def is_read(address, output):
-    """Returns whether the output of a memory follows this port: DOA follows ADDRA, DPO DPRA0.., SPO
-    A0..; no output follows the write port, or a port that is not an address."""
+    """Returns whether the output of a memory depends on this address port: DOA depends on ADDRA,
+    DPO on DPRA0.., SPO on A0... No output depends on the write port, or on a port that is not an
+    address."""
     if address.startswith("ADDR"):
         return len(output) < 3 or address[-1] == output[2]
     if address.startswith("DPRA"):
@@ -68,7 +69,7 @@ def is_read(address, output):
 
 
 def is_read_only(port):
-    """Returns whether the port is an address without writes, at which no path ends."""
+    """Returns whether the port is an address that only reads. No path ends at such a port."""
     return port in ("ADDRA", "ADDRB", "ADDRC") or port.startswith("DPRA")
 
 
@@ -91,8 +92,8 @@ def end_delay(type, port):
 
 
 def through_delay(cell, pin, i, to, o):
-    """Returns the delay of a combinational cell from bit i of a pin to bit o of an output; None if
-    there is no such path."""
+    """Returns the delay of a combinational cell from bit `i` of a pin to bit `o` of an output; None
+    if the cell has no such path."""
     if cell.type.startswith("DSP48"):
         return MULTIPLIER_ADD if pin.port == "C" else MULTIPLY
     if cell.type != "CARRY4":
@@ -108,13 +109,13 @@ class Arrival(typing.NamedTuple):
     ns: float
     levels: int
     cell: int    # number of the cell that drives the bit
-    before: int  # previous bit of the path, None at its start
+    before: int  # previous bit of the path; None at the start of the path
     delay: float
 
 
 class Analysis:
     def __init__(self, n, pads=frozenset()):
-        """Paths begin at clocked cells or, if given, at these bits of input pads."""
+        """Paths begin at clocked cells or, if `pads` are given, at these bits of input pads."""
         self.n = n
         self.pads = pads
         self.known = {}
@@ -128,9 +129,9 @@ class Analysis:
         return self.known[bit]
 
     def net(self, bit, reader):
-        """Returns the delay of a net. It is 0 from a LUT to the flip-flop, wide multiplexer or
-        carry cell next to it."""
-        if reader is None:  # the bit leads to an output pad
+        """Returns the delay of a net. The delay from a LUT to the flip-flop, wide multiplexer or
+        carry cell next to it is 0."""
+        if reader is None:  # no cell reads the bit: it leads to an output pad
             return net_delay(len(self.n.readers.get(bit, [])) + 1)
         source, to = self.n.driver_type(bit), self.n.cells[reader].type
         if source == "CARRY4" and to == "CARRY4":
@@ -171,8 +172,8 @@ class Analysis:
         return best
 
     def steps(self, bit, reader):
-        """Returns the path to a bit, one step per cell: [cell, net, fan-out, ns of the cell, ns of
-        the net after it]; and the bit at which the path begins."""
+        """Returns the path to a bit, and the bit at which the path begins. The path has one step
+        per cell: [cell, net, fan-out, ns of the cell, ns of the net after the cell]."""
         steps = []
         while True:
             arrival = self.at(bit)
@@ -185,8 +186,8 @@ class Analysis:
 
 
 def start_name(n, owners, bit):
-    """Returns the name of the register or memory that drives a bit; if it has no name, the name of
-    its load."""
+    """Returns the name of the register or memory that drives a bit. If it has no name, returns the
+    name of a cell that it drives."""
     return n.name_of(bit) or (f"(for) {owners[n.driver[bit]]}" if bit in n.driver else "")
 
 
@@ -199,16 +200,17 @@ def end_name(n, owners, index):
 
 
 def path_ends(cell):
-    """Returns (port, bit) of each input at which a path may end."""
+    """Returns (port, bit) for each input at which a path may end."""
     memory = netlist.is_memory(cell.type)
     return [(pin.port, bit) for pin in cell.pins if not pin.output and pin.port != "C"
             and not (memory and is_read_only(pin.port)) for bit in pin.bits if bit >= 0]
 
 
 def timing_of(n, owners, count=10):
-    """Paths between clocked cells, longest first, one for each end register; "ends": registers and
-    memories by their longest path, half a ns each, of grade -2; and {clock's bit: the longest path
-    that ends with it, ns}."""
+    """Returns ({"paths", "ends"}, {bit of a clock: longest path that ends with this clock, ns}).
+    "paths" lists the longest paths between clocked cells, longest first, one for each register at
+    which a path ends. "ends" counts the registers and memories by the length of their longest path
+    at grade -2, in steps of half a ns."""
     analysis, ends, by_clock = Analysis(n), [], {}
     worst = {}  # register -> (ns, its name, pin, levels, bit, cell)
     for index, cell in enumerate(n.cells):
@@ -247,9 +249,10 @@ PAD_TO_PAD, PAD_TO_REGISTER, REGISTER_TO_PAD = "pad to pad", "pad to register", 
 
 
 def pads_of(n, owners):
-    """The longest path of each output port from input pads and from registers, and of each input
-    port to a register: dicts like the paths of timing_of, with their kind. Ports of the memory
-    controller (mcb_*) are not pads. A clock's path from its pad is not contained."""
+    """Returns the longest path from input pads to each output port, from registers to each output
+    port, and from each input port to a register. A path has the form of a path of timing_of, with
+    its kind. Ports of the memory controller (mcb_*) are not pads. The path of a clock from its pad
+    is left out."""
     ports = [port for port in n.ports if not port.name.startswith("mcb_")]
     inputs = {bit: (port.name, i if len(port.bits) > 1 else -1)
               for port in ports if port.input for i, bit in enumerate(port.bits) if bit >= 0}
@@ -292,5 +295,6 @@ def pads_of(n, owners):
 
 
 def slowest_pad(paths, port):
-    """Returns the longest path from a pad to an output port, ns at grade -3; 0 if there is none."""
+    """Returns the length of the longest path from a pad to an output port, in ns at grade -3; 0 if
+    there is no such path."""
     return max((p["ns"] for p in paths if (p["kind"], p["port"]) == (PAD_TO_PAD, port)), default=0)

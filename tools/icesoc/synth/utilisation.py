@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""utilisation: reports the use of the FPGA by the chip and its parts, compared with limits and the
-paper."""
+"""utilisation: reports how much of the FPGA the chip and its parts use, compared with limits and
+with the paper."""
 import argparse
 import concurrent.futures
 import json
@@ -22,20 +22,22 @@ from icesoc.util.files import write
 from icesoc.util.lock import only_one
 from icesoc.util.tree import tree_state
 
-FAMILIES = ("xc6s", "xc7", "ecp5")  # the figures, the limits and the page are of the first family
+# FPGA families; the first one has the figures, the limits and the page
+FAMILIES = ("xc6s", "xc7", "ecp5")
 WHOLE_CHIP = "soc"
 STATE_OF = "bus hdl ip slice synth tools"
 PAGE = pathlib.Path(__file__).with_name("page.html")
 
 
 def rtl_of(o):
-    """Returns the modules of platform, cores and generated files, in this order."""
+    """Returns the modules of the platform, of the cores and of the generated files, in this
+    order."""
     if not o.generated.is_dir():
         raise Stop(f"{o.generated} is not there: build first")
     rooms = sorted(folder for room in ("hdl", "ip") for folder in (o.source / room).iterdir()
                    if folder.is_dir())
     folders = [o.source / "synth", o.source / "hdl", o.source / "bus", *rooms, o.generated]
-    # Files of all cores of the build; include files are next to the modules.
+    # Files of all cores of the build. Include files are in the folders of the modules.
     list = o.generated / "cores.files"
     files = [pathlib.Path(line) for line in list.read_text().splitlines()] if list.exists() else []
     files = [sources.relative_to(file, pathlib.Path()) for file in files if file.exists()]
@@ -45,8 +47,8 @@ def rtl_of(o):
 
 
 def synthesise(plan, library, options, o):
-    """Returns runs of the requested designs for each family; results of others come from the
-    cache."""
+    """Returns the runs of the requested designs for each family. Results of all other designs are
+    only taken from the cache."""
     runs = [runner.Run(design, family, plan.has(design, family)
                        and (not o.design or design.name in o.design))
             for family in o.family for design in plan.designs]
@@ -69,9 +71,9 @@ def rows_of(plan, runs, library, accepted, yosys):
 
 
 def tell_cores(library, options, o, accepted, runs):
-    """Prints the cost of some cores in the chip, without checking limits. With runs, this is the
-    chip that was synthesised, which is then the only requested design; without runs, it is the
-    accepted chip. Cores may be missing. Returns 1 if the synthesis failed."""
+    """Prints the cost of some cores in the chip, without checking limits. With `runs`, uses the
+    chip that was synthesised, which is then the only requested design. Without `runs`, uses the
+    accepted chip. A core that the chip lacks is reported. Returns 1 if the synthesis failed."""
     run = next((run for run in runs if run.wanted), None)
     if run and run.error:
         return 1
@@ -158,12 +160,12 @@ def run(o, libraries):
         return equivalent(plan, library, options, o)
     if o.core:
         for design in plan.designs:
-            design.orders = 0  # orders are only needed for the median of clocks
+            design.orders = 0  # the other orders are only needed for the median of the clock
         runs = synthesise(plan, library, options, o) if o.design else []
         return tell_cores(library, options, o, accepted, runs)
     yosys = runner.version_of(o.yosys)
-    with concurrent.futures.ThreadPoolExecutor() as pool:  # meanwhile Git determines state and
-                                                           # history
+    # git determines state and history at the same time
+    with concurrent.futures.ThreadPoolExecutor() as pool:
         tree = pool.submit(tree_state, o.source, STATE_OF)
         past = pool.submit(baseline.history, o.source)
         rows = rows_of(plan, synthesise(plan, library, options, o), library, accepted, yosys)
@@ -237,7 +239,8 @@ def main(words):
                              for file in (o.compare, o.output / "report.json"))
             print(report.differences(before, after), end="")
             return 0
-        # A design that another run is synthesising is then found in the cache.
+        # If another run is synthesising a design, this run waits, and then finds the result in the
+        # cache.
         with only_one(o.output, "utilisation"):
             return run(o, o.build / "page")
     except (Stop, OSError) as error:

@@ -11,17 +11,17 @@ from pathlib import Path
 
 
 class Browser:
-    """A Chromium with one page. Used with `with`. `errors`: faults of scripts, and errors in the
+    """A Chromium with one page, for use with `with`. `errors`: faults of scripts, and errors in the
     page's log."""
 
     def __init__(self, *options, width=1400, height=1000, home=None):
-        """home: folder of its profile and certificates; default: a new one."""
+        """home: folder for profile and certificates; by default a new folder."""
         self.home = home or tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         folder = home or self.home.name
         commands, self.send_to = os.pipe()
         self.read_from, answers = os.pipe()
 
-        def connect():  # Chromium reads commands from 3 and writes answers to 4
+        def connect():  # Chromium reads commands from file descriptor 3, and writes answers to 4
             high = os.dup(answers), os.dup(commands)
             os.dup2(high[1], 3)
             os.dup2(high[0], 4)
@@ -84,7 +84,7 @@ class Browser:
                 self.errors.append(entry)
 
     def pass_time(self, milliseconds):
-        """Lets the page's timers run for this time, without waiting for it."""
+        """Advances the page's timers by this time, without waiting in real time."""
         self.ask("Emulation.setVirtualTimePolicy", policy="pauseIfNetworkFetchesPending",
                  budget=milliseconds)
         while (event := self.receive()).get("method") != "Emulation.virtualTimeBudgetExpired":
@@ -113,8 +113,8 @@ class Browser:
         return answer["result"].get("value")
 
     def until(self, condition, seconds=600):
-        """Waits until an expression is true, and returns its value. The default time is long,
-        because a loaded machine must not decide a test."""
+        """Waits until an expression is true, and returns its value. The default time-out is long,
+        so that a test does not fail because the machine is loaded."""
         end = time.monotonic() + seconds
         while not (value := self.run(condition)):
             if time.monotonic() > end:
@@ -147,7 +147,7 @@ class Browser:
 
 
 def elements(address, *options, **size):
-    """Returns a page's elements after 20 s of its timers."""
+    """Opens a page, advances its timers by 20 s, and returns the page's elements."""
     with Browser(*options, **size) as browser:
         browser.open(address)
         browser.pass_time(20000)

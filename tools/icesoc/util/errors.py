@@ -2,7 +2,7 @@
 """errors: exceptions that end a command of the tools, and a function for their messages."""
 import difflib
 
-SKIPPED = 77  # exit status of a command that needs a network if there is none
+SKIPPED = 77  # exit status of a command that needs a network but has none
 
 
 class Stop(Exception):

@@ -2,11 +2,11 @@
 """fetch: downloads files that the build needs and Debian's packages do not contain, without
 changing the system.
 
-Usage: fetch.py THING FOLDER    puts THING into FOLDER; `fetch.py --help` lists the things
-A file whose checksum is listed here is refused if its checksum differs. Downloads are kept in
-${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network. ICESOC_NPM is a mirror
-of registry.npmjs.org, ICESOC_RAW a mirror of raw.githubusercontent.com.
-Exit status 77: there is no network, and only optional parts need this file.
+Usage: fetch.py THING FOLDER    puts THING into FOLDER; `fetch.py --help` lists the things A
+download is rejected if its checksum differs from the checksum that is listed here. Downloads are
+kept in ${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network. ICESOC_NPM is a
+mirror of registry.npmjs.org, ICESOC_RAW a mirror of raw.githubusercontent.com. Exit status 77:
+there is no network, and only optional parts need this file.
 """
 
 import argparse
@@ -33,7 +33,7 @@ GITHUB = os.environ.get("ICESOC_RAW") or "https://raw.githubusercontent.com"
 NPM = os.environ.get("ICESOC_NPM") or "https://registry.npmjs.org"
 KEYRING = "/usr/share/keyrings/debian-archive-keyring.gpg"
 
-# Path in Debian's pool, or below the mirrors above; sha256
+# (path in Debian's pool or on one of the mirrors above, SHA-256)
 LZ4 = ("l/lz4/lz4_1.9.4.orig.tar.gz",
        "0b0e3aa07c8c063ddf40b082bdf7e37a1562bda40a0ff5272957f3e987e0e54b")
 SODIUM = ("libs/libsodium/libsodium_1.0.18.orig.tar.gz",
@@ -89,11 +89,12 @@ def mirror():
 
 
 def kept(url, checksum, part=None):
-    """Returns the file with this address and checksum in the cache, after downloading it if
-    necessary. `part` is a regular expression: only the text of its group is checked and kept."""
+    """Returns the path of a download in the cache, after downloading it if necessary. `part` is a
+    regular expression: only the text that its group matches is checked and stored."""
     file = CACHE / "foreign" / checksum
     if not file.exists():
-        import urllib.request  # takes a fifth of the start of every command
+        # imported only here, because the import takes a fifth of the start time of a command
+        import urllib.request
         print(f"Fetching {url.rsplit('/', 1)[1]} ...", flush=True)
         try:
             with urllib.request.urlopen(url, timeout=60) as answer:
@@ -118,7 +119,7 @@ def released(path, checksum):
 
 
 def unpack(archive, folder, target, suffix=""):
-    """Returns the files below a folder of an archive with names ending in suffix."""
+    """Extracts the files below a folder of an archive whose names end with `suffix`."""
     with tarfile.open(archive) as tar:
         for member in tar:
             if member.isfile() and member.name.startswith(folder) and member.name.endswith(suffix):
@@ -167,7 +168,7 @@ def ghdl(target):
     if installed and int(installed[1]) >= 5:
         return program(target / "ghdl", 'exec ghdl "$@"\n')
     root = packages("ghdl5", GHDL)
-    # Its own libraries, by their own loader
+    # GHDL is started by its own loader, with the libraries that were downloaded with it
     loader = next(file for file in sorted(root.rglob("ld-linux-*.so.2")) if not file.is_symlink())
     words = [f"GHDL_PREFIX={root}/usr/lib/ghdl/mcode/vhdl", loader, "--library-path",
              root / f"usr/lib/{os.uname().machine}-linux-gnu", root / "usr/bin/ghdl-mcode"]
@@ -175,7 +176,7 @@ def ghdl(target):
 
 
 def icegrid(target):
-    """IceGrid's registry and IceStorm (installed, they would start services); two programs"""
+    """IceGrid's registry and IceStorm, as two programs; Debian's packages would start services"""
     release = platform.freedesktop_os_release()["VERSION_CODENAME"]
     library = "libzeroc-icestorm3.7" + ("" if release == "bookworm" else "t64")
     root = packages(f"icegrid-{release}", ["zeroc-icegrid", "zeroc-icebox", library], release)
@@ -190,7 +191,7 @@ def ice_source(version):
 
 
 def ice(target):
-    """internal transport headers of the installed ZeroC Ice"""
+    """internal transport headers of Ice, in the version of the installed ZeroC Ice"""
     version = output("dpkg-query", "-W", "-f", "${Version}", "libzeroc-ice-dev").split("-")[0]
     try:
         archive = ice_source(version)
@@ -219,7 +220,8 @@ def sodium(target):
 
 
 def source_of_cores(its, target):
-    """One source that examples/foreign/cores.json names: an archive of Debian's, or files."""
+    """Downloads one source of examples/foreign/cores.json: an archive in Debian, or single
+    files."""
     if "debian" in its:
         return unpack(released(its["debian"], its["sha256"]), its["folder"], target)
     target.mkdir(parents=True)
@@ -229,7 +231,8 @@ def source_of_cores(its, target):
 
 
 def foreign(target):
-    """the third-party cores that examples/foreign/cores.json names, as far as they are reached"""
+    """the third-party cores that examples/foreign/cores.json names; those that cannot be downloaded
+    are left out"""
     reached = 0
     for name, its in json.loads(LIST.read_text()).items():
         folder, sums = target / name, json.dumps({n: its[n] for n in its if n != "cores"})
@@ -269,7 +272,7 @@ def modules(target, *wanted):
 
 
 def platformio(target):
-    """PlatformIO's parser and schema of library.json, with the modules they need in python/"""
+    """PlatformIO's parser and schema of library.json; python/ has the modules that they need"""
     target.mkdir(parents=True, exist_ok=True)
     for file, checksum in PLATFORMIO[1].items():
         shutil.copyfile(kept(f"{GITHUB}/{PLATFORMIO[0]}/{file}", checksum), target / file)
@@ -278,7 +281,7 @@ def platformio(target):
 
 
 def zephyr(target):
-    """Zephyr's schema of module.yml, with the modules that check it in python/"""
+    """Zephyr's schema of module.yml; python/ has the modules that check it"""
     target.mkdir(parents=True, exist_ok=True)
     shutil.copyfile(kept(f"{GITHUB}/{ZEPHYR[0]}", ZEPHYR[1], "METADATA_SCHEMA = '''(.*?)'''"),
                     target / "module-schema.yml")

@@ -7,7 +7,7 @@ from icesoc.util.errors import Stop
 
 
 def write(path, text):
-    """Writes a file atomically: readers see the old text or the new."""
+    """Writes a file atomically: a reader sees either the whole old text or the whole new text."""
     part = pathlib.Path(f"{path}.part")
     try:
         part.write_text(text)

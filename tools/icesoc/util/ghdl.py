@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""ghdl: finds the place in VHDL of a line of the Verilog that GHDL made of it.
+"""ghdl: finds the line of VHDL from which GHDL generated a line of Verilog.
 
-GHDL writes the place into a comment before the statements that it belongs to."""
+GHDL writes the location in the VHDL as a comment before the statements to which it belongs."""
 import os
 import re
 
@@ -11,15 +11,16 @@ def is_converted(lines):
 
 
 def place_in(line):
-    """Returns file:line of a line that is such a comment, or None."""
+    """Returns file:line if a line is such a comment, otherwise None."""
     found = re.fullmatch(r" */\* (\S+\.vhdl?:\d+):\d+ +\*/", line)
     return found[1] if found else None
 
 
 def place_of_signal(lines, declared, name):
-    """Returns the place of a signal that is declared at a line, counted from 1. The place is in the
-    comment before the statement that assigns the signal; for a port it is the comment of the
-    signal that drives the port. Returns an empty text if there is none."""
+    """Returns the VHDL location of the signal that is declared at a line; lines are counted from 1.
+    The location is in the comment before the statement that assigns the signal. For a port, it is
+    the location of the signal that drives the port. Returns an empty text if no location is
+    found."""
     above = ""
     for line in lines[declared:]:
         if line == "endmodule":
@@ -37,8 +38,9 @@ def place_of_signal(lines, declared, name):
 
 
 def place_of_line(lines, number):
-    """Returns the place of a line, counted from 1: of the signal that it declares, or of its
-    statement. Empty: not found."""
+    """Returns the VHDL location of a Verilog line; lines are counted from 1. For a declaration, it
+    is the location of the signal; for any other line, of the statement. Returns an empty text if no
+    location is found."""
     declared = re.match(r" *(?:wire|reg) (?:\[.*?\] )?(\w+);", lines[number - 1])
     if declared and (place := place_of_signal(lines, number, declared[1])):
         return place

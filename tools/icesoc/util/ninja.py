@@ -19,8 +19,9 @@ NOISE = ("ninja: Entering directory", "ninja: no work to do", "- Verilator: ", "
 
 
 class Line:
-    """A build as one line: on a terminal it is rewritten, elsewhere each tenth of the steps
-    gives one, but none in the first seconds: a build without steps prints nothing."""
+    """The progress of a build. A terminal shows one line that is rewritten; other outputs get a
+    line for each tenth of the steps. Nothing is printed in the first seconds, so a build without
+    steps prints nothing."""
 
     def __init__(self):
         self.begin, self.told, self.is_shown = time.monotonic(), 0, False
@@ -47,7 +48,7 @@ class Line:
 
 
 def in_vhdl(match):
-    """Returns a place in Verilog, and the place in the VHDL from which GHDL made it."""
+    """Returns a location in Verilog; if GHDL generated the line, with the location in the VHDL."""
     try:
         lines = Path(match[1]).read_text(errors="replace").splitlines()
     except OSError:
@@ -73,8 +74,8 @@ def explained(text):
 
 
 def run_ninja(words, log, check=True, env=None):
-    """Runs ninja. Prints its messages, not its steps; its whole output goes to a file. If it
-    fails, the command ends, unless `check` is false."""
+    """Runs ninja. Prints the messages of the tools but not the steps; the whole output goes to the
+    file `log`. If ninja fails, the command ends, unless `check` is false."""
     line = Line()
     process = start(words, env={**(env or {}), "NINJA_STATUS": "[%f/%t] "}, text=True,
                     stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace")

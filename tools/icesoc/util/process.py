@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """process: starts programs from lists of words, never through a shell, and ends them.
 
-A program that is ended by a signal, or cannot be started, is reported here, and nowhere else.
+If a program is ended by a signal or cannot be started, this module prints the message.
 """
 import contextlib
 import ctypes
@@ -26,8 +26,8 @@ INTERRUPTS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 def hear_signals():
     def hear(number, _):
         for each in INTERRUPTS:
-            signal.signal(each, signal.SIG_IGN)  # one signal is enough: the program is already
-                                                 # being ended
+            # further signals are ignored, because the program is already being ended
+            signal.signal(each, signal.SIG_IGN)
         raise Interrupted(number)
 
     for number in INTERRUPTS:
@@ -36,13 +36,13 @@ def hear_signals():
 
 
 def tool(name):
-    """Returns the words that start a module of this package: "regs.rdl"."""
+    """Returns the words that start a module of this package, such as "regs.rdl"."""
     return [sys.executable, "-m", f"icesoc.{name}"]
 
 
 def start(words, env=None, **more):
-    """Starts a process that ends together with this one, in any case. `env`: additions to our
-    environment."""
+    """Starts a process that ends when this process ends, however this happens. `env`: variables
+    that are added to our environment."""
     words = [str(word) for word in words]
     if not shutil.which(words[0]):
         raise Stop(
@@ -64,8 +64,8 @@ def end(process, seconds=20):
 
 
 def wait(process):
-    """Waits for a process; returns its exit status as in a shell. An interrupt of this process ends
-    it."""
+    """Waits for a process; returns its exit status as a shell does. If this process is interrupted,
+    the other process is ended."""
     try:
         status = process.wait()
     except BaseException:
@@ -75,8 +75,8 @@ def wait(process):
 
 
 def run(words, check=True, **more):
-    """Runs a program to its end. If it fails, the command ends with its exit status, unless `check`
-    is false."""
+    """Runs a program to its end. If the program fails, the command ends with the program's exit
+    status, unless `check` is false."""
     status = wait(start(words, **more))
     if status > 128:
         number = status - 128
@@ -113,7 +113,7 @@ def logged(words, log, failed, env=None, cwd=None):
 
 
 def until(condition, process, seconds=0.05):
-    """Waits until a condition holds, as long as a process runs. Returns the last value of the
+    """Waits until a condition holds or a process has ended. Returns the last value of the
     condition."""
     while not (held := condition()) and process.poll() is None:
         time.sleep(seconds)
@@ -188,13 +188,14 @@ def end_descendants():
 
 
 def adopt_orphans():
-    """Adopts processes that programs leave behind, instead of init."""
+    """Adopts processes that programs leave behind; otherwise init would adopt them."""
     become_subreaper = 36
     ctypes.CDLL(None).prctl(become_subreaper, 1)
 
 
 def end_orphans():
-    """Ends processes that stay for two seconds; returns a line for each of them."""
+    """Ends leftover processes that are still running after two seconds. Returns a line for each of
+    them."""
     left = {}
     for attempt in range(40):
         time.sleep(0.05 if attempt else 0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""record: a binary record that C, C++ and Python share, from one description.
+"""record: describes a binary record that C, C++ and Python share.
 
     python -m icesoc.util.record DESCRIPTION.toml    writes the C header to standard output
 
@@ -13,8 +13,8 @@ The description is a TOML file with these keys:
     ns = ["u64", "simulated time, ns"]
     seen = ["u8[1024]", "..."]
 
-Types are char, u8, u16, u32 and u64, each also as an array. A layout with padding is refused, so
-that every compiler lays the record out alike. Python programs call load() or of_tree().
+Types are char, u8, u16, u32 and u64, and arrays of these. A layout with padding is rejected, so
+that every compiler uses the same layout. Python programs call load() or of_tree().
 """
 import os
 import re
@@ -27,7 +27,7 @@ FORMATS = {"char": "s", "u8": "B", "u16": "H", "u32": "I", "u64": "Q"}
 
 
 class Field:
-    """One field: its name, type, number of elements (None: no array), offset and comment."""
+    """One field: its name, type, number of elements (None: not an array), offset and comment."""
 
     def __init__(self, name, kind, text, offset):
         parts = re.fullmatch(r"(char|u8|u16|u32|u64)(?:\[([1-9]\d*)\])?", kind)
@@ -47,7 +47,7 @@ class Field:
 
 
 class Record:
-    """A description that was read."""
+    """A record, as described in a file."""
 
     def __init__(self, description):
         self.name = description["name"]
@@ -63,8 +63,9 @@ class Record:
                              "add a field that fills the gap")
 
     def unpack(self, data, *names):
-        """Returns the fields by name: bytes of char, a number, or a tuple of an array. Only the
-        named fields, if there are names. Raises struct.error if `data` is too short."""
+        """Returns {name: value} of the fields, or only of the named fields. A value is the bytes of
+        a char array, a number, or a tuple for any other array. Raises struct.error if `data` is too
+        short."""
         values = {}
         for name in names or self.fields:
             field = self.fields[name]
@@ -96,7 +97,7 @@ class Record:
         for field in self.fields.values():
             array = f"[{field.count}]" if field.count else ""
             lines.append(f"    {types[field.type]} {field.name}{array}; /* {field.text} */")
-        # An array of -1 elements if a compiler uses a different layout.
+        # A compiler with a different layout rejects this array, because its size is then -1.
         lines += [f"}} {self.name};", f"typedef char {self.name}_hasItsSize"
                   f"[sizeof({self.name}) == {self.size} ? 1 : -1];", ""]
         return "\n".join(lines)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""schema: checks the values of a JSON or TOML file by a JSON Schema, with messages for the user."""
+"""schema: checks the values of a JSON or TOML file against a JSON Schema, with messages for the
+user."""
 import functools
 import json
 import math
@@ -8,9 +9,10 @@ import re
 
 @functools.cache
 def _validator():
-    """Returns the class of validators: patterns match whole texts, an integer is written without a
-    point, and a number is finite. Imports jsonschema here, because the import takes 0.15 s and
-    commands of an empty machine import this module before it is installed."""
+    """Returns the class of validators. A pattern must match the whole text, an integer must be
+    written without a point, and a number must be finite. jsonschema is imported here for two
+    reasons: the import takes 0.15 s, and on an empty machine, commands import this module before
+    jsonschema is installed."""
     import jsonschema  # pylint: disable=import-outside-toplevel
 
     def matches(_, pattern, value, __):
@@ -25,12 +27,12 @@ def _validator():
 
 
 def description(schema):
-    """Returns what a schema expects of a value: the words of its author."""
+    """Returns a text about the values that a schema allows: its description."""
     return schema["description"]
 
 
 def limits(schema):
-    """Returns what a schema expects of a value, by its type and limits."""
+    """Returns a text about the values that a schema allows, derived from its type and limits."""
     if "enum" in schema:
         return " or ".join(map(str, schema["enum"]))
     if schema["type"] not in ("integer", "number"):
@@ -42,8 +44,8 @@ def limits(schema):
 
 
 def problems(value, schema, expected=description):
-    """Returns a sentence for each part of a value that does not fit its schema. `expected` gives
-    the words for a part of the schema."""
+    """Returns a sentence for each part of a value that does not fit its schema. `expected` is the
+    function that returns the text about the allowed values of a part of the schema."""
     errors = sorted(_validator()(schema).iter_errors(value), key=lambda e: list(e.absolute_path))
     return list(dict.fromkeys(_words(error, expected) for error in errors))
 

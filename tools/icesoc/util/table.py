@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""table: rows that are printed, and written to a Markdown file, as they are known."""
+"""table: prints the rows of a table as soon as they are known, and writes them to a Markdown
+file."""
 from pathlib import Path
 
 from icesoc.util.console import say
@@ -24,7 +25,7 @@ class Table:
         self.path.with_suffix(".md").write_text("\n".join(lines) + "\n")
 
     def end(self):
-        """Ends the command, with an error that names the failed items if there are any."""
+        """Completes the table. If items failed, ends the command with an error that names them."""
         seconds = sum(row["seconds"] for row in self.rows)
         skipped = [row for row in self.rows if row["status"] == SKIPPED]
         if failed := [row["command"] for row in self.rows if row["status"] not in (0, SKIPPED)]:

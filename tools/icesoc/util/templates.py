@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""templates: files that are generated from the Jinja templates of a folder."""
+"""templates: generates files from the Jinja templates of a folder."""
 
 
 def environment(folder, **names):
-    """Returns Jinja's environment for a folder of templates; `names` are known in all of them.
-    Imports Jinja here, because commands of an empty machine import this module before it is
+    """Returns Jinja's environment for a folder of templates; all of them can use `names`. Jinja is
+    imported here because on an empty machine, commands import this module before Jinja is
     installed."""
     import jinja2  # pylint: disable=import-outside-toplevel
     made = jinja2.Environment(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tree: the files of a checkout, their state, and its commits."""
+"""tree: lists the files of a checkout, and returns their state and its commits."""
 import subprocess
 
 from icesoc.util.errors import Stop
@@ -15,15 +15,15 @@ def commit(name, option="BASE"):
 
 
 def tracked(source):
-    """Returns the paths of all files in the tree, except those that .gitignore excludes; also works
-    in a copy."""
+    """Returns the paths of all files in the tree, except those that .gitignore excludes. Also works
+    in a copy without git's data."""
     return collect(["git", "-C", source, "grep", "--no-index", "--exclude-standard", "--no-color",
                 "-l", ""])[1].splitlines()
 
 
 def tree_state(source, folders):
-    """Returns the state of folders, "bus hdl: 0123...": a measurement is current while it is
-    equal."""
+    """Returns the state of some folders as text, such as "bus hdl: 0123...". A measurement is
+    current as long as this text is the same as at the time of the measurement."""
     files = sorted(f for f in tracked(source) if f.split("/")[0] in folders.split())
     def hashes(text, *words):
         return subprocess.run(["git", "hash-object", *words], input=text, text=True, cwd=source,

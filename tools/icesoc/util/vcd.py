@@ -4,35 +4,36 @@ import dataclasses
 import re
 
 
-NAMELESS = re.compile(r"(^|[.])(n\d+(_o)?|_\d+_|\$\S*)$")  # names that GHDL and Yosys give to wires
+# names that GHDL and Yosys invent for wires
+NAMELESS = re.compile(r"(^|[.])(n\d+(_o)?|_\d+_|\$\S*)$")
 
 
 @dataclasses.dataclass
 class Variable:
-    """A signal's declaration; several may share a key."""
+    """A signal's declaration. Several declarations may have the same key."""
     key: str
-    scopes: list  # names of the instances around it, the outermost first
+    scopes: list  # names of the instances that contain the signal, the outermost first
     name: str
     width: int  # bits
-    kind: str  # "wire", "reg", "string", ...
+    kind: str  # kind of signal: "wire", "reg", "string", ...
 
     @property
     def row(self):
-        """Its row in a save file of GTKWave."""
+        """Returns the signal's row in a save file of GTKWave."""
         bits = f"[{self.width - 1}:0]" if self.width > 1 and "[" not in self.name else ""
         return ".".join([*self.scopes, self.name + bits])
 
     @property
     def is_shown(self):
-        """Whether a reader looks for it: it is neither a parameter, nor a word of a memory, nor
-        named by a converter."""
+        """Returns whether the signal is of interest to a reader: it is not a parameter, not a word
+        of a memory, and its name is not from a converter."""
         return not (self.kind == "parameter" or NAMELESS.search(self.name)
                     or re.search(r"\[\d+\]$", self.name))
 
 
 def read(text):
-    """Returns the head of a VCD file, its variables, and a generator of (time, key, value). An item
-    with the key None is a new time; every other item is a change. A value is the bits without "b",
+    """Returns the head of a VCD file, its variables, and a generator of (time, key, value). If the
+    key is None, a new time begins; every other item is a change. A value is the bits without "b",
     or the text without "s"."""
     head, _, body = text.partition("$enddefinitions")
     variables, scopes = [], []

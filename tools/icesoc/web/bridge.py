@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""bridge: passes the WebSocket of a page to a TCP port of Ice, so that the browser is a stock Ice
+"""bridge: connects the WebSocket of a page to a TCP port of Ice, so that the browser is a stock Ice
 client of the gateway.
 
-Ice's WebSocket transport does not look at the origin of a page, so any page that the user
-visits could call a gateway that listens for WebSockets. Here a connection needs three things:
-the host of this server (DNS rebinding has another), the origin of its page, and the page's token,
-which a page of another origin cannot read.
+Ice's WebSocket transport does not check the origin of a page. Any page that the user visits could
+therefore call a gateway that listens for WebSockets. Here, a connection must have three properties:
+its Host header names this server, which prevents DNS rebinding; its origin is the page of this
+server; and it has the token of the page, which a page of another origin cannot read.
 """
 import base64
 import hashlib
@@ -17,7 +17,7 @@ import threading
 from http import HTTPStatus
 
 PROTOCOL = "ice.zeroc.com"
-MAGIC = "258EAFA5-E914-47DA-95CA-C5AB0DC85B11"  # RFC 6455, 1.3
+MAGIC = "258EAFA5-E914-47DA-95CA-C5AB0DC85B11"  # constant of RFC 6455, section 1.3
 MOST_BYTES = 1 << 20  # longest frame, bytes; equals the longest message of Ice
 MOST_CONNECTIONS = 16
 TOKEN = secrets.token_hex(16)
@@ -27,7 +27,7 @@ _free = threading.BoundedSemaphore(MOST_CONNECTIONS)
 
 
 class Ended(Exception):
-    """The connection has ended, or breaks the protocol."""
+    """The connection has ended, or the browser has broken the protocol."""
 
 
 def refusal(headers, query, host):
@@ -50,7 +50,7 @@ def exactly(stream, count):
 
 
 def read_frame(stream):
-    """Returns (opcode, payload) of a frame of the browser, which is masked."""
+    """Returns (opcode, payload) of a frame from the browser, which is masked."""
     first, second = exactly(stream, 2)
     size = second & 0x7F
     if size == 126:
@@ -104,7 +104,7 @@ def serve(handler, host, query, address):
             gateway.settimeout(None)
             exchange(handler, gateway)
     except OSError:
-        pass  # one of both has gone
+        pass  # one of the two sides has closed its connection
     finally:
         _free.release()
     return None

@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""live: serves the page that shows a mission as it runs, on the loopback interface only; for a
-gateway, as icesoc-page, the page that calls its vehicles.
+"""live: serves the page that shows a mission in progress, on the loopback interface only. As
+icesoc-page, it serves the page that calls the vehicles of a gateway.
 
-The page of a flight calls through this server (bridge.py). The page of a gateway calls the
-gateway itself, by ws or wss, as any other client does.
+The page of a flight calls through this server (bridge.py). The page of a gateway calls the gateway
+directly through ws or wss, as any other client does.
 
-Each connection has a separate thread and one request: a slow, silent or endless client makes no
-other wait, and ends after PATIENCE seconds of silence.
+Each connection has a separate thread and one request. A slow, silent or endless client therefore
+does not delay others, and is disconnected after PATIENCE seconds of silence.
 """
 
 import sys
 
 
 def refuse(kind, error, trace):
-    """Reports a lack of memory, which Python may also report as a library that cannot be loaded."""
+    """Prints a message if memory is exhausted; Python may report this as a library that cannot be
+    loaded."""
     if issubclass(kind, (MemoryError, ImportError)):
         print("icesoc-live: error: not enough memory for the page", file=sys.stderr)
     else:
@@ -44,9 +45,11 @@ from icesoc.web import bridge
 HERE = os.path.dirname(os.path.abspath(__file__))
 
 PATIENCE = 10  # seconds
-NEWEST = 128 << 10  # bytes of events.jsonl that a page shows: a long flight does not make it large
+# bytes at the end of events.jsonl that a page shows; a limit, because a long flight writes a large
+# file
+NEWEST = 128 << 10
 MOST_VEHICLES = 32  # vehicles per modem on the ground
-FILES = {  # path: MIME type, file
+FILES = {  # path -> MIME type, file
     "/": ("text/html; charset=utf-8", HERE + "/flight/index.html"),
     "/live.css": ("text/css", HERE + "/flight/live.css"),
     "/live.js": ("text/javascript", HERE + "/flight/live.js"),
@@ -57,10 +60,10 @@ FILES = {  # path: MIME type, file
     "/common.js": ("text/javascript", HERE + "/common.js")}
 STATUS = places.record_of("testbench/status/sim_status.toml")
 SCHEMA = HERE + "/../cli/flight.schema.json"
-# The page loads only from its server, and no other page may frame it.
+# The page may load data only from its server, and no other page may embed it in a frame.
 POLICY = ("connect-src 'self'%s; default-src 'self'; "
           "img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
-          "worker-src blob:; "  # timers of Ice for JavaScript
+          "worker-src blob:; "  # Ice for JavaScript uses a worker for its timers
           "frame-ancestors 'none'; base-uri 'none'; form-action 'none'")
 COMMAND = "icesoc-call" if places.IS_INSTALLED else "./icesoc call"
 COUNTERS = ("ns", "cycles", "bytesUp", "bytesDown", "packets", "lost", "wallNs")
@@ -94,21 +97,22 @@ def newest(path):
             size = file.seek(0, os.SEEK_END)
             file.seek(max(0, size - NEWEST))
             if size > NEWEST:
-                file.readline()  # the end of one line
+                file.readline()  # skips the rest of a line that begins before these bytes
             return file.readlines()
     except OSError:
         return []
 
 
 def picture(folder, address):
-    """Path of a vehicle's picture of this flight: with corners, once it has answered."""
+    """Returns the path of a vehicle's picture of this flight. It is the picture with corners as
+    soon as the vehicle has returned them."""
     paths = (f"{folder}/{name}{address}.png" for name in ("after", "before"))
     return next(filter(os.path.exists, paths), "")
 
 
 def blocks_by_slot(build):
     """Returns [(slot, name of its block, the block)] for the chip of a build folder."""
-    # Imported here, since the installed page of a gateway has no registers.
+    # Imported here, because the page of an installed gateway has no registers.
     from icesoc.regs.model import Block, Wrong
     try:
         with open(os.path.join(build, "gen/chip.json")) as chip:
@@ -119,8 +123,8 @@ def blocks_by_slot(build):
 
 
 def register(block, word, value, seen):
-    """Returns a word with its name and its fields. What was written to EVENT is not a state: each 1
-    has cleared an event."""
+    """Returns a word with its name and its fields. A value written to EVENT is not shown as a
+    state, because each 1 in it clears an event."""
     common = ("ID", "EVENT", "MASK")
     found = next((r for r in block.registers if r.word == word), None) if block else None
     clears = word == 1 and seen == WRITTEN
@@ -135,7 +139,7 @@ def register(block, word, value, seen):
 
 
 def heading(folder):
-    """The options of this flight (flight.json) that are not the defaults."""
+    """Returns the options of this flight (flight.json) that differ from their defaults."""
     try:
         with open(SCHEMA) as schema, open(folder + "/flight.json") as file:
             fields, flight = json.load(schema)["properties"], json.load(file)
@@ -148,8 +152,8 @@ def heading(folder):
 
 
 def state(folder, slots):
-    """Returns the data of the page, read from files of simulator and ground station; fields of
-    missing files are empty."""
+    """Returns the data of the page, read from files of the simulator and the ground station. If a
+    file is missing, its fields are empty."""
     shown = {"calls": [], "features": [], "slots": [], "flight": heading(folder)}
     status = contents(folder + "/status")
     if len(status) >= STATUS.size and status.startswith(STATUS.constants["SIM_MAGIC"].encode()):
@@ -172,13 +176,13 @@ def state(folder, slots):
     shown["frame"] = "before.png" in changed
     others = ((address, picture(folder, address)) for address in range(2, MOST_VEHICLES + 1))
     shown["others"] = [[address, os.path.basename(path)] for address, path in others if path]
-    # A report older than the picture is of the previous mission.
+    # If the report is older than the picture, it belongs to the previous mission.
     shown["over"] = len(changed) == 2 and changed["report.json"] >= changed["before.png"]
     return shown
 
 
 def mark_viewed(folder, is_viewed=True):
-    """Writes or removes the file by which the flight knows that a browser shows its page."""
+    """Writes or removes the file by which the flight detects that a browser shows its page."""
     path = os.path.join(folder, objects.VIEWED)
     try:
         if not is_viewed:
@@ -187,7 +191,7 @@ def mark_viewed(folder, is_viewed=True):
             with open(path, "w"):
                 os.utime(path)
     except OSError:
-        pass  # the folder was removed, or another request has done this
+        pass  # the folder was removed, or another request has already removed the file
 
 
 def open_page(address, folder):
@@ -202,7 +206,7 @@ def open_page(address, folder):
 
 
 class Vehicle:
-    """A vehicle of a gateway: NAME=PROTOCOL:PORT, as the gateway passes it."""
+    """A vehicle of a gateway, given as NAME=PROTOCOL:PORT in the form that the gateway passes."""
 
     def __init__(self, text):
         found = re.fullmatch(r"([^=]+)=(wss?):(\d{1,5})", text)
@@ -212,14 +216,15 @@ class Vehicle:
 
     def policy(self, host):
         """Returns the addresses to which the page at a host may connect. They include https,
-        because the page first sends a request by https, for which the browser selects its
+        because the page first sends a request by https, with which the browser selects its
         certificate."""
         plain = {"ws": "http", "wss": "https"}[self.protocol]
         return f" {self.protocol}://{host}:{self.port} {plain}://{host}:{self.port}"
 
 
 def gateway(folder):
-    """Returns (host, port) of --gateway, or of the first vehicle in the flight, or None."""
+    """Returns (host, port) of the gateway: the option --gateway, or the first vehicle of the
+    flight; None if both are missing."""
     if Page.gateway:
         return Page.gateway
     live = objects.flight(folder)
@@ -243,15 +248,15 @@ class Page(http.server.BaseHTTPRequestHandler):
     protocol_version, timeout = "HTTP/1.1", PATIENCE
     error_message_format, error_content_type = "%(code)d %(message)s\n", "text/plain"
     folder, slots, build, gateway = "", [], "", None
-    names: tuple = ()  # of this host
-    vehicles: list = []  # of a gateway
+    names: tuple = ()  # names of this host
+    vehicles: list = []  # vehicles of the gateway; empty for a flight
     secret = ""  # its cookie
     is_https = False
 
     def do_GET(self):
         port = self.server.socket.getsockname()[1]
         hosts = self.headers.get_all("Host", [])
-        # A page on another host may use another name for this address.
+        # A page on another host may have a name that leads to this address (DNS rebinding).
         if len(hosts) != 1 or not self.is_own(hosts[0], port):
             return self.send_error(HTTPStatus.FORBIDDEN)
         path, _, query = self.path.partition("?")
@@ -294,7 +299,8 @@ class Page(http.server.BaseHTTPRequestHandler):
         self.wfile.write(content)
 
     def described(self, host):
-        """Returns the vehicles with the endpoints of browser and programs, and their objects."""
+        """Returns the vehicles, with the endpoints for the browser and for programs, and their
+        objects."""
         port = self.server.socket.getsockname()[1]
         vehicles = [{"name": each.name, "tls": each.protocol == "wss", "port": each.port,
                      "browser": f"{each.protocol} -h {host} -p {each.port}",
@@ -321,11 +327,13 @@ class Server(http.server.ThreadingHTTPServer):
     request_queue_size = 128
 
     def handle_error(self, *_):
-        pass  # the client has gone, or is not worth waiting for
+        # an error of one client is ignored: it has closed the connection, or has been silent for
+        # too long
+        pass
 
 
 def server_at(host, port, certificate, program):
-    """Returns the server; with a certificate, of https."""
+    """Returns the server. With a certificate, it serves https."""
     kind = type("Server", (Server, ), {"address_family": socket.getaddrinfo(host, port)[0][0]})
     server = kind((host, port), Page)
     if certificate:
@@ -335,7 +343,7 @@ def server_at(host, port, certificate, program):
         except (OSError, ssl.SSLError):
             sys.exit(f"{program}: error: '{certificate}': expected a PEM file with a certificate "
                      "and its key")
-        # The handshake is made by the thread of the connection.
+        # The TLS handshake takes place in the thread of the connection.
         server.socket = context.wrap_socket(server.socket, server_side=True,
                                             do_handshake_on_connect=False)
     return server

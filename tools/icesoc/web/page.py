@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""page: puts the pages of regression and utilisation together from their parts."""
+"""page: builds the pages of regression and utilisation from their parts."""
 import json
 
 from icesoc import TREE
@@ -7,7 +7,8 @@ from icesoc.util.errors import Stop
 
 
 def page_parts(libraries):
-    """The style and the script that the pages begin with: libraries, colours, tables, charts."""
+    """Returns the style and the script with which the pages begin: libraries, colours, tables,
+    charts."""
     here = TREE / "tools/icesoc/web"
 
     def joined(ending):

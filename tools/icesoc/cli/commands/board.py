@@ -23,7 +23,7 @@ NAME = Option("name", TEXT, "name of the board, such as nucleo-qmtech", "", posi
 
 
 def read(name):
-    """Returns the board of a name, or of a file board.toml."""
+    """Returns the board with this name, or the board described in a file board.toml."""
     if not name:
         raise Stop(f"expected the name of a board: {', '.join(model.names())}", 2)
     try:

@@ -18,7 +18,7 @@ from icesoc.cli.options import (BUILD, FOLDER, JOBS, SECONDS, SWITCH, TEXT, WORD
 from icesoc.util.console import say
 from icesoc.util.errors import Stop
 
-CALL_TIMEOUT = 30  # time for a call, s
+CALL_TIMEOUT = 30  # s; time-out of a call
 BREAK_SECONDS = 1.0  # s; the line is in the break state for this time before the reset
 LOAD_TIMEOUT = 120  # s; OpenOCD or a call is ended after this time
 SILENCE = 60  # s; the report ends if no line of text arrives for this time
@@ -135,8 +135,8 @@ def started(words):
 
 
 def ended(words, meanwhile=None):
-    """Runs a program, and `meanwhile` while it runs. Returns why it has failed, or an empty
-    text."""
+    """Runs a program, and calls `meanwhile` while the program runs. Returns the reason why the
+    program has failed, or an empty text."""
     say("$ " + shlex.join(map(str, words)))
     try:
         with subprocess.Popen([str(word) for word in words]) as process:
@@ -153,7 +153,7 @@ def ended(words, meanwhile=None):
 
 def over_cable(values, build, report, folder):
     """Loads the firmware, sets the vehicle to open mode over the console, and calls it over a
-    cable. The last step of the report."""
+    cable. Adds this as the last step of the report."""
     make.write({"openocd.cfg": firmware.openocd(report.board)}, folder)
     follow(report, "STEP call: the firmware answers a call over a cable in the modem's place")
     openocd = ["openocd", "-f", folder / "openocd.cfg", "-c"]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""build: builds everything, the firmware, the layers' sizes; takes the pictures of the pages."""
+"""build: commands that build everything or only the firmware, print the size of each layer, and
+take the pictures of the pages."""
 import os
 import re
 import tempfile
@@ -121,7 +122,7 @@ def shoot(path, width, height, address):
     put_text(path, text)
 
 
-# Script that calls an operation of the vision core with the form of the page.
+# Script that calls an operation of the vision core through the form on the page.
 CALL = """(async () => {
     const wait = () => new Promise(done => setTimeout(done, 20));
     const find = () => [...document.querySelectorAll('#cards details')]
@@ -169,8 +170,9 @@ def shoot_live(path, profile, icesoc):
                 browser.open(address + "#objects")
                 for form in "setParameterA", "startProcessing", "getResult":
                     browser.run(CALL % form)
-                time.sleep(1)  # s, in which the page draws the corners, and removes the marks of
-                               # changed registers
+                # after this time, in s, the page has drawn the corners and removed the marks of
+                # changed registers
+                time.sleep(1)
                 browser.shoot(path)
                 shown = browser.run(VISIBLE)
             small(path)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""check: proofs, sanitizers, seeded bugs, faults, hours of radio, measurements."""
+"""check: commands that run proofs, sanitizers, seeded bugs, faults, hours of radio, and
+measurements."""
 import dataclasses
 import json
 import re
@@ -18,7 +19,8 @@ from icesoc.util.lock import lock
 from icesoc.util.process import output, run, tool
 
 GROUPS["check"] = "proofs, sanitizers, fuzzing, faults, coverage"
-# Test programs that are built with sanitizers: name -> folder, and other programs that it starts.
+# Test programs that are built with sanitizers: name -> its folder, and other programs that it
+# starts.
 GUARDED: dict[str, tuple[str, list[str]]] = {
     "test_icec": ("icec", []), "test_ground_engine": ("ground", []),
     "test_ground_ice": ("ground/ice", ["gateway"])}
@@ -119,7 +121,8 @@ def sanitizers(values):
     it fuzzes the simulator's GDB stub.
     """
     build, status = configured(values, tests=True), 0
-    for name in values.kinds:  # build/sanitized is the folder of the tests, so another one is used
+    # build/sanitized is for `make test`, so these programs are built in a folder for each kind
+    for name in values.kinds:
         kind, option = SANITIZERS[name]
         folder = BuildFolder(f"build/{kind}", values)
         folder.configure(f"-DSANITIZE={option}", f"-DROOMS={ROOMS_OF_PROGRAMS}")
@@ -254,8 +257,8 @@ def soak(values):
 
 
 def measure(benches, folder):
-    """Runs benches one after the other; returns the first status that is not 0. The build folder is
-    not locked meanwhile, but no two processes measure at the same time."""
+    """Runs benches one after the other; returns the first status that is not 0. Other commands may
+    build in the build folder meanwhile, but a second command that measures waits."""
     folder.mkdir(parents=True, exist_ok=True)
     status = 0
     with lock("build/bench.lock", busy="waiting for another bench in this folder ..."):

@@ -33,7 +33,8 @@ CHIP = Option("chip", SWITCH,
 
 
 def check_name(name, room="ip"):
-    """Refuses a name that is invalid or taken, in the tree or in the folder `room`."""
+    """Rejects a name that is invalid, or that already exists in the tree or in the folder
+    `room`."""
     if not name:
         raise Stop("a core needs a name: ./icesoc core new low_pass --lang verilog "
                    "(make new-ip NAME=low_pass LANG=verilog)", 2)
@@ -84,8 +85,8 @@ def write_own(build, name, lang, ice, folder):
 
 
 def interface_of(described):
-    """Returns, from a description by slice2c, the outermost module of the interface in hardware and
-    the Python class of its proxy."""
+    """Returns the outermost module of the interface in hardware, and the Python class of the
+    interface's proxy. `described` is the description by slice2c."""
     name = next(name for name, facts in described.items() if facts["kind"] == "interface"
                 and any(word.startswith(":hw") for word in facts.get("metadata", [])))
     modules = name.removeprefix("::").split("::")
@@ -161,8 +162,8 @@ def new(values):
             text = readme.read_text().replace("../../docs", "../build/icesoc/docs")
             readme.write_text(text.replace(f"make ip-test IP={name}", "make test"))
         os.makedirs(room, exist_ok=True)
-        shutil.move(folder, f"{room}/{name}")  # the folder is moved to its place only when it is
-                                               # complete
+        # the folder is moved into the tree only when it is complete
+        shutil.move(folder, f"{room}/{name}")
     written = f"{room}/{name}: {' '.join(sorted(os.listdir(f'{room}/{name}')))}"
     if values.repository:
         say(written)
@@ -189,8 +190,8 @@ def known(values):
         raise Stop("expected the name of a core: ./icesoc core test fir (make ip-test IP=fir)", 2)
     build = BuildFolder(values.build, values).prepare()
     if not values.built:
-        build.ninja("build.ninja")  # CMake may not have read folders that are newer than its last
-                                    # run
+        # CMake may not have found folders that were created after its last run
+        build.ninja("build.ninja")
     cores = (build / "cores.known").read_text().split()
     if values.ip not in cores:
         raise Stop(f"unknown core '{values.ip}': expected one of {' '.join(cores)}", 2)
@@ -342,8 +343,9 @@ def wave(values):
 
 
 def users_of(name):
-    """Yields the cores with an input that core `name` drives. Without the core, an input for other
-    cores only ("internal") becomes 0; any other input would become a pin of the chip."""
+    """Yields the cores with an input that core `name` drives. If core `name` is removed, an input
+    that only other cores may drive ("internal") becomes 0. Any other input would become a pin of
+    the chip, so its core is listed."""
     for line in Path("ip/cores.list").read_text().splitlines():
         user, *words = line.partition("#")[0].split() or [""]
         path = Path("ip", user, "core.toml")

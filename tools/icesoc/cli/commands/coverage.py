@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""coverage: lines, branches and toggles that the tests reach, of C, C++, Verilog and VHDL."""
+"""coverage: measures which lines, branches and toggles of the C, C++, Verilog and VHDL sources the
+tests reach."""
 import shutil
 import subprocess
 from pathlib import Path
@@ -61,8 +62,8 @@ def coverage(values):
 
 
 def run_tests(work, values):
-    """Runs the tests and returns the folder of their counts. Failed tests are counted as well; the
-    regression reports them."""
+    """Runs the tests and returns the folder of their counts. Failed tests are counted as well;
+    `regress` reports them."""
     points = work / "points"
     for folder in (points, work / "html"):
         shutil.rmtree(folder, ignore_errors=True)
@@ -90,8 +91,8 @@ def lcov(work, info, *words):
 
 
 def own(work, info, source, rooms):
-    """Returns the info of the files in these folders of the tree; nothing if the build has none of
-    them."""
+    """Writes an info file about the files in these folders of the tree. Returns a list with its
+    path; the list is empty if the build contains no file of these folders."""
     return lcov(work, info, "--extract", source, *(f"{Path.cwd()}/{room}/*" for room in rooms))
 
 

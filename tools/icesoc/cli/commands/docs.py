@@ -43,7 +43,8 @@ def docs(values):
 
 TUTORIAL = "docs/tutorial.md"
 CHIP = Path("ip/cores.list")
-BEGIN = "cd icesoc"  # last command of the tutorial that is skipped, because the tree exists already
+# last of the tutorial's commands that are skipped because this tree already exists
+BEGIN = "cd icesoc"
 MADE = ["LowPass.ice", "ip/low_pass"]
 
 

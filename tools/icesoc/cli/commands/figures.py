@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""build figures: measures what README.md and docs/ show, and writes their figures and pictures."""
+"""build figures: measures the figures that README.md and docs/ show, and writes them and their
+pictures into the pages."""
 import json
 import re
 import shutil

@@ -154,8 +154,8 @@ def mission(values, build, held):
         return (out / LIVE).exists()
 
     try:
-        # The page is opened only after the simulator has accepted the options, because the address
-        # of the page would hide an error message.
+        # The page is opened only after the simulator has accepted the options. Otherwise the
+        # printed address of the page would hide an error message.
         if until(lambda: flown() != before, sim):
             shown = start([*page, *(["--open"] if opens(values) else [])], pass_fds=[held])
             if not until(lambda: sim.poll() is not None or flies_on(), shown):
@@ -218,7 +218,7 @@ def replay(values):
     For a flight with --cpu m3, the waveform also shows task, interrupt and function.
     """
     try:
-        FLIGHT.read(values.replay)  # the default folder is not checked before
+        FLIGHT.read(values.replay)  # the default folder has not been checked yet
     except ValueError as error:
         raise Stop(str(error), 2) from None
     span = values.given & {"from", "to"}

@@ -78,7 +78,7 @@ def put_and_fly(values, listed, known):
     if not missing:
         fetch("ghdl", folder / "ghdl5")
     shutil.rmtree(folder / "slots", ignore_errors=True)
-    chips = {}  # number of a chip -> folders of its cores
+    chips = {}  # number of a chip -> the cores of this chip by name
     for source, its in listed.items():
         for name, core in its["cores"].items():
             if name not in (values.cores or known) or not (

@@ -2,9 +2,9 @@
 """fresh: runs the README's commands, in order, on an empty Debian 12 and 13, and tests the packages
 that they build on another empty system.
 
-A machine is a folder that debootstrap fills, with a clone of this tree's HEAD and nothing else: no
-package, no cache. The machine for packages has no clone. Mounts and processes of a machine are
-separate and end with it.
+A machine is a folder that debootstrap fills, with a clone of this tree's HEAD. It has no further
+package and no cache. The machine that tests the packages has no clone. Each machine has separate
+mounts and processes, which end when the machine ends.
 """
 import json
 import os
@@ -80,7 +80,7 @@ def fresh(values):
 
 
 def use_packages(root, release, values):
-    """Builds the packages in the machine with the clone, unless they are given; then uses them in
+    """Builds the packages in the machine with the clone, unless they are given, then uses them in
     an empty machine. Returns the results."""
     rows, folder = [], values.packages
     if not folder:
@@ -91,7 +91,7 @@ def use_packages(root, release, values):
     machine = root.parent / f"{release}-packages"
     if not (values.again and (machine / "root").is_dir()):
         empty_machine(machine, release)
-    there = machine / "srv/packages"  # readable for all users
+    there = machine / "srv/packages"  # the package files must be readable for all users
     shutil.rmtree(there, ignore_errors=True)
     shutil.copytree("tests/package", there)
     for path in Path(folder).glob("*.deb"):

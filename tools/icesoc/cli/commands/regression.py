@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""regression: commands that run tests, with selection, history and a page; find the commit since
-which a test fails; and run the nightly suite."""
+"""regression: commands that run tests, with selection, history and a page; find the commit that
+broke a test; and run the nightly suite."""
 import functools
 import json
 import re
@@ -29,7 +29,7 @@ def at_once(values):
 
 
 def selection(values, *more):
-    """Returns those options of the regression tool that select tests."""
+    """Returns the options that select tests, as words for the regression program."""
     return [word for name in ("name", "label", *more) if getattr(values, name)
             for word in (f"--{name}", getattr(values, name))]
 
@@ -82,7 +82,7 @@ def every_test(build, values, tests, seed):
 
 def changed_tests(build, values, tests, seed, label=""):
     """Runs the tests of a build folder, or of a label, that have not passed with their current
-    inputs; with --all or --fresh, all of them. Records the tests that have passed."""
+    inputs. With --all or --fresh, runs all of them. Records the tests that have passed."""
     passes = Passes(Path("."), build.folder, str(values.seed))
     some, others = passes.changed(label, values.all or values.fresh)
     if others:
@@ -95,7 +95,7 @@ def changed_tests(build, values, tests, seed, label=""):
     (build / "junit.xml").unlink(missing_ok=True)
     try:
         return build.ctest("-I", numbers.absolute(), tests=tests, check=False, **seed)
-    finally:  # also after Ctrl-C: junit.xml then contains the finished tests
+    finally:  # also after Ctrl-C, when junit.xml contains the tests that have finished
         passes.note(build / "junit.xml")
 
 
@@ -233,8 +233,8 @@ def nightly(values):
     the longest missions, and the slow variant of each command that has one. Writes a table of the
     steps, build/nightly.md."""
     build, tests = BuildFolder(values.build, values), at_once(values)
-    # COMPARE_MS: simulated time that test_sim_quiet compares, ms. HOSTILE: number of packets in
-    # test_link.
+    # Longer tests: COMPARE_MS is the simulated time that test_sim_quiet compares, in ms; HOSTILE is
+    # the number of packets in test_link.
     long = {"FRESH": "1", "COMPARE_MS": "1000", "HOSTILE": "10000000"}
     program = [build / "tests/regress/regress", "--build", build.folder, "--jobs", tests, "--waves",
                values.waves, *selection(values)]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""synth: utilisation of the chip, registers of its blocks, and their changes between commits."""
+"""synth: commands that report the utilisation of the chip and the registers of its blocks, and the
+changes of both between commits."""
 import contextlib
 import json
 import subprocess
@@ -18,7 +19,7 @@ from icesoc.util.tree import commit
 GROUPS["synth"] = "synthesis: LUTs, flip-flops, clock"
 DEFAULTS["synth"] = "synth report"
 GROUPS["contract"] = "registers: changes, import of SystemRDL"
-SHOWN = 10  # number of tests listed in one line of a pull request
+SHOWN = 10  # number of tests listed in one line of the report for a pull request
 DESIGN = Option("design", WORDS,
                 "designs to measure, such as modem, table1 or soc; the report shows the last "
                 "figures of the others", choices=choices.designs)
@@ -58,7 +59,7 @@ def synth(values):
     if not between:
         status = utilisation(build, values, *with_name("--design", values.design),
                              *with_name("--family", values.family))
-    if commits and status <= 1:  # 1: a design is beyond its budget
+    if commits and status <= 1:  # status 1: a design exceeds its budget
         compare(build, values.jobs, *commits)
     return status
 
@@ -115,8 +116,8 @@ def synthesise(program, jobs, base, folder):
     with contextlib.suppress(FileNotFoundError):
         cache.unlink()
     cache.symlink_to(
-        Path("build/synth/cache").absolute())  # designs that both commits have in common are
-                                               # synthesised once
+        # shared, so that a design that is equal in both commits is synthesised only once
+        Path("build/synth/cache").absolute())
     with open(folder / "build.log", "w") as log:
         # Status 1 means that the commit exceeds its budget, which does not matter here.
         if run([program, "--jobs", jobs], check=False, cwd=folder, stdout=log) > 1:
@@ -128,8 +129,8 @@ def named(base):
 
 
 def tests_of(names):
-    """Compares the tests of two commits, each by its stored run with the most tests; returns those
-    that end differently."""
+    """Returns lines that compare the test results of two commits: for each, the stored run with the
+    most tests; then the tests whose results differ."""
     history = Path("build/regress/history.jsonl")
     kept = list(map(json.loads, history.read_text().splitlines())) if history.exists() else []
     runs = [max((each for each in kept if each["commit"] == name), default={},

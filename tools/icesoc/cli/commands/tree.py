@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tree: set-up, clean-up, versions, and the list of commands."""
+"""tree: commands for set-up, clean-up, versions, and the list of commands."""
 import os
 import re
 import shlex

@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Files of [":hw"] interfaces, generated if the option names a folder: one or two per interface.
+// Files for [":hw"] interfaces, one or two per interface; they are generated if the option gives a
+// folder.
 struct HardwareOutput {
     const char *option, *help;
     GeneratedFile (*makes[2])(const hw::Block&);
@@ -68,7 +69,7 @@ bool print(const std::string& text) {
     return !std::cout.fail();
 }
 
-// Saves all files or none: each is written under a temporary name and then renamed.
+// Saves all files or none: writes each file under a temporary name, and then renames all of them.
 bool save(const std::vector<GeneratedFile>& files, const std::string& directory) {
     std::error_code error;
     fs::create_directories(directory, error);
@@ -88,8 +89,8 @@ bool save(const std::vector<GeneratedFile>& files, const std::string& directory)
     return !error;
 }
 
-// Returns the header for `included` as an #include names it: the shortest path from one of the -I
-// folders, else from the folder of `file`.
+// Returns the path that an #include uses for the header of `included`: the shortest path relative
+// to one of the -I folders; if it is in none of these, the path relative to the folder of `file`.
 std::string headerOf(const std::string& included, const std::string& file, const Options& o) {
     fs::path path = fs::weakly_canonical(included), best;
     for (const std::string& dir : o.includes) {
@@ -155,8 +156,9 @@ bool saveHardware(const std::vector<hw::Block>& blocks, const Options& o) {
     return true;
 }
 
-// The definitions of all files of one program, with their positions. C names must be unique among
-// them. File names must also be unique, because headers are named after them.
+// The definitions of all files of one program, with their positions. The C names of the definitions
+// must be unique in the program. File names must also be unique, because headers are named after
+// them.
 class Program {
 public:
     void add(const Unit& unit, Diagnostics& diagnostics) {
@@ -182,7 +184,7 @@ private:
     std::map<std::string, std::string> headers_, definitions_;
 };
 
-// Data that the files of a command line share.
+// Data that all files of a command line share.
 struct Collected {
     std::string rules; // --depend
     Program program;   // definitions for the option --one-program
@@ -211,7 +213,7 @@ bool compile(const std::string& file, const Options& o, Collected& all) {
     }
     Diagnostics diagnostics(std::cerr);
     Unit unit = compileUnit(p.text, file, o.rules, diagnostics);
-    if (o.describe) { // limits of C do not apply to a description
+    if (o.describe) { // a description may exceed the limits of C
         if (diagnostics.errors() == 0)
             describeUnit(unit, all.described);
         return diagnostics.errors() == 0;

@@ -78,8 +78,9 @@ public:
                  id, d.at);
         }
     }
-    // Checks the C name of a member or parameter. It must not hide a name of file scope that its
-    // function may use, and must not be a macro. Only names with an underscore can collide.
+    // Checks the C name of a member or parameter. The name must not be a macro, and must not equal
+    // a name at file scope that the generated functions use. Only names with an underscore can
+    // equal one.
     void checkInner(const std::string& c, const std::string& slice, const Location& at) {
         auto it = names_.find(c);
         if (it != names_.end())
@@ -101,7 +102,7 @@ private:
         for (const char* own : {"bases_", "dispatch_", "operations_"})
             add(own + c, id, d.at);
         if (d.fromInclude)
-            return; // these names were checked when the included file was compiled
+            return; // the names in an included file were checked when that file was compiled
         for (const Declaration* from : lineage(d))
             for (const Operation& o : from->operations) {
                 std::string slice = from->id() + "::" + o.name;
@@ -153,7 +154,8 @@ void checkInner(const Declaration& d, CNames& names) {
 } // namespace
 
 void scopeEnumerators(Unit& unit) {
-    std::map<std::string, std::string_view> files; // Slice files by their name in C
+    // source file of each Slice definition, by the C name of the definition
+    std::map<std::string, std::string_view> files;
     for (const auto& d : unit.declarations)
         files.emplace(cName(*d), d->at.file);
     for (const auto& d : unit.declarations) {
@@ -180,7 +182,8 @@ void checkC(const Unit& unit, const CFileNames& files, Diagnostics& diagnostics)
         if (d->isLocal)
             continue;
         checkInner(*d, names);
-        if (d->ofClass) // the class of the same name reports the other errors
+        // this interface was generated from a class; the errors are reported for the class
+        if (d->ofClass)
             continue;
         checkMetadata(*d, diagnostics);
         checkText(d->value, d->at, diagnostics);

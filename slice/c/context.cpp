@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// context: collects names of the whole unit, and writes heads of files, defaults of members, and
-// their marshalling.
+// context: collects names of the whole unit. Writes the first lines of the generated files, and the
+// functions that set members to their defaults and marshal them.
 
 #include "c/context.h"
 
 CContext::CContext(const Unit& ofFile, const CFileNames& ofFiles) : unit(ofFile), names(ofFiles) {
-    // first operation with these constants, by the constants and their types
+    // for each set of exceptions with their labels, the first operation that throws this set
     std::map<std::vector<std::string>, std::string> first;
     eachOperation([&](const Declaration& d, const Operation& o) {
         auto family = mayThrow(unit, o);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// context: declarations shared by the generators of C, grouped by the source that defines them, and
-// one function for each generated file.
+// context: declarations that the generators of C share, grouped by the source file that defines
+// them. At the end, one function for each generated file.
 
 #pragma once
 
@@ -63,7 +63,8 @@ struct Slot {
     std::string pointer; // its address
     bool isOptional = false;
     int tag = 0;
-    // C expression that is true if the value is present: tested when writing, assigned when reading
+    // C expression for the presence of the value: writing code tests the expression, reading code
+    // assigns to it
     std::string has;
 };
 
@@ -73,7 +74,8 @@ void readSlots(Writer& w, const std::vector<Slot>& slots);
 
 // ---- operations: operations and exceptions in C: signatures, lists of parameters ----
 
-// Returns an interface and all its bases, without repetition: the bases first, the interface last.
+// Returns an interface and all its bases. Each occurs once; the bases come before the interfaces
+// that derive from them.
 std::vector<const Declaration*> lineage(const Declaration& interface);
 
 // Returns the exceptions that an operation may throw: the declared ones, and the exceptions of this
@@ -89,11 +91,12 @@ std::string exceptionMember(const Operation& o, const std::vector<const Declarat
 bool hasResults(const Operation& o);
 bool isAmd(const Declaration& owner, const Operation& o);
 bool isSliced(const Declaration& owner, const Operation& o);
-// sendsClasses: true if an in parameter holds classes. returnsClasses: true if a result does.
+// sendsClasses: true if an in parameter holds a class instance. returnsClasses: true if a result
+// holds one.
 bool sendsClasses(const Operation& o);
 bool returnsClasses(const Operation& o);
-// True if a slot holds a class. With `isRequired`, true if a required slot does: encoding 1.0 then
-// has a list of instances.
+// True if a slot holds a class instance. With `isRequired`, only required slots count: encoding 1.0
+// then adds a list of instances.
 bool anyClass(const std::vector<Slot>& slots);
 bool anyRequiredClass(const std::vector<Slot>& slots);
 
@@ -101,9 +104,9 @@ bool anyRequiredClass(const std::vector<Slot>& slots);
 std::string operationName(const Declaration& owner, const Operation& o);
 std::string exceptionType(const Declaration& owner, const Operation& o);
 
-// Return lists of C parameters, each preceded by a comma (", Ice_Int a, const M_S *b"). The first
-// returns the in parameters, the second the out parameters and the result, as pointers. Class
-// instances that a servant returns may be const.
+// Return lists of C parameters; each parameter is preceded by a comma (", Ice_Int a, const M_S
+// *b"). The first function returns the in parameters. The second returns the out parameters and the
+// result, as pointers. Class instances that a servant returns may be const.
 std::string inParameters(const Operation& o);
 std::string outParameters(const Declaration& owner, const Operation& o, bool isSent);
 
@@ -116,9 +119,9 @@ bool throwsPreserved(const Unit& unit, const Operation& o);
 std::string servantSignature(const Declaration& owner, const Operation& o, const std::string& name);
 std::string responseSignature(const Declaration& d, const Operation& o);
 
-// Return parameters as slots: the in parameters of the proxy's function; the in parameters as
-// variables; the results behind `object` ("*" for pointers, "call->" for members, "" for
-// variables); and the results of a response.
+// Return parameters as slots. inSlots: the in parameters of the proxy's function. inVariables: the
+// in parameters as variables. outSlots: the results, with `object` before their names ("*" for
+// pointers, "call->" for members, "" for variables). responseSlots: the results of a response.
 std::vector<Slot> inSlots(const Operation& o);
 std::vector<Slot> inVariables(const Operation& o);
 std::vector<Slot> outSlots(const Operation& o, const std::string& object);
@@ -132,24 +135,24 @@ struct CContext {
 
     CContext(const Unit& ofFile, const CFileNames& ofFiles);
     std::string header() const;
-    // Returns the name of the table of the classes that this unit knows. Only instances of these
-    // can be received.
+    // Returns the name of the table that lists the classes known to this unit. Only instances of
+    // these classes can be received.
     std::string valueTable() const;
     bool usesClasses() const;
     Writer begin(const std::string& what) const;
     Writer beginSource(const std::string& what) const;
-    // Returns the prefix ("M_I_op") of the exception union of an operation. Operations that throw
-    // the same exceptions use the union of the first one in the file, so that an exception can be
-    // rethrown by an assignment.
+    // Returns the prefix ("M_I_op") of the union of the exceptions that an operation throws. All
+    // operations with the same exceptions use the union of the first of these operations in the
+    // file, so an assignment is enough to rethrow an exception.
     const std::string& thrownAs(const Operation& o) const { return thrown_.at(&o); }
 
-    // Calls `f` for each declaration of this kind in the main file, except local ones.
+    // Calls `f` for each declaration of kind `kind` in the main file, except local declarations.
     template <class F> void each(Declaration::Kind kind, F f) const {
         for (const auto& d : unit.declarations)
             if (d->kind == kind && !d->fromInclude && !d->isLocal)
                 f(*d);
     }
-    // Calls `f` for each interface of the main file and each operation that the interface declares.
+    // Calls `f` for each operation that an interface of the main file declares, with the interface.
     template <class F> void eachOperation(F f) const {
         each(Declaration::Kind::Interface, [&](const Declaration& d) {
             for (const Operation& o : d.operations)
@@ -171,15 +174,16 @@ std::string serverFile(const CContext& c);
 
 // Returns the signature of a dictionary's M_D_find; empty if its keys cannot be compared.
 std::string findSignature(const Declaration& d);
-// Write the functions for an exception, and for the union of an operation's exceptions.
+// Write the functions for an exception, and for the union of the exceptions that an operation
+// throws.
 void exceptionFunctions(Writer& w, const Declaration& d);
 void thrownFunctions(Writer& w, const CContext& c, const Declaration& d, const Operation& o);
 // Write the descriptor and the functions of a class, and the table of all descriptors.
 void classFunctions(Writer& w, const Declaration& d);
 void valueTypeTable(Writer& w, const CContext& c);
 
-// ---- members of structs, classes and exceptions: default values; marshalling, with the table of
-// instances for members that are classes ----
+// ---- members of structs, classes and exceptions: default values and marshalling; if a member is a
+// class, marshalling includes the table of instances ----
 
 // Writes the function M_T_init, which sets every member to zero or its default.
 void initFunction(Writer& w, const Declaration& d);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// data: generates the file of types: marshalling of structs, sequences and dictionaries; defaults;
-// constants.
+// data: generates the source file of the types: marshalling of structs, sequences and dictionaries;
+// default values; constants.
 
 #include "c/context.h"
 

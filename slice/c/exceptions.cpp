@@ -18,13 +18,13 @@ bool requiresClasses(const Declaration& d) {
     return anyRequiredClass(memberSlots(d)) || (d.base() && requiresClasses(*d.base()));
 }
 
-// Returns the path from the exception to the member that stores its unknown slices.
+// Returns the C path from the exception to the member that stores slices of unknown types.
 std::string unknownOf(const Declaration& d) {
     return d.base() && d.base()->preserves() ? "base." + unknownOf(*d.base()) : "ice_unknown";
 }
 
-// Returns whether the code needs a table of instances. Classes need it, and so do preserved slices,
-// because they may contain instances.
+// Returns whether the generated code needs a table of instances. Members that are classes need the
+// table, and so do preserved slices, because these may contain instances.
 bool needsTables(const Declaration& d) {
     return hasClasses(d) || d.preserves();
 }
@@ -186,8 +186,8 @@ void classFunctions(Writer& w, const Declaration& d) {
            v);
 }
 
-// Returns the classes that types of the main file mention but do not define, the interfaces that
-// they pass by value, and the types derived from both.
+// Returns three kinds of declarations: classes that types of the main file use but do not define,
+// interfaces that these types pass by value, and interfaces derived from those.
 static std::set<const Declaration*> mentioned(const Unit& unit) {
     std::set<const Declaration*> found;
     auto add = [&](const Type& t) {
@@ -210,7 +210,8 @@ static std::set<const Declaration*> mentioned(const Unit& unit) {
                 add(p.type);
         }
     }
-    for (const auto& d : unit.declarations) // a base is written before the types derived from it
+    // a base comes before the types derived from it, so one pass finds all derived types
+    for (const auto& d : unit.declarations)
         for (const Declaration* base : d->bases)
             if (d->kind == Declaration::Kind::Interface && found.count(base))
                 found.insert(d.get());

@@ -24,13 +24,13 @@ struct CFileNames {
 // exists.
 std::vector<std::string> limitFiles(const std::vector<std::string>& files);
 
-// Adds metadata from limits files to the definitions that they name, before the metadata
-// that the source has.
+// Adds metadata from limits files to the definitions that the files name. The added metadata
+// precedes the metadata in the source.
 void addLimits(Unit& unit, const std::vector<std::string>& files, Diagnostics& diagnostics);
 
-// Gives the enumerators of an enum long names, as ["c:scoped"] does, if one of the short names is
-// also another name in the same file. Other files are ignored, because a program may or may not
-// include them.
+// Gives the enumerators of an enum long names, as ["c:scoped"] does, if a short name is also the
+// name of something else in the same file. Names in other files are ignored, because a program may
+// or may not include those files.
 void scopeEnumerators(Unit& unit);
 
 // Reports definitions that cannot be mapped to C, and definitions that would get the same C name.

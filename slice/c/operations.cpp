@@ -79,9 +79,9 @@ bool throwsPreserved(const Unit& unit, const Operation& o) {
                        [](const Declaration* e) { return e->preserves(); });
 }
 
-// Returns whether an exception is the first one with its name in this union; the first one keeps
-// the name unchanged. The exceptions that the operation declares come before the others, so adding
-// another exception never renames them.
+// Returns whether this exception is the first one in the union that has its name; the first one
+// keeps its name unchanged. The exceptions that the operation declares come before the derived
+// ones, so a new derived exception never renames a declared one.
 static bool isFirstOfName(const Operation& o, const std::vector<const Declaration*>& family,
                           const Declaration& exception) {
     for (const auto& list : {o.throws, family})
@@ -102,7 +102,7 @@ std::string exceptionLabel(const Operation& o, const std::vector<const Declarati
 
 std::string exceptionMember(const Operation& o, const std::vector<const Declaration*>& family,
                             const Declaration& exception) {
-    // In C++ a member cannot have the name of its own type.
+    // In C++, a member must not have the same name as its type.
     return isFirstOfName(o, family, exception) ? cIdentifier(exceptionLabel(o, family, exception))
                                                : cName(exception) + "_";
 }

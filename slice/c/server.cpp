@@ -86,7 +86,9 @@ void dispatchOperation(Writer& w, const CContext& c, const Declaration& d, const
             for (const Slot& s : outSlots(o, ""))
                 if (s.isOptional)
                     w.line(s.has + " = 0;");
-            if (throwsPreserved(c.unit, o)) // with one more parameter, the list of unknown slices
+            // the servant then has one more parameter: the exception, with its list of unknown
+            // slices
+            if (throwsPreserved(c.unit, o))
                 w.line("memset(&ex, 0, sizeof ex);");
             if (!o.throws.empty())
                 w.line("ex.type = " + operationName(d, o) + "_none;");
@@ -155,8 +157,8 @@ void interfaceTable(Writer& w, const Declaration& d) {
            v);
 }
 
-// Returns the initialiser of the default table, with the functions of the application; tables of
-// bases are nested.
+// Returns the initialiser of the default operation table, which contains the application's
+// functions. The initialisers of the bases' tables are nested in it.
 std::string defaultOperations(const Declaration& top, const Declaration& d) {
     std::string list;
     for (const Declaration* base : d.bases)

@@ -14,7 +14,8 @@ bool isNamed(const Type& t, DKind kind) {
     return t.kind == Kind::Named && t.declaration->kind == kind;
 }
 
-// Returns the <word> in Ice_OutputStream_write<word> and Ice_InputStream_read<word>.
+// Returns the suffix that names a type in Ice_OutputStream_write<suffix> and
+// Ice_InputStream_read<suffix>.
 std::string streamWord(const Type& t) {
     return cType(t).substr(4);
 }
@@ -43,8 +44,8 @@ std::string optionalFormat(const Type& t) {
     return varies || (d.kind == DKind::Dictionary && factsOf(d.key).isVariable) ? "FSIZE" : "VSIZE";
 }
 
-// Returns the expression for the size that precedes an optional value with format VSIZE; empty if
-// the value itself begins with its size.
+// Returns the C expression for the size that precedes an optional value of format VSIZE. Returns an
+// empty string if the value itself begins with its size.
 std::string sizeBefore(const Slot& s) {
     const Type& t = *s.type;
     if (optionalFormat(t) != "VSIZE" || t.kind == Kind::String)
@@ -110,7 +111,8 @@ std::string readStatement(const Type& t, const std::string& value, const std::st
     return value + " = Ice_InputStream_read" + streamWord(t) + "(is);";
 }
 
-// Sorts slots: the required ones in order, then the optional ones by tag.
+// Returns the slots in the order of the wire: the required slots in their given order, then the
+// optional slots by tag.
 std::vector<Slot> wireOrder(std::vector<Slot> slots) {
     std::stable_sort(slots.begin(), slots.end(), [](const Slot& a, const Slot& b) {
         if (a.isOptional != b.isOptional)

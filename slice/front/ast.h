@@ -21,7 +21,7 @@
 // Position in a source, for errors and warnings.
 struct Location {
     std::string_view file;    // file name, stored by Diagnostics::intern
-    int line = 0, column = 0; // both from 1
+    int line = 0, column = 0; // line and column, both starting at 1
 };
 
 class Diagnostics {
@@ -84,10 +84,10 @@ struct Literal {
     enum class Kind { None, Bool, Integer, Floating, String, Enumerator };
     Kind kind = Kind::None;
     int64_t integer = 0; // value of a Bool, an Integer or an Enumerator
-    double floating = 0; // value of a Floating
-    // text of a Floating as written; text of a String in UTF-8; name of an Enumerator
+    double floating = 0; // value, if the literal is a Floating
+    // Floating: its text as written; String: its text in UTF-8; Enumerator: its name
     std::string text;
-    const Declaration* owner = nullptr; // enum of an Enumerator
+    const Declaration* owner = nullptr; // Enumerator: the enum that contains it
 };
 
 struct Field {
@@ -143,11 +143,11 @@ struct Declaration {
     std::vector<const Declaration*> implemented; // Class: interfaces that it implements
     // Interface, Class: operations without inherited ones
     std::vector<Operation> operations;
-    // Interface: class for whose operations this interface was generated
+    // Interface generated for the operations of a class: that class; otherwise null
     const Declaration* ofClass = nullptr;
     int compactId = -1; // Class: compact id; -1 if none
 
-    // Facts about the type's values; set when its definition is complete.
+    // Facts about the values of this type; set when the definition of the type is complete.
     struct Facts {
         int leastWireSize = 1;  // bytes
         bool isVariable = true; // true if the encoded size varies

@@ -6,7 +6,7 @@
 #include <fstream>
 
 void Diagnostics::error(const Location& at, const std::string& text) {
-    // prints at most this number of errors for a file
+    // limit of the errors that are printed for one file
     if (++errors_ <= 100)
         print(at, "error", text);
 }

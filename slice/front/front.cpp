@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // front: runs the steps from text to unit. The last step makes classes callable, as in Ice's C++11
-// mapping: for each class with operations it creates an interface, which has these operations (also
-// inherited ones) and the type id of the class.
+// mapping: for each class with operations, it creates an interface that has the operations of the
+// class, including inherited ones, and the type id of the class.
 
 #include "front/front.h"
 #include "front/parser.h"
@@ -28,9 +28,10 @@ std::unique_ptr<Declaration> interfaceOf(const Declaration& c, const Declaration
     return i;
 }
 
-// After each class that can be called, adds an interface with its operations.
+// Adds an interface after each class that has operations. The interface has the operations of the
+// class.
 void addClassInterfaces(Unit& unit) {
-    std::map<const Declaration*, const Declaration*> made; // created interfaces, by class
+    std::map<const Declaration*, const Declaration*> made; // created interface of each class
     std::vector<std::unique_ptr<Declaration>> all;
     for (auto& d : unit.declarations) {
         const Declaration* c = d.get();

@@ -25,10 +25,11 @@
 #include <string>
 #include <vector>
 
-// Text of a file after libmcpp has processed #include, #define and #if.
+// Result of preprocessing one file with libmcpp.
 struct Preprocessed {
     bool ok = false;
-    std::string text;                  // including #line markers and comments
+    // text of the file and of all included files, with #line markers and comments
+    std::string text;
     std::string messages;              // messages of the preprocessor
     std::vector<std::string> files;    // the file and all files included, at any depth
     std::vector<std::string> includes; // files included directly

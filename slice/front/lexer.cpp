@@ -58,10 +58,10 @@ private:
         doc_ = {};
         comments_.clear();
     }
-    // Returns the block of // comments that ends on the line above this one.
+    // Returns the block of // comments that ends on the line before `line`.
     std::string linesAbove(int line) const {
         auto end = comments_.end();
-        // skips comments that follow the tokens of the line
+        // skips comments in `line` itself and after it
         while (end != comments_.begin() && (end - 1)->first >= line)
             --end;
         auto begin = end;
@@ -111,7 +111,7 @@ private:
 
     void lineComment() {
         size_t end = std::min(text_.find('\n', position_), text_.size());
-        if (peek(2) == '/') { // consecutive // lines are one comment
+        if (peek(2) == '/') { // // comments on consecutive lines form one comment
             size_t begin =
                 doc_.empty() ? position_ + 3 : static_cast<size_t>(doc_.data() - text_.data());
             doc_ = text_.substr(begin, end - begin);
@@ -206,7 +206,7 @@ private:
         if (position_ == begin + 1 &&
             std::string_view("{}()[];:,*=<>").find(c) == std::string_view::npos) {
             auto u = static_cast<unsigned char>(c);
-            if (u >= 0xC0) // shows a whole UTF-8 character
+            if (u >= 0xC0) // the message shows a whole UTF-8 character
                 while ((static_cast<unsigned char>(peek()) & 0xC0) == 0x80)
                     ++position_;
             std::string shown = u > 32 && u != 127
@@ -223,8 +223,10 @@ private:
     size_t position_ = 0;
     Location at_;
     std::string_view doc_;
-    std::vector<std::pair<int, std::string_view>> comments_; // // comments, each with its line
-    int moved_ = 0; // number of lines that the preprocessor has added, one after each comment
+    // text of each // comment, with its line
+    std::vector<std::pair<int, std::string_view>> comments_;
+    // number of lines that the preprocessor has added so far; it adds one after each comment
+    int moved_ = 0;
     std::vector<Token> tokens_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// literals: reads numbers with functions of the C library, and strings with its own code.
+// literals: converts the text of number and string literals to values. Numbers are read by
+// functions of the C library.
 
 #include "front/parser.h"
 #include <cerrno>

@@ -69,7 +69,8 @@ std::string Parser::name(const std::string& what) {
              "')");
     NameRules rules = rules_;
     if (!isMain(token().at.file))
-        rules = {true, true}; // an included file is not the user's: its names may break the rules
+        // the rules for names apply only to the user's file, not to included files
+        rules = {true, true};
     checkName(text, rules, token().at, diagnostics_);
     ++position_;
     return std::string(text);
@@ -261,7 +262,8 @@ Declaration& Parser::add(Declaration::Kind kind, const std::string& name, const 
     return d;
 }
 
-// Declares the name that follows. It takes the place of a forward declaration of the same kind.
+// Declares the type that the next token names. The declaration replaces a forward declaration of
+// the same kind.
 Declaration& Parser::declareType(Declaration::Kind kind, bool mayBeForward) {
     Location begin = token().at;
     std::string called = name("the " + std::string(kindName(kind)) + "'s name");
@@ -299,8 +301,8 @@ Declaration& Parser::declareType(Declaration::Kind kind, bool mayBeForward) {
         unit_.declarations.pop_back();
         return *earlier;
     }
-    // Other declarations already refer to this one, so it becomes the definition; moving it to the
-    // end keeps the order of the source.
+    // Other declarations refer to the object of the forward declaration, so this object becomes the
+    // definition. It is moved to the end, so that the definitions keep their order in the source.
     auto it = std::find_if(unit_.declarations.begin(), unit_.declarations.end(),
                            [&](const auto& p) { return p.get() == earlier; });
     *earlier = std::move(d);

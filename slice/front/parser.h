@@ -77,7 +77,8 @@ private:
     std::string name(const std::string& what);
     std::string scopedName(const std::string& what);
     void recover();
-    // Runs a grammar rule. After a syntax error, continues after the next ';' or '}'.
+    // Runs a grammar rule. After a syntax error, skips to the next ';' or '}', where parsing
+    // continues.
     template <class Rule> void guarded(Rule rule);
     template <class Rule> void braces(const Declaration& d, Rule rule);
     std::string doc();
@@ -139,7 +140,8 @@ private:
     size_t position_ = 0;
     std::vector<std::string> scope_;
     std::string scopeId_; // "::A::B"
-    std::string user_;    // enclosing type: names are used by this type, not by the module
+    // type that is being parsed; names in it are recorded as used by this type, not by its module
+    std::string user_;
     std::map<std::string_view, bool> isMain_;
     std::set<std::string_view> begun_; // files with at least one definition so far
     std::map<int, std::string> compactIds_;

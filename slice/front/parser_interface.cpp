@@ -66,7 +66,7 @@ std::vector<OwnedOperation> allOperations(const Declaration& d) {
 
 } // namespace
 
-// Checks that no two bases have different operations with the same name.
+// Reports an error if two bases have different operations of the same name.
 void Parser::checkBases(const Declaration& d) {
     std::vector<OwnedOperation> list = allOperations(d);
     for (size_t i = 0; i < list.size(); ++i)
@@ -115,7 +115,7 @@ void Parser::operation(Declaration& d) {
     checkLocal(o.result, d.isLocal, "operation '" + o.name + "'", begin);
     checkOperation(d, o);
     expect("(");
-    user_ += "::" + o.name; // names in the parameter list are used by the operation
+    user_ += "::" + o.name; // names in the parameter list are recorded as used by this operation
     parameters(o, d);
     user_ = d.id();
     expect(")");
@@ -201,7 +201,7 @@ void Parser::throwsClause(Operation& o, const Declaration& owner) {
         Location begin = token().at;
         std::string written = scopedName("an exception");
         Symbol* s = resolve(written, begin);
-        // The name of an operation must not mean anything else in its interface.
+        // In an interface, an operation's name must not be used for anything else.
         std::string first = lowerCase(written.substr(0, written.find("::")));
         bool isOperation = first == lowerCase(o.name);
         for (const Operation& other : owner.operations)

@@ -154,7 +154,8 @@ Parser::Optional Parser::optional() {
     return o;
 }
 
-// Finds a constant or an enumerator. Ice still allows an enumerator without the name of its enum.
+// Finds a constant or an enumerator. As in Ice, an enumerator may be written without the name of
+// its enum.
 Symbol* Parser::resolveValue(const std::string& written, const Location& at) {
     if (Symbol* s = resolve(written, at))
         return s;

@@ -19,8 +19,9 @@ void addOnce(std::vector<std::string>& list, const std::string& name) {
         list.push_back(name);
 }
 
-// Returns the path of `name`, a file included by `includer`. libmcpp reports it either as written,
-// relative to the folder of the includer, or appended to the -I folder of the includer.
+// Returns the path of `name`, a file included by `includer`. libmcpp reports the name in one of
+// three forms: as written, relative to the includer's folder, or appended to the -I folder of the
+// includer.
 std::string placeOf(const std::string& name, const std::string& includer) {
     std::error_code error;
     std::filesystem::path path = name, folder = std::filesystem::path(includer).parent_path();
@@ -37,8 +38,8 @@ std::string placeOf(const std::string& name, const std::string& includer) {
     return name;
 }
 
-// Finds the path of each file by following the markers: #line 1 "file" enters a file, any other
-// name returns to an enclosing file.
+// Finds the path of each file in the preprocessor's markers. #line 1 "file" begins an included
+// file; a marker with another line number returns to an enclosing file.
 void findFiles(Preprocessed& p) {
     std::vector<std::string> open, places;
     for (size_t at = 0; (at = p.text.find("#line ", at)) != std::string::npos;) {
@@ -65,7 +66,8 @@ void findFiles(Preprocessed& p) {
     }
 }
 
-// Repeats the number of the last line, because libmcpp counts comments at the end of a file twice.
+// Appends a marker with the number of the last line. libmcpp counts comments at the end of a file
+// twice, so its own line number is wrong there.
 void markEnd(Preprocessed& p, const std::string& file) {
     size_t end = p.text.find('\n');
     if (p.text.compare(0, 8, "#line 1 ") != 0)
@@ -124,7 +126,8 @@ std::string withoutLineEnds(const std::string& messages) {
     std::string kept;
     bool isSkipped = false;
     for (std::string line; std::getline(in, line);) {
-        // true for a line that shows source text, or names the including file
+        // true if this line belongs to the message before: source text, or the name of the
+        // including file
         bool continues = !line.empty() && line[0] == ' ';
         isSkipped = (isSkipped && continues) ||
                     line.find(": warning: Converted [CR+LF] to [LF]") != std::string::npos ||

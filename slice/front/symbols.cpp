@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// symbols: implements the rules of Ice 3.7's scanner for names, and looks names up by Slice's
+// symbols: implements the rules for names of Ice 3.7's scanner, and looks names up by Slice's
 // scoping rules.
 
 #include "front/symbols.h"

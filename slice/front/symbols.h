@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// symbols: keeps the table of declared names, and knows Slice's keywords and rules for identifiers.
-// Slice forbids names that differ only in capitals, so the table ignores capitals when it searches
-// and then compares them.
+// symbols: the table of declared names, with Slice's keywords and rules for identifiers. Slice
+// forbids two names that differ only in capitals. The table therefore ignores capitals in a search,
+// and then compares the capitals of the name that it found.
 
 #pragma once
 
@@ -44,17 +44,18 @@ public:
     // or 0 after it has reported an error.
     Symbol* declare(const std::string& scope, const std::string& name, const Location& at,
                     bool& isNew);
-    // Finds the symbol that `written` means in `scope`, from the innermost scope outwards; returns
-    // 0 if none. Records the meaning for `user`, a module or a type, which must not use the name
-    // with another meaning later.
+    // Searches `scope`, then the enclosing scopes, for the symbol that `written` means; returns 0
+    // if there is no such symbol. Records the meaning for `user`, a module or type: later, `user`
+    // must not use the same name with another meaning.
     Symbol* resolve(const std::string& scope, const std::string& written, const Location& at,
                     const std::string& user);
     // Does the same as resolve, but ignores capitals and records nothing.
     Symbol* innermost(const std::string& scope, const std::string& written);
     // Returns true, and reports an error, if `user` has used the name with another meaning before.
     bool hasChanged(const std::string& user, const std::string& name, const Location& at);
-    // Declares and returns enumerators by their name alone, as seen in a scope or the scopes around
-    // it; Ice still allows an enumerator without the name of its enum.
+    // Enumerators by their bare name, without the name of their enum, which Ice still allows.
+    // declareBare adds one to `scope` and its enclosing scopes; bare returns those that are visible
+    // in `scope`.
     void declareBare(const std::string& scope, const std::string& name, Symbol* enumerator);
     const std::vector<Symbol*>& bare(const std::string& scope, const std::string& name) const;
 
@@ -63,5 +64,5 @@ private:
     std::unordered_map<std::string, Symbol> table_; // keyed by the name in lower case
     std::unordered_map<std::string, std::vector<Symbol*>> bare_;
     std::unordered_map<std::string, std::string>
-        used_; // first components of names used in a scope, and their meaning
+        used_; // meaning of the first component of each name that a scope has used
 };

@@ -117,7 +117,8 @@ private:
             }
     }
 
-    // Handles void listen(Watcher* watcher): the operations of Watcher are events.
+    // Maps an operation such as void listen(Watcher* watcher): the operations of Watcher become
+    // events.
     void addListener(const Operation& o) {
         const Type& type = o.parameters.front().type;
         if (o.parameters.size() != 1 || o.parameters.front().isOut || !type.declaration ||

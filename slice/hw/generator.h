@@ -14,19 +14,20 @@ namespace hw {
 
 // ---- map: the register in a core's slot for each value of a [":hw"] interface ----
 
-// number of the first word for values, which follows ID, EVENT and MASK; number of words in a slot
+// firstWord: number of the first word for values, after the words ID, EVENT and MASK. slotWords:
+// number of words in a slot.
 constexpr unsigned firstWord = 3, slotWords = 16;
 constexpr unsigned control = 3, status = 4, page = 5, pageLsb = 5;
-// PAGE selects which words appear at 8..15 of a slot: word n is at n % slotWords on page n /
-// slotWords, at least 8 on pages above 0.
+// The register PAGE selects the page that appears at words 8 to 15 of the slot. Word n is on page n
+// / slotWords and appears at n % slotWords, which is at least 8 on every page except page 0.
 constexpr unsigned pageWords = 8, mostPageBits = 5;
-// alignment of a buffer in bytes, so that bursts begin at its start
+// alignment of a buffer, bytes; a burst can then start at the beginning of the buffer
 constexpr unsigned bufferAlignment = 128;
 constexpr unsigned mostPins = 32; // largest number of pins of a core in one direction
 constexpr unsigned mostOperations = 16, refusedLsb = 16, resetBit = 31;
 
-// A field of a word, which is also a range of bits of a port. It holds a scalar, or half of a
-// 64-bit scalar.
+// A scalar, or half of a 64-bit scalar, as a field of a word. The field is also a range of bits of
+// a port.
 struct Piece {
     Type type;
     std::string name; // name of the field: a_x for member x of parameter a
@@ -36,8 +37,8 @@ struct Piece {
     // 0 for a parameter or result of the call; n for a member of the n-th exception
     unsigned exception = 0;
     bool isCode = false; // true for the code of an exception: 0, or the exception's number
-    // The number of elements of a sequence, which is in DDR3, `offset` bytes after the start of the
-    // slot's buffers.
+    // true if the field is the number of elements of a sequence. The elements are in DDR3, `offset`
+    // bytes after the start of the slot's buffers.
     bool isCount = false;
     unsigned offset = 0, most = 0, elementBytes = 0;
 };
@@ -51,15 +52,16 @@ struct Word {
     unsigned width() const { return pieces.back().lsb + pieces.back().width; }
 };
 
-// A call of one of the core's operations; or an event: a call by the core of an operation of a
-// callback interface.
+// A call of an operation of the core, or an event, which is a call by the core: of an operation of
+// a callback interface.
 struct Call {
     const Operation* operation = nullptr;
     bool isEvent = false;
-    // true for ["amd"]: the core takes long, and the processor does other work meanwhile
+    // true for an operation with ["amd"]: the core takes a long time, and the processor does other
+    // work meanwhile
     bool isAmd = false;
     const Declaration* owner = nullptr; // interface that declares the operation
-    // exceptions that the operation throws; their codes are 1, 2, ...
+    // exceptions that the operation throws; the first one has code 1, the second one code 2, ...
     std::vector<const Declaration*> thrown;
     std::vector<std::string> labels; // C constants of these codes
     std::string name;                // snake_case
@@ -78,7 +80,7 @@ struct Listener {
     size_t first = 0, count = 0; // range of the listener's events in Block::calls
 };
 
-// A pin of the chip, which is a port of the core in addition to those of the slot.
+// A port of the core that is connected to pins of the chip, not to the slot.
 struct Pin {
     std::string name; // ends with _i or _o
     unsigned width = 1;
@@ -94,17 +96,17 @@ struct Block {
     std::vector<Call> calls;
     std::vector<Listener> listeners;
     std::vector<Pin> pins;
-    // true if the core's clock may stop; accesses are not answered while it is stopped
+    // true if the core has a clock that may stop; while the clock is stopped, accesses are not
+    // answered
     bool hasOwnClock = false;
-    // 2^pageBits is the number of pages; 0 means that the slot has no pages and no word PAGE (word
-    // 5)
+    // The number of pages is 2^pageBits. 0: the slot has one page, and no word PAGE (word 5).
     unsigned pageBits = 0;
     unsigned memoryWord = 0;  // number of the word MEMORY; 0 without sequences
     unsigned memoryBytes = 0; // size of all buffers in bytes, a power of two
 
     bool hasLong() const;
-    unsigned memoryLsb() const; // lowest address bit stored in MEMORY
-    unsigned events() const;    // Returns the mask of the used bits of EVENT.
+    unsigned memoryLsb() const; // number of the lowest address bit that MEMORY stores
+    unsigned events() const;    // Returns the number of bits of EVENT that are used.
     unsigned numbers() const;   // Returns the number of words, a multiple of slotWords.
     bool isPaged(unsigned word) const { return pageBits && word % slotWords >= pageWords; }
     // Returns all words of parameters and results, in the order of their numbers.
@@ -116,7 +118,7 @@ struct Port {
     std::string name; // name of the port, with _i or _o
     bool isOut = false;
     unsigned width = 1;
-    std::string group; // heading of the port's group, at its first port; otherwise empty
+    std::string group; // title of the group of ports that begins with this port; otherwise empty
     // call to which the port belongs; 0 for a port that each wrapper has
     const Call* call = nullptr;
 };
@@ -128,7 +130,8 @@ std::vector<Block> mapHardware(const Unit& unit, Diagnostics& diagnostics);
 
 // Assigns words to the calls of an interface.
 void mapCalls(const Declaration& d, const Unit& unit, Block& block, Diagnostics& diagnostics);
-// Parses an integer, decimal or 0x..., within [low, high]. Returns false for any other text.
+// Parses an integer, decimal or 0x..., between `low` and `high`. Returns false if the text is not
+// such a number.
 bool number(const std::string& text, unsigned low, unsigned high, unsigned& value);
 // Reports each hw: metadata that is not in `known`.
 void checkKeys(const std::vector<std::string>& metadata, const std::vector<std::string>& known,
@@ -142,9 +145,9 @@ std::string hexDigits(unsigned value, unsigned digits);
 
 // True for a number, a bool, an enum, or a struct of such types.
 bool isMappable(const Type& type);
-// Appends the scalars of the value as pieces of words. Successive scalars share a word that has no
-// number yet, if they fit; a 64-bit scalar takes two words, low one first. `c` is the lvalue in C;
-// "*p" for the target of p.
+// Appends the scalars of a value as fields of words. Successive scalars share a word without an
+// assigned number if they fit. A 64-bit scalar takes two words, the low half first. `c` is the C
+// lvalue of the value; for a pointer p, it is "*p".
 void addValue(std::vector<Word>& words, const Type& type, const std::string& name,
               const std::string& c, bool isOut, unsigned exception = 0);
 
@@ -153,13 +156,13 @@ void addCount(std::vector<Word>& words, const Type& type, const std::string& nam
               const std::string& c, bool isOut, unsigned most, unsigned offset);
 // Appends the code of the exception that was thrown, 1 to `count`.
 void addCode(std::vector<Word>& words, size_t count);
-// Returns "a_base", the name of the address port of the sequence whose number of elements is in
+// Returns the name "a_base" of the port with the address of a sequence, if `count` is its field
 // "a_count".
 std::string baseName(const Piece& count);
 
 bool isSequence(const Type& type);
-// Returns the bytes of an element in DDR3, as C lays it out; 0 if compilers lay out the type in
-// different ways.
+// Returns the size in bytes of an element in DDR3, where it has the layout that C compilers use.
+// Returns 0 if compilers differ in the layout of the type.
 unsigned elementBytes(const Type& type);
 
 GeneratedFile registersFile(const Block& b); // <block>.regs.json
@@ -170,7 +173,7 @@ GeneratedFile servantSource(const Block& b); // <block>_servant.c
 
 GeneratedFile proxyFile(const Block& b); // <block>_proxy.h
 
-// Return the files with which a new core begins: <block>.v, <block>.vhd and <block>_test.cpp.
+// Return the files that a new core starts with: <block>.v, <block>.vhd and <block>_test.cpp.
 GeneratedFile verilogSkeleton(const Block& b);
 GeneratedFile vhdlSkeleton(const Block& b);
 GeneratedFile testSkeleton(const Block& b);
@@ -192,14 +195,15 @@ void vhdlEntity(Writer& w, const std::string& name, const std::vector<Port>& por
 
 std::string coreType(const Block& b); // Module_Interface_Core
 
-// Generates code that moves parameters into registers and buffers; `hw_core` is the servant.
+// Generates the code that writes parameters to registers and buffers. In this code, `hw_core` is
+// the servant.
 void writeParameters(Writer& w, const Block& b, const Call& c);
-// Generates code that moves registers and buffers into results, through pointers, and that returns
-// after an exception.
+// Generates the code that reads results from registers and buffers and stores them through
+// pointers. If the core reports an exception, this code returns.
 void readResults(Writer& w, const Block& b, const Call& c);
 // Declares the variables that writeParameters and readResults need.
 void resultVariables(Writer& w, const Call& c);
-// Declares members of the servant that hold the elements of received sequences.
+// Declares members of the servant's struct that hold the elements of received sequences.
 void sequenceMembers(Writer& w, const Block& b);
 void checkLayouts(Writer& w, const Block& b);
 

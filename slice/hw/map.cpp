@@ -103,7 +103,8 @@ private:
                name == "clk_i" || name == "rst_i" || name == "irq_o";
     }
 
-    // Assigns the words that the source chooses, then puts the others in order into the gaps.
+    // Assigns the word numbers that the source requests, then gives the free numbers to the other
+    // words in order.
     void place() {
         std::map<unsigned, std::string> taken = {{control, "CONTROL"}};
         if (block_.hasLong())
@@ -162,8 +163,8 @@ private:
                     w.number = take(w.name);
     }
 
-    // Checks that no two Slice names map to one port name, such as aB and a_b, or the member x of p
-    // and p_x.
+    // Reports an error if two Slice names lead to the same port name: aB and a_b, for example, or
+    // the member x of p and a parameter p_x.
     void checkPorts() {
         std::map<std::string, std::string> owners; // Slice names by port name
         for (const Port& p : wrapperPorts(block_)) {
@@ -256,7 +257,8 @@ std::vector<Port> wrapperPorts(const Block& b) {
     return list;
 }
 
-// Warns of each exception in the file that no operation throws, because it gets no register.
+// Warns about each exception of the file that no operation throws. Such an exception gets no
+// register.
 void warnOfUnthrown(const Unit& unit, Diagnostics& diagnostics) {
     std::set<const Declaration*> thrown;
     for (const auto& d : unit.declarations)

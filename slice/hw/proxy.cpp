@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// proxy: generates a C++ class for test benches. It calls a core in a simulated slot like an object
-// with the operations of the interface.
+// proxy: generates a C++ class for test benches. It represents a core in a simulated slot and has
+// the operations of the core's interface as methods.
 
 #include "c/context.h"
 #include "hw/generator.h"
@@ -58,7 +58,8 @@ void method(Writer& w, const Block& b, const Call& c) {
             });
 }
 
-// Writes the method that returns whether an event was raised, and the values of the event.
+// Writes the method for an event. The method returns whether the event was raised, and the values
+// of the event.
 void event(Writer& w, const Block& b, const Call& c) {
     std::string parameters, arguments;
     for (const Slot& s : inVariables(*c.operation)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// registers: writes the register description from which icesoc.regs.generate makes headers and
+// registers: writes the register description, which icesoc.regs.generate converts to headers and
 // pages.
 
 #include "c/context.h"
@@ -14,7 +14,8 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// Returns the first line of a doc comment, or `otherwise`. Removes the end of a C comment from it.
+// Returns the first line of a doc comment without any end of a C comment, or `otherwise` if there
+// is no doc comment.
 std::string firstLine(const std::string& doc, const std::string& otherwise) {
     auto lines = docLines(doc);
     return lines.empty() ? otherwise : lines.front();
@@ -49,7 +50,7 @@ json fieldsOf(const Word& word) {
 
 json registers(const Block& b) {
     json act = json::array(), busy = json::array(), refused = json::array(), list = json::array();
-    std::string reset = "RESET"; // changed below if an operation has this name
+    std::string reset = "RESET"; // the name is changed below if an operation is called reset
     for (const Call& c : b.calls) {
         std::string name = upperCase(c.name);
         std::string what = (c.isEvent ? "acknowledges the event " : "starts ") + c.operation->name;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// servant: generates the two C90 files of a servant. Its operations are answered immediately, after
-// a wait, or later by a task; it also has events.
+// servant: generates the two C90 files of a servant. An operation replies at once, after waiting
+// for the core, or later from a task. The servant also passes on the core's events.
 
 #include "c/context.h"
 #include "hw/generator.h"
@@ -64,8 +64,8 @@ std::string nameOf(const Block& b, const Call& c) {
     return operationName(*b.interface, *c.operation);
 }
 
-// Returns the name of the function M_I_Core_op_begin, which writes the parameters and starts the
-// core, or M_I_Core_op_end, which reads the results.
+// Returns the name of M_I_Core_op_begin or M_I_Core_op_end, selected by `which`. The first function
+// writes the parameters and starts the core; the second one reads the results.
 std::string part(const Block& b, const Call& c, const char* which) {
     return coreType(b) + "_" + cOperation(c.operation->name) + "_" + which;
 }

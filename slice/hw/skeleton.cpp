@@ -13,8 +13,8 @@
 namespace hw {
 namespace {
 
-// Returns the ports of a core that do not lead to its wrapper: the memory port (docs/memory.md) and
-// pins.
+// Returns the ports of a core that are not connected to its wrapper: the memory port
+// (docs/memory.md) and the pins.
 std::vector<Port> ownPorts(const Block& b) {
     std::vector<Port> list;
     if (b.memoryBytes)
@@ -41,7 +41,7 @@ std::vector<Port> ownPorts(const Block& b) {
     return list;
 }
 
-// Returns the ports of the wrapper towards the slot (`ofSlot`) or towards the core.
+// Returns the ports of the wrapper on the slot's side (if `ofSlot`) or on the core's side.
 std::vector<Port> portsOf(const Block& b, bool ofSlot) {
     std::vector<Port> list = wrapperPorts(b);
     auto core = std::find_if(list.begin(), list.end(),
@@ -66,8 +66,9 @@ void head(Writer& w, const Block& b, const char* comment) {
     w.line();
 }
 
-// The memory port as two idle streams of words, over which a core can read and write its buffers.
-// No operation may have a name that begins with npi_.
+// Statements of a core that does not use its memory port yet: the port as two idle streams of
+// words, for reading and writing the core's buffers. No operation may have a name that begins with
+// npi_.
 const char npiStream[] =
     R"(    // The buffers in DDR3 as two streams of words, which rest here (docs/memory.md, npi_stream).
     wire        npi_read_start = 1'd0, npi_read_take = 1'd0;
@@ -94,7 +95,7 @@ const char npiStream[] =
                         npi_read_valid, npi_read_idle, npi_write_base[5:0], npi_write_ready,
                         npi_write_idle, 1'b0};)";
 
-// The same in VHDL: first the signals, then the statements.
+// The same statements in VHDL: npiSignals has the signal declarations.
 const char npiSignals[] =
     R"(  -- The buffers in DDR3 as two streams of words, which rest here (docs/memory.md, npi_stream).
   signal npi_read_start, npi_read_take, npi_read_valid, npi_read_idle : std_logic;

@@ -44,8 +44,8 @@ std::string bitsOf(const Piece& p) {
     }
 }
 
-// Returns the call that reads or writes a word, up to its first arguments. For a word on a page,
-// the call also selects the page.
+// Returns the start of the C call that reads or writes a word: the function's name and first
+// arguments. For a word on a page, the called function also selects the page.
 std::string access(const Block& b, const Word& word, const std::string& what) {
     std::string name = upperCase(b.name) + "_" + word.name;
     return b.isPaged(word.number)
@@ -72,7 +72,7 @@ std::string roomOf(const Call& c, const Piece& p) {
     return c.name + "_" + p.name.substr(0, p.name.size() - 5) + "data";
 }
 
-// Writes code that reads a sequence; its layout in DDR3 equals the layout of the array in C.
+// Writes code that reads a sequence. The elements have the same layout in DDR3 as in a C array.
 void readSequence(Writer& w, const Call& c, const Piece& p, const std::string& count) {
     std::string sequence = lvalue(p), bytes = std::to_string(p.elementBytes) + "U";
     w.line(sequence + ".size = (Ice_Int)" + count + ";");
@@ -120,8 +120,8 @@ void readPiece(Writer& w, const Block& b, const Call& c, const Word& word, const
     w.line(to + " = (" + cType(p.type) + ")" + whole + ";");
 }
 
-// Writes code that reads the words with the values of an exception; `exception` 0 means the results
-// of the call.
+// Writes code that reads the words with the values of an exception; if `exception` is 0, the words
+// with the results of the call.
 void readWords(Writer& w, const Block& b, const Call& c, unsigned exception) {
     for (const Word& word : c.words) {
         bool isRead = false;

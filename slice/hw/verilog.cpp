@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// verilog: generates the wrapper around bus_registers, which connects words of the bus to ports
-// named after the interface.
+// verilog: generates the wrapper in Verilog. The wrapper contains a bus_registers and connects its
+// words to ports named after the interface.
 
 #include "hw/generator.h"
 #include <map>
@@ -18,7 +18,7 @@ std::string slice(const std::string& vector, unsigned lsb, unsigned width) {
     return vector + "[" + (width == 1 ? low : std::to_string(lsb + width - 1) + ":" + low) + "]";
 }
 
-// Returns the port of a piece, or the bits of the port that the piece covers.
+// Returns the port that holds a field, or the bits of this port that the field occupies.
 std::string portOf(const Word& word, const Piece& p) {
     std::string port = word.call + "_" + p.name + (word.isOut ? "_i" : "_o");
     return p.portWidth > 32 ? slice(port, p.portLsb, p.width) : port;
@@ -119,7 +119,8 @@ void pages(Writer& w, const Block& b) {
     }
 }
 
-// Returns a binary constant with one bit for each call, up to the last call with an event.
+// Returns a binary constant with one bit for each used bit of EVENT; `choose` returns the value of
+// each bit.
 template <class Choose> std::string bits(const Block& b, Choose choose) {
     std::string text;
     for (unsigned bit = b.events(); bit-- > 0;)
@@ -167,7 +168,7 @@ void longCalls(Writer& w, const Block& b) {
 // Writes the read values of a page, starting with word number `first`.
 void results(Writer& w, const Block& b, unsigned first) {
     std::string shown = "shown" + suffix(first);
-    unsigned next = 0; // number of the lowest bit of `shown` that is not assigned yet
+    unsigned next = 0; // lowest bit of `shown` that has no assignment yet
     auto zero = [&](unsigned until) {
         if (next < until)
             w.line("    assign " + slice(shown, next, until - next) + " = " +
@@ -193,8 +194,8 @@ void results(Writer& w, const Block& b, unsigned first) {
     zero(32 * (slotWords - firstWord));
 }
 
-// Writes the address of a sequence. A buffer is aligned to a multiple of its size, so the offset
-// replaces low bits and no adder is needed.
+// Writes the statement that computes the address of a sequence. A buffer is aligned to its size, so
+// the offset replaces low address bits and no adder is needed.
 void base(Writer& w, const Block& b, const Call& c, const Piece& p) {
     unsigned lsb = b.memoryLsb();
     w.line("    assign " + c.name + "_" + baseName(p) + "_o = {" +

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // vhdl: generates the wrapper as a VHDL entity (VHDL-93 and later), for designs that are entirely
-// in VHDL. Its ports, and its behaviour in each clock, are those of the Verilog wrapper.
+// in VHDL. The entity has the same ports as the Verilog wrapper, and behaves the same in each
+// clock.
 
 #include "front/symbols.h"
 #include "hw/generator.h"
@@ -73,7 +74,7 @@ std::string hex(unsigned value) {
     return "X\"" + hexDigits(value, 8) + '"';
 }
 
-// Returns the port of a piece, or the bits of the port that the piece covers.
+// Returns the port that holds a field, or the bits of this port that the field occupies.
 std::string portOf(const Call& c, const Piece& p, bool isResult) {
     std::string port = c.name + "_" + p.name + (isResult ? "_i" : "_o");
     return p.portWidth > 32 ? slice(port, p.portLsb, p.width) : port;
@@ -102,8 +103,8 @@ void signals(Writer& w, const Block& b) {
                    c.name + "_refused : std_logic;");
 }
 
-// Writes the signals that start and end calls, and `happened`, which has one bit for each call that
-// can end or is an event.
+// Writes the signals that start and end calls, and the signal `happened`. It has one bit for each
+// event and for each call that reports its end.
 void events(Writer& w, const Block& b) {
     for (const Call& c : b.calls)
         if (c.isLong) {
@@ -268,8 +269,8 @@ void calls(Writer& w, const Block& b) {
                (c.isLong ? c.name + "_start" : slice("act", c.bit, 1)) + ";");
         for (const Word& word : c.words)
             for (const Piece& p : word.pieces) {
-                // A buffer is aligned to a multiple of its size, so the offset replaces low bits
-                // and no adder is needed.
+                // A buffer is aligned to its size, so the offset replaces low address bits and no
+                // adder is needed.
                 if (p.isCount)
                     w.line("  " + c.name + "_" + baseName(p) + "_o <= memory & " +
                            binary(p.offset, b.memoryLsb()) + "; -- " + number(p.offset) +

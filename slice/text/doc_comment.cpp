@@ -30,7 +30,7 @@ void plainLinks(std::string& s) {
 void plainTag(std::string& s) {
     static const struct {
         std::string_view tag, text;
-        bool isNamed; // true if a name follows the tag; it gets a colon
+        bool isNamed; // true if the tag is followed by a name; a colon is then added after the name
     } tags[] = {{"@param ", "", true},
                 {"@return ", "result: ", false},
                 {"@throws ", "throws ", true},
@@ -49,8 +49,8 @@ void plainTag(std::string& s) {
     }
 }
 
-// Inserts spaces into character sequences that have a meaning in a C comment; in C90 this includes
-// a backslash at the end of a line.
+// Inserts spaces into character sequences that have a meaning in a C comment. In C90, a backslash
+// at the end of a line is also such a sequence.
 void apart(std::string& s) {
     replaceAll(s, "*/", "* /");
     replaceAll(s, "/*", "/ *");

@@ -9,8 +9,9 @@
 #include <string>
 #include <vector>
 
-// Returns the lines of the text without stars and margins; @param, @return, @throws and {@link} are
-// replaced by words.
+// Returns the lines of the text without stars and indentation. @param, @return, @throws and {@link}
+// are replaced by words.
 std::vector<std::string> docLines(const std::string& doc);
-// Writes the comment, with a line for ["deprecate"]; writes nothing if both are absent.
+// Writes the doc comment, with an additional line if the metadata contains ["deprecate"]. Writes
+// nothing if there is neither a comment nor this metadata.
 void writeDoc(Writer& w, const std::string& doc, const std::vector<std::string>& metadata = {});

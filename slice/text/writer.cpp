@@ -19,7 +19,7 @@ std::string Writer::fill(std::string_view text, const Values& values) {
         if (known != values.end()) {
             result += known->second;
             text.remove_prefix(close + 1);
-        } else if (!text.empty()) { // a brace that is part of the text
+        } else if (!text.empty()) { // this brace is plain text, not the start of a {name}
             result += '{';
             text.remove_prefix(1);
         }

@@ -43,7 +43,7 @@ public:
     template <class Body> void type(const std::string& kind, const std::string& name, Body body) {
         block("typedef " + kind + " " + name, {}, body, "} " + name + ";");
     }
-    // Writes the only statement of an `if` or a loop.
+    // Writes the only statement of an `if` or a loop, indented.
     void nested(std::string_view text, const Values& values = {}) {
         indented([&] { line(text, values); });
     }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * backup: the layout of the memory that a battery keeps (the STM32's backup SRAM), which the
- * firmware and the boot loader share. Vehicles in the field hold data in this layout.
+ * backup: the layout of the data in the STM32's backup SRAM, which a battery preserves. The
+ * firmware and the boot loader use the same layout. Vehicles in the field hold data in it, so it
+ * must not change.
  */
 #pragma once
 
@@ -17,13 +18,14 @@
 
 typedef struct Backup_Slot {
     U32 key[BACKUP_KEY_WORDS];
-    U32 check; /* checksum of the key; another value: the slot is empty */
+    U32 check; /* checksum of the key; with any other value the slot is empty */
 } Backup_Slot;
 
 typedef struct Backup_Keys {
     Backup_Slot slots[BACKUP_SLOTS];
-    /* number of the slot with the next key; first ground station: also whether the vehicle accepts
-     * links without a key; group: instead the number of the newest call to all vehicles */
+    /* number of the slot with the next key. For the first ground station, this word also stores
+     * whether the vehicle accepts links without a key. For the group, it is the number of the
+     * newest call to all vehicles instead. */
     U32 state;
 } Backup_Keys;
 
@@ -38,7 +40,7 @@ typedef struct Backup_Vehicle {
 /* Keys of an observer, another vehicle, or the group. */
 typedef struct Backup_Other {
     Backup_Keys keys;
-    U32 inverted; /* inverted address; 0 if the entry is unused */
+    U32 inverted; /* inverted value of the address; 0 if the entry is unused */
     U32 unused[4];
 } Backup_Other;
 

@@ -10,6 +10,6 @@ typedef unsigned int U32;
 typedef signed short S16;
 typedef signed int S32;
 
-/* A compiler whose integer types have other widths rejects these lines. */
+/* These lines do not compile if the integer types of the compiler have other widths. */
 typedef char base_check_u16[sizeof(U16) == 2 ? 1 : -1];
 typedef char base_check_u32[sizeof(U32) == 4 ? 1 : -1];

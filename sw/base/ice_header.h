@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // ice_header: the 14 bytes before each message of the Ice protocol ("The Ice Protocol" in the
-// manual of ZeroC Ice 3.7): magic, versions of protocol and encoding, type, compression, size.
+// manual of ZeroC Ice 3.7): magic bytes, version of the protocol, version of the encoding, message
+// type, compression, size.
 
 #pragma once
 
@@ -32,7 +33,8 @@ inline uint32_t sizeOf(const uint8_t* message) {
     return get32(message + 10);
 }
 
-// Returns whether a header begins with Ice's magic and has a size of at least the header's.
+// Returns whether a header begins with Ice's magic bytes and gives a size that is not smaller than
+// the header.
 inline bool isValid(const uint8_t* message) {
     return std::memcmp(message, "IceP", 4) == 0 && sizeOf(message) >= bytes;
 }

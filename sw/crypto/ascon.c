@@ -4,13 +4,14 @@
  */
 #include "ascon.h"
 
-/* Keeps gcc from reordering the steps of a round: its order takes 91 instead of 78 instructions. */
+/* Prevents gcc from reordering the steps of a round. With gcc's order, a round takes 91 instead of
+ * 78 instructions. */
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("no-tree-reassoc", "no-schedule-insns")
 #endif
 
-/* Round constants: the first one of 12 rounds, the first one of 8 rounds, and the value after the
- * last round. */
+/* Round constants: first constant of a permutation of 12 rounds, first constant of a permutation of
+ * 8 rounds, and value that follows the last constant. */
 #define ROUNDS_12 0xF0U
 #define ROUNDS_8 0xB4U
 #define ROUNDS_END 0x3CU
@@ -18,12 +19,12 @@
 
 #define RATE 16U /* bytes in a block */
 
-/* XORs `value` with one half of a word that is rotated right by n, 0 < n < 32; `next` is the half
- * above it. The two shifted parts are separate operands, because the processor shifts one operand
- * of ^ at no cost. */
+/* XORs `value` with one half of a 64-bit word rotated right by n, 0 < n < 32. `next` is the half
+ * above this half. The two shifted parts are separate operands, because the processor shifts one
+ * operand of an XOR at no cost. */
 #define JOIN(value, half, next, n) value ^ half >> n ^ next << (32 - n)
 
-/* Applies the 5-bit S-box to one half of each word, to 32 columns at once. */
+/* Applies the 5-bit S-box to the same half of all five words, that is to 32 columns at once. */
 #define SUBSTITUTE(x0, x1, x2, x3, x4) \
     x0 ^= x4;                          \
     x4 ^= x3;                          \

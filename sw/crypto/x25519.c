@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * x25519: Montgomery's ladder modulo p = 2^255 - 19, in words of 16 bits, the lowest first.
- * Numbers are kept below 2^256, not below p. A carry of 2^256 is replaced by 38, because both are
- * equal modulo p.
+ * x25519: computes Montgomery's ladder modulo p = 2^255 - 19. Numbers are arrays of 16-bit words,
+ * the lowest word first. They are kept below 2^256, not below p. A carry of 2^256 is replaced by
+ * 38, because both are equal modulo p.
  */
 #include "x25519.h"
 
@@ -39,7 +39,8 @@ static void add(U16* r, const U16* a, const U16* b) {
     fold(r, carry);
 }
 
-/* Adds 4p - b, with limbs that are each greater than the corresponding limb of b. */
+/* Subtracts b from a, by adding 4p - b. The words of 4p are chosen so that each is greater than the
+ * corresponding word of b. */
 static void subtract(U16* r, const U16* a, const U16* b) {
     U32 carry = 0;
     int i;
@@ -51,7 +52,7 @@ static void subtract(U16* r, const U16* a, const U16* b) {
     fold(r, carry);
 }
 
-/* The sum is at most 2^32 - 1. */
+/* The sum fits into 32 bits: it is at most 2^32 - 1. */
 #define MULTIPLY_WORD(word, to)  \
     carry += factor * word + to; \
     to = (U16)carry;             \
@@ -83,8 +84,8 @@ static void multiply(U16* r, const U16* a, const U16* b) {
     fold(r, carry);
 }
 
-/* Multiplies by A24, which has 17 bits: by its lower 16 bits, and by 2^16, which is a shift by one
- * limb. */
+/* Multiplies by A24, which has 17 bits: multiplies by the lower 16 bits of A24, and adds the number
+ * shifted by one word for bit 16. */
 static void multiplyA24(U16* r, const U16* a) {
     U32 carry = 0;
     U32 below = 0;
@@ -99,8 +100,8 @@ static void multiplyA24(U16* r, const U16* a) {
     fold(r, carry + below);
 }
 
-/* Computes the inverse of a number: its power p - 2. All bits of this exponent are 1 except bits 2
- * and 4. */
+/* Computes the inverse of a number as its power with the exponent p - 2. All bits of this exponent
+ * are 1 except bits 2 and 4. */
 static void invert(U16* r, const U16* a) {
     Number z;
     int bit;

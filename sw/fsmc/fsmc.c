@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * fsmc: sets up the FSMC, accesses registers, and copies memory through the DDR3 window. Copies use
- * NWAIT; or they run at the bridge's full speed without NWAIT, are checked, and are repeated if
- * needed.
+ * fsmc: sets up the FSMC, accesses registers, and copies memory through the DDR3 window. A copy
+ * either uses NWAIT, or runs at the bridge's full speed without NWAIT. After a copy without NWAIT,
+ * the driver checks whether an access was too early, and repeats the copy if necessary.
  */
 #include "fsmc.h"
 
@@ -21,24 +21,24 @@
 #define BCR_MTYP_NOR (2U << 2)
 #define BCR_MWID_16 (1U << 4)
 #define BCR_FACCEN (1U << 6)
-#define BCR_RESERVED (1U << 7) /* reads as 1, must be written as 1 */
+#define BCR_RESERVED (1U << 7) /* bit that reads as 1 and must be written as 1 */
 #define BCR_WAITPOL (1U << 9)
 #define BCR_WREN (1U << 12)
 #define BCR_EXTMOD (1U << 14)
 #define BCR_ASYNCWAIT (1U << 15)
 
-/* BTR and BWTR; times in HCLK. */
+/* Fields of BTR and BWTR; times in HCLK cycles. */
 #define BTR_ADDSET(n) ((U32)(n))
 #define BTR_ADDHLD(n) ((U32)(n) << 4)
 #define BTR_DATAST(n) ((U32)(n) << 8)
 #define BTR_BUSTURN(n) ((U32)(n) << 16)
 #define BTR_ACCMOD(n) ((U32)(n) << 28)
 
-/* Bits that all modes set: bank enabled, 16 bits, write enable. */
+/* Bits that are set in all modes: bank enabled, 16 bits wide, writes allowed. */
 #define BCR_ALWAYS (BCR_MBKEN | BCR_MWID_16 | BCR_RESERVED | BCR_WREN)
-/* FSMC_init's settings: mode 1 with NWAIT, active low. ADDSET 2: NWAIT, which follows the pins in
- * less than 16 ns, is valid when the data phase begins; DATAST 4 is the least with NWAIT
- * (docs/fsmc.md). */
+/* Settings of FSMC_init: mode 1 with NWAIT, which is active low. With ADDSET 2, NWAIT is valid when
+ * the data phase begins; NWAIT follows the pins in less than 16 ns. DATAST 4 is the smallest value
+ * that NWAIT permits (docs/fsmc.md). */
 #define BCR_VALUE (BCR_ALWAYS | BCR_ASYNCWAIT)
 #define BTR_VALUE (BTR_ADDSET(2) | BTR_DATAST(4) | BTR_BUSTURN(1))
 
@@ -52,7 +52,7 @@ static U32 wordAddress(U32 slot, U32 word) {
     return MAP_CONTROL_WINDOW + ((slot & 63U) << 6 | (word & 15U) << 2);
 }
 
-/* Looks for the system slot, which is the last step of the set-up. Returns FSMC_OK or
+/* Checks the ID of the system slot, which is the last step of the set-up. Returns FSMC_OK or
  * FSMC_NO_DEVICE. */
 static FSMC_Status identify(void) {
     if (FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID) >> 16 != SYSTEM_ID_VALUE >> 16)
@@ -81,7 +81,7 @@ void FSMC_write(U32 slot, U32 word, U32 value) {
     fsmcPort->write32(fsmcContext, wordAddress(slot, word), value);
 }
 
-/* Converts a DDR3 address to an address in the window, and moves the page register if necessary. */
+/* Returns the address in the window for a DDR3 address; moves the page register if necessary. */
 static U32 windowAddress(U32 address) {
     U32 page = address >> MAP_DDR_WINDOW_LOG2;
     if (page != fsmcPage) {
@@ -135,24 +135,25 @@ FSMC_Status FSMC_checkError(U32* where) {
 
 /* ---- streams ---- */
 
-/* Mode A without NWAIT: an access takes ADDSET + DATAST + 1 HCLK. The data phase of a write is 2
- * HCLK. BUSTURN of writes is 0, since some FSMCs also insert it between two writes. A read consists
- * of a data phase only, so that NOE falls when the address changes. */
+/* Settings for streams: mode A without NWAIT, in which an access takes ADDSET + DATAST + 1 HCLK.
+ * Writes: the data phase takes 2 HCLK; BUSTURN is 0, because some FSMCs also insert it between two
+ * writes. Reads: the access has only a data phase, so NOE falls when the address changes. */
 #define STREAM_BCR (BCR_ALWAYS | BCR_EXTMOD)
 #define WRITE_DATAST 2U
-/* Highest access rates, per second (docs/fsmc.md): 33.3 ns between edges of NWE; the data of a read
- * is valid 15 ns after the HCLK edge that changes the address, and the FSMC needs the data one HCLK
+/* Highest access rates, per second (docs/fsmc.md). Writes: 33.3 ns between two edges of NWE. Reads:
+ * the data is valid 15 ns after the HCLK edge that changes the address, and must be valid one HCLK
  * + 4 ns before the end of the access. */
 #define WRITE_HZ 30000000UL
 #define READ_HZ 25000000UL
-/* size in bytes of aligned regions; the bridge does not read ahead beyond their ends */
+/* size of a region, bytes; regions are aligned, and the bridge does not read ahead beyond the end
+ * of one */
 #define REGION 4096U
 #define BLOCK 64U
 
-/* values until FSMC_setHclk is called: slow but safe */
+/* settings until FSMC_setHclk is called; they are slow, but safe at every HCLK */
 static U8 writeAddset = 15, readDatast = 17;
 
-/* Returns the HCLK cycles of an access, at least 4. */
+/* Returns the number of HCLK cycles that an access must take, at least 4. */
 static U32 cyclesFor(U32 hclkHz, U32 accessHz) {
     U32 cycles = (U32)((hclkHz + accessHz - 1U) / accessHz);
     return cycles < 4U ? 4U : cycles > 18U ? 18U : cycles;
@@ -175,8 +176,8 @@ static void setBank(int fast) {
     }
 }
 
-/* Returns 1 if an access was too early since the last call. The access to the register also waits
- * for posted writes.
+/* Returns 1 if an access since the last call was too early for the bridge. The function reads a
+ * register, and this read waits until posted writes are done.
  */
 static int wasLate(void) {
     if (!(FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_EVENT) & SYSTEM_EVENT_LATE_MASK))
@@ -185,7 +186,8 @@ static int wasLate(void) {
     return 1;
 }
 
-/* Returns the number of bytes up to the next multiple of `size`, at most `bytes`. */
+/* Returns the number of bytes from `address` to the next multiple of `size`, but at most
+ * `bytes`. */
 static U32 upTo(U32 address, U32 size, U32 bytes) {
     U32 left = size - (address & (size - 1U));
     return left < bytes ? left : bytes;
@@ -197,8 +199,8 @@ U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords) {
     while (halfwords) {
         U32 i, part = upTo(address, 8U * REGION, 2U * halfwords) / 2U;
         U32 at = windowAddress(address);
-        /* this read waits until the posted register writes are done, so NWAIT is off for the memory
-         * window afterwards */
+        /* waits until the posted register writes are done, by reading a register; from then on the
+         * memory window works without NWAIT */
         (void)FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID);
         setBank(1);
         for (i = 0; i < part; ++i)
@@ -216,7 +218,7 @@ U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords) {
     return repeated;
 }
 
-/* Reads with the current timing of the bank. */
+/* Reads halfwords with the timing that the bank has at present. */
 static void readHalfwords(U32 at, U16* data, U32 halfwords) {
     U32 i;
     for (i = 0; i < halfwords; ++i)
@@ -230,13 +232,13 @@ U32 FSMC_streamRead(U32 address, U16* data, U32 halfwords) {
         U32 part = upTo(address, REGION, 2U * halfwords) / 2U;
         U32 at = windowAddress(address);
         if (address & (BLOCK - 1U)) {
-            /* Each block is read from its beginning, because only then does the bridge have time
-             * to fetch the next block. */
+            /* Each block is read from its first halfword, because only then has the bridge enough
+             * time to fetch the next block. */
             part = upTo(address, BLOCK, 2U * part) / 2U;
             readHalfwords(at, data, part);
         } else {
-            /* Two reads in a block make the bridge fetch it; the read at its end waits until the
-             * whole block has arrived. */
+            /* Two reads in a block make the bridge fetch the block. A read at the end of the block
+             * waits until the whole block has arrived. */
             (void)fsmcPort->read16(fsmcContext, at);
             (void)fsmcPort->read16(fsmcContext, at + BLOCK - 2U);
             setBank(1);
@@ -280,7 +282,7 @@ static int isBad(const FSMC_Bank* bank) {
            (!isExtended(bank->writeMode) || timingIsBad(bank, &bank->write, bank->writeMode));
 }
 
-/* Returns a value for BTR or BWTR. ACCMOD 0..3 stands for modes A to D. */
+/* Returns a value for BTR or BWTR. Mode A is 0 in the field ACCMOD, mode D is 3. */
 static U32 timing(const FSMC_Timing* time, U32 busturn, FSMC_Mode mode) {
     U32 accmod = isExtended(mode) ? (U32)mode - (U32)FSMC_MODE_A : 0U;
     return BTR_ADDSET(time->addset) | BTR_ADDHLD(time->addhld) | BTR_DATAST(time->datast) |

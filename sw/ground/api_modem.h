@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// api_modem: drives a modem in API mode. Each packet has a target, and the modem reports the result
-// of each packet. Frames: 0x7E, length (2 bytes), contents, checksum. With AP 2 four byte values
-// are escaped.
+// api_modem: drives a modem in API mode. Each packet names its target, and the modem reports for
+// each packet whether it was delivered. Frames: 0x7E, length (2 bytes), contents, checksum. If AP
+// is 2, four byte values are escaped.
 //
 //   01 ID TARGET TARGET 00 DATA...          packet to send
-//   89 ID STATUS                            its result; 0: received by the other modem
+//   89 ID STATUS                            result of this packet; 0: received by the other modem
 //   81 SOURCE SOURCE RSSI OPTIONS DATA...   received packet
 //   08 ID LETTER LETTER VALUE...            AT command
-//   88 ID LETTER LETTER STATUS VALUE...     its reply
+//   88 ID LETTER LETTER STATUS VALUE...     reply to this command
 //   8A STATUS                               modem status, such as started
 
 #pragma once
@@ -34,15 +34,16 @@ public:
     enum Type : uint8_t {
         Transmit = 0x01,
         Command = 0x08,
-        Wide = 0x80, // received packet from a modem without a 16-bit address
+        Wide = 0x80, // type of a packet received from a modem that has no 16-bit address
         Packet = 0x81,
         Answer = 0x88,
         Status = 0x89,
         Event = 0x8A
     };
-    static constexpr int noAddress = -1; // value for a source without a 16-bit address
+    // source address of packets from a modem that has no 16-bit address
+    static constexpr int noAddress = -1;
 
-    // `escapes` is true if AP is 2.
+    // `escapes`: true if the modem's AP is 2.
     explicit ApiFrames(bool escapes = false) : escapes_(escapes) {}
 
     // Returns a frame with these contents.
@@ -70,10 +71,10 @@ public:
         contents.insert(contents.end(), value.begin(), value.end());
         return pack(contents);
     }
-    // Parses bytes from the modem. Calls `data(source, bytes, count)` with the bytes of packets as
-    // they arrive, because the contents of a packet have separate checks. Calls `frame` with the
-    // contents of each other frame. After a wrong checksum the search continues at the byte after
-    // the delimiter.
+    // Parses bytes from the modem. Calls `data(source, bytes, count)` for the data of a packet as
+    // the bytes arrive, before the frame's checksum; the data has a check of its own. Calls `frame`
+    // with the contents of each other frame. After a wrong checksum, searches for the next frame,
+    // starting at the byte after the delimiter.
     template <class Data, class Frame>
     void feed(const uint8_t* bytes, size_t count, Data data, Frame frame) {
         in_.insert(in_.end(), bytes, bytes + count);
@@ -109,7 +110,8 @@ private:
     // largest size of a frame's contents, bytes: a packet from a 64-bit address, with a margin
     static constexpr size_t longest = 120;
 
-    // Returns the offset of the data in a packet; 0 for other frames.
+    // Returns the offset of the data in the contents of a frame; 0 if the frame is not a received
+    // packet.
     static size_t headOf(uint8_t type) { return type == Packet ? 5 : type == Wide ? 11 : 0; }
     int sourceOf(size_t head) const {
         return head == 5 ? contents_[1] << 8 | contents_[2] : noAddress;
@@ -121,11 +123,10 @@ private:
             frame.push_back(escape);
         frame.push_back(isEscaped ? byte ^ escapeXor : byte);
     }
-    // Reads the contents received so far of the frame that has its delimiter at `at`. Returns the
-    // number of bytes used, or 0 if the frame is incomplete.
+    // Reads the part of a frame that has arrived so far. `at` is the offset of the frame's
+    // delimiter. Returns the number of bytes used, or 0 if the frame is incomplete.
     size_t read(size_t at) {
-        // contents of the current frame, with the length first and, when complete, the checksum
-        // last
+        // length and contents of the current frame; a complete frame also has its checksum here
         Bytes& plain = contents_;
         isWhole_ = false;
         plain.clear();
@@ -133,7 +134,7 @@ private:
         for (; i < in_.size() && !used; ++i) {
             uint8_t byte = in_[i];
             if (escapes_ && byte == delimiter) {
-                used = i - at; // the delimiter of another frame
+                used = i - at; // an unescaped delimiter is the start of another frame
                 break;
             }
             if (escapes_ && byte == escape) {
@@ -164,18 +165,19 @@ private:
     Bytes in_;             // bytes received, starting at the delimiter of the current frame
     Bytes contents_;       // contents of the last frame read
     bool isWhole_ = false; // true if the frame is complete and has a correct checksum
-    // number of bytes of the current frame's contents that were already passed on
+    // number of bytes of the current packet's data that were already passed on
     size_t given_ = 0;
 };
 
-// A modem in API mode; times in microseconds, 32 bits that wrap.
+// A modem in API mode. Times are in microseconds, 32 bits wide, and wrap around.
 class ApiModem {
 public:
     using Bytes = ApiFrames::Bytes;
 
     explicit ApiModem(bool escapes) : frames_(escapes) {}
 
-    // Returns the bytes for the line that send a packet. If RN changes, they first set RN.
+    // Returns the bytes to write to the serial line, which send a packet. If RN differs from that
+    // of the packet before, the bytes first set the modem's RN.
     Bytes packet(int target, const uint8_t* data, size_t size, uint32_t rn, uint32_t now) {
         Bytes bytes;
         if (rn != rn_)
@@ -202,14 +204,15 @@ public:
                              [&](const Packet& p) { return p.id == frame[1]; }))
                 return;
             for (bool isLast = false; !isLast;) {
-                // if the results of earlier packets were lost on the line, drops these packets
+                // the results of the packets before this one were lost on the line; these packets
+                // count as lost
                 isLast = waiting_.front().id == frame[1];
                 waiting_.pop_front();
                 answer(isLast && frame[2] == 0);
             }
         });
     }
-    // Calls `lost()` for each packet that the modem will no longer answer.
+    // Calls `lost()` for each packet whose result is too late to be expected.
     template <class Lost> void expire(uint32_t now, const Lost& lost) {
         for (; !waiting_.empty() && now - waiting_.front().at >= LINK_ANSWER_LAST; lost())
             waiting_.pop_front();
@@ -218,12 +221,13 @@ public:
 private:
     struct Packet {
         uint8_t id;
-        uint32_t at; // time at which the packet was handed over
+        uint32_t at; // time at which the packet was passed to the modem
     };
     ApiFrames frames_;
-    uint32_t rn_ = LINK_WAIT_SHARED; // RN of the modem; at first the value that set-up has written
+    // current RN of the modem, which starts with the value written during the set-up
+    uint32_t rn_ = LINK_WAIT_SHARED;
     uint8_t id_ = 0;
-    std::deque<Packet> waiting_; // packets without a result
+    std::deque<Packet> waiting_; // packets without a result, oldest first
 };
 
 } // namespace XBeeAT

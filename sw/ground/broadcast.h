@@ -18,19 +18,19 @@ namespace XBeeAT {
 
 class Broadcast {
 public:
-    // `keys` are the group's keys, the current one last; without keys, calls are unencrypted.
+    // `keys` are the group's keys, the current one last. Without keys, calls are sent unencrypted.
     Broadcast(const Settings& settings, const LinkKeys& keys)
         : settings_(settings), key_(keys.empty() ? LinkKey{} : keys.back()) {}
     ~Broadcast() { explicit_bzero(key_.data(), key_.size()); }
 
-    // Reports that the modem is ready, and that a packet has at most `bytes`.
+    // Records that the modem is ready, and that a packet can have `bytes` bytes.
     void limitPacket(U32 bytes) { most_ = bytes - LINK_BROADCAST_OVERHEAD; }
     void stop() { most_ = copies_ = 0; } // sends no more copies
     // Returns the size of the largest message, bytes; 0 if the modem is not ready.
     U32 most() const { return most_; }
     bool isBusy() const { return copies_ != 0; }
-    // Accepts a message unless another one is being sent. Returns false if the clock of this
-    // machine is before 2026.
+    // Starts sending a message. Returns false if another message is still being sent, or if the
+    // clock of this machine shows a date before 2026.
     bool take(const U8* message, U32 size, U32 now) {
         const int64_t number = settings_.quarters();
         if (number <= 0)
@@ -57,9 +57,10 @@ public:
     }
 
 private:
-    // With 30 % loss, all copies of a call miss a vehicle once in 400 calls. They take longer than
-    // a quarter of a second, so that numbers do not run ahead of the clock. Each copy waits a
-    // random time, so that one disturbance does not hit all.
+    // Number of copies of a call. With 30 % loss, a vehicle misses all five copies of a call once
+    // in 400 calls. Sending them takes longer than a quarter of a second, so the numbers of calls
+    // do not overtake the clock. Each copy waits for a random time, so that one short disturbance
+    // does not destroy all copies.
     static constexpr unsigned copies = 5;
     static constexpr U32 leastUs = 70000, spreadUs = 80000;
 

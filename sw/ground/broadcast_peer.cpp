@@ -11,8 +11,8 @@ namespace XBeeAT {
 BroadcastPeer::BroadcastPeer(Host& host, const LinkKeys& keys)
     : Peer(host, everybody, keys), broadcast_(host.settings, keys_) {}
 
-// Handles the next message of a program. If the program closes the connection, this waits until its
-// calls have been sent.
+// Passes on the next message of a program. If the program closes its connection, the connection
+// stays open until its calls have been sent.
 bool BroadcastPeer::send(int channel, U32 now) {
     ProgramConnection& program = programs_[channel];
     if (program.kind() == ProgramConnection::Kind::Twoway) {

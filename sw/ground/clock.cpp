@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// clock: implements the machine clock, and loads another clock.
+// clock: implements the clock of the machine, and loads another clock from a library.
 
 #include "clock.h"
 
@@ -31,7 +31,8 @@ int SystemClock::wait(pollfd* fds, nfds_t count, uint32_t us) {
     return ppoll(fds, count, us == forever ? nullptr : &limit, nullptr);
 }
 
-// Loads the clock. The library is never unloaded, because it contains the code of the clock.
+// Loads the clock from a library, which is never unloaded because it contains the code of the
+// clock.
 std::unique_ptr<Clock> makeClock() {
     const char* variable = std::getenv("XBEEAT_CLOCK");
     const std::string wanted = variable ? variable : "";

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // clock: the time base of an engine, normally the clock of the machine. A simulator provides
-// another clock: on a slow machine the mission then runs slower, but no time-out expires early.
+// another clock: if the machine is too slow, the mission runs slower, but no time-out expires too
+// early.
 
 #pragma once
 
@@ -19,21 +20,22 @@ public:
 
     static constexpr uint32_t forever = 0xFFFFFFFFu;
     virtual uint32_t nowUs() const = 0; // wraps around
-    // Works like poll: returns when a descriptor is ready or `us` have passed by this clock.
+    // Works like the system call poll: returns when a descriptor is ready, or when this clock has
+    // advanced by `us` microseconds.
     virtual int wait(pollfd* fds, nfds_t count, uint32_t us) = 0;
 
-    // The next four functions keep a simulated clock in step with this program; the machine clock
-    // ignores them.
+    // The next four functions keep a simulated clock in step with this program; the clock of the
+    // machine ignores them.
     //
-    // keepStep makes simulated time wait for this thread until leaveStep: time stops except during
-    // `wait`, and until all bytes given to `serial` have been read. Has no effect if the
-    // simulator's modem is not on `device`.
+    // keepStep makes simulated time wait for this thread until leaveStep. Time then only passes
+    // during `wait`, and only after all bytes that the simulator has sent to `serial` were read.
+    // keepStep has no effect if `device` is not connected to the simulator's modem.
     virtual void keepStep(int serial, const std::string& device) { (void)serial, (void)device; }
     virtual void leaveStep() {}
-    // Report the number of bytes that were read from or written to `serial`.
+    // Report how many bytes were read from `serial`, or written to it.
     virtual void hasRead(size_t bytes) { (void)bytes; }
     virtual void hasWritten(size_t bytes) { (void)bytes; }
-    // Returns the number of written bytes that the simulated line has not carried yet.
+    // Returns the number of written bytes that have not passed the simulated line yet.
     virtual size_t waiting() const { return 0; }
 };
 
@@ -43,9 +45,10 @@ public:
     int wait(pollfd* fds, nfds_t count, uint32_t us) override;
 };
 
-// Returns the clock named by the environment variable XBEEAT_CLOCK, or the machine clock if the
-// variable is not set. Its value is LIBRARY:ARGUMENT. LIBRARY is a shared library with a function
-// createXBeeATClock, which gets ARGUMENT. Throws std::system_error.
+// Returns the clock that the environment variable XBEEAT_CLOCK names, or the clock of the machine
+// if the variable is not set. The variable has the form LIBRARY:ARGUMENT. LIBRARY is a shared
+// library with a function createXBeeATClock; ARGUMENT is passed to this function. Throws
+// std::system_error.
 std::unique_ptr<Clock> makeClock();
 
 } // namespace XBeeAT

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// engine: manages the devices in use. Each engine has a thread, which serves a serial port, the
-// modem at this port, and the peers in turn.
+// engine: manages the devices in use. Each device has an engine with one thread, which serves the
+// serial port, its modem, and the peers in turn.
 
 #include "engine.h"
 #include "broadcast_peer.h"
@@ -20,7 +20,7 @@ namespace XBeeAT {
 
 namespace {
 
-// interval between attempts while a program listens and no program connects
+// interval between attempts to set up the modem while a program listens but none connects
 constexpr std::chrono::seconds retryEvery{5};
 
 std::mutex registryMutex;
@@ -58,8 +58,8 @@ std::shared_ptr<Peer> Engine::get(const Settings& settings, const Log& log) {
 Peer& Engine::peer(const Settings& wanted) {
     std::lock_guard<std::mutex> lock(mutex);
     std::unique_ptr<Peer>& peer = peers_[wanted.target];
-    // Programs with other keys are refused. Otherwise a program with a key could share the
-    // unencrypted peer of an earlier program.
+    // A program with other keys is refused. Otherwise a program with a key could use the
+    // unencrypted peer that an earlier program has created.
     if (peer && peer->keys() != wanted.keys)
         refuse(EBUSY, "'" + device +
                           "' is in use with other keys: programs that share a vehicle must use the "
@@ -114,8 +114,8 @@ void Engine::wake() {
 // ---- set-up and failures of the modem ----
 
 int Engine::waitMs(int ms, bool forBytes) {
-    // The wait also ends when the port is lost: simulated time no longer advances after the
-    // simulator has ended.
+    // The wait also ends when the serial port is lost, because simulated time no longer advances
+    // after the simulator has ended.
     pollfd fds[] = {{wakePipe_[0], POLLIN, 0},
                     {serial_.fd(), static_cast<short>(forBytes ? POLLIN : 0), 0}};
     const U32 begin = clock.nowUs(), us = static_cast<U32>(ms) * 1000;
@@ -176,8 +176,8 @@ bool Engine::any(bool (Peer::*is)() const) const {
                        [is](const auto& p) { return (*p.second.*is)(); });
 }
 
-// Runs the links repeatedly. If the port is lost or the modem does not answer, tries again as long
-// as a program connects or listens.
+// Runs the links. If the port is lost or the modem does not answer, sets the modem up again as long
+// as a program wants to connect or listens.
 void Engine::run() {
     std::unique_lock<std::mutex> lock(mutex);
     while (!stop_) {
@@ -196,10 +196,10 @@ void Engine::waitForReason(std::unique_lock<std::mutex>& lock) {
         changed_.wait_for(lock, retryEvery, reason);
 }
 
-// Runs the links until the port is lost. A modem that was reset in flight has its stored settings
-// again, because the set-up does not store settings in the modem. Such a modem cannot be
-// distinguished from a silent peer. Therefore the modem is set up again after some time of silence,
-// and less often if this does not help.
+// Runs the links until the port is lost. If the modem was reset during operation, it has its stored
+// settings again, because the set-up does not store its settings in the modem. The effect is the
+// same as that of a silent peer. After some time of silence, the modem is therefore set up again;
+// if this does not help, the next set-up follows later.
 void Engine::fly(std::unique_lock<std::mutex>& lock) {
     const Settings wanted = settings;
     const U32 down = static_cast<U32>(wanted.downMs) * 1000;
@@ -210,7 +210,7 @@ void Engine::fly(std::unique_lock<std::mutex>& lock) {
     } catch (const std::system_error& e) {
         return fail(e.what());
     }
-    // Keeps simulated time in step: the simulator waits for this thread while it runs.
+    // While an object of this type exists, the simulator's time waits for this thread.
     struct Step {
         Step(Clock& c, int serial, const std::string& device) : clock(c) {
             clock.keepStep(serial, device);
@@ -261,23 +261,23 @@ void Engine::readSerial(U32 now) {
         fail("serial port '" + device + "': " + (count == 0 ? "closed" : std::strerror(errno)));
 }
 
-// Passes bytes to the peer that sent them. A modem without a 16-bit address can only be that of a
-// single peer.
+// Passes received bytes to the peer with the address `source`. Bytes from a modem without a 16-bit
+// address are passed on only if there is a single peer.
 void Engine::deliver(int source, const U8* bytes, size_t size, U32 now) {
     for (auto& [address, peer] : peers_)
         if (address == source || (source == ApiFrames::noAddress && !hasMany))
             peer->receive(bytes, size, now);
 }
 
-// Passes a result of the radio to the links, which share the results. A call to all vehicles has no
-// result.
+// Passes the modem's result for a packet to the links, which share one list of unanswered packets.
+// Packets to all vehicles have no result.
 void Engine::answer(bool isThere, U32 now) {
     if (radio)
         Link_answer(radio, isThere, now);
 }
 
-// Polls all peers; the peer that has used the least air time is first. Returns the time of the next
-// call, in microseconds.
+// Polls all peers, starting with the peer that has used the least air time. Returns the time until
+// the next call, in microseconds.
 U32 Engine::pollPeers(U32 now) {
     std::vector<Peer*> order;
     for (auto& [address, peer] : peers_)
@@ -296,7 +296,8 @@ U32 Engine::pollPeers(U32 now) {
     return wait;
 }
 
-// Moves bytes until the engine must stop, has failed, or all links have been down for too long.
+// Moves bytes between port and peers until the engine must stop, has failed, or all links have been
+// down for too long.
 void Engine::loop(std::unique_lock<std::mutex>& lock) {
     while (!stop_ && !failed_) {
         U32 now = clock.nowUs();
@@ -308,7 +309,8 @@ void Engine::loop(std::unique_lock<std::mutex>& lock) {
             {wakePipe_[0], POLLIN, 0},
             {serial_.fd(), static_cast<short>(packets_.isFlushed() ? POLLIN : POLLIN | POLLOUT),
              0}};
-        std::vector<Peer*> served; // another peer may be added while this thread waits
+        // iterates over a copy, because another peer may be added while this thread waits
+        std::vector<Peer*> served;
         for (auto& [address, peer] : peers_) {
             served.push_back(peer.get());
             peer->addInterest(fds);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// engine: one serial port with a modem, which it sets up by AT commands, and the peers that are
-// reached by it. An engine has one thread. All communicators of the process that name one device
-// share its engine.
+// engine: one serial port with a modem, which the engine sets up by AT commands, and the peers that
+// this modem reaches. An engine has one thread. All communicators of the process that use the same
+// device share one engine.
 
 #pragma once
 
@@ -22,9 +22,10 @@ constexpr size_t mostPeers = 32; // largest number of peers of a modem
 
 class Engine : private Peer::Host {
 public:
-    // Returns the vehicle with the settings' address, on the engine of the device; creates both if
-    // necessary. Throws std::system_error if the device cannot be opened, or already has the
-    // maximum number of peers. An empty device selects the only open one.
+    // Returns the peer with the address in `settings`, on the engine of the device; creates peer
+    // and engine if necessary. An empty device selects the only open device. Throws
+    // std::system_error if the device cannot be opened, or if it already has the maximum number of
+    // peers.
     static std::shared_ptr<Peer> get(const Settings& settings, const Log& log);
 
     ~Engine() override;
@@ -55,15 +56,16 @@ private:
     SerialPort serial_{clock};
     PacketLine packets_{serial_};
     int wakePipe_[2] = {-1, -1};
-    // failed_: the port is lost, or no modem answered; complained_: that was logged as an error.
+    // failed_: the port is lost, or no modem has answered. complained_: this failure was already
+    // logged.
     bool stop_ = false, failed_ = false, complained_ = false;
     // size of the largest frame, bytes; 0 until the modem is ready
     U32 longest_ = 0;
     std::map<int, std::unique_ptr<Peer>> peers_; // peers by address; a peer is never removed
-    // time at which a link was last up; longest time without a link before the modem is configured
-    // again
+    // upAt_: time at which a link was last up. downLimitUs_: time without a link, in microseconds,
+    // after which the modem is set up again.
     U32 upAt_ = 0, downLimitUs_ = 0;
-    std::condition_variable changed_; // signals changes of stop_ and of requests
+    std::condition_variable changed_; // signals that stop_ or the programs' requests have changed
     std::thread thread_;
 };
 

@@ -4,8 +4,9 @@
 //
 //   [ADDRESS] KEY [NEXT]      KEY: 32 hexadecimal digits; NEXT: the key that follows it
 //
-// The line without an address (0x0001) is used for every vehicle without a line, and the line of
-// 0xffff for calls to all vehicles; # begins a comment. Keys are never printed.
+// ADDRESS is written as 0x0001. A line without an address applies to every vehicle that is not
+// listed. The line with 0xffff applies to calls to all vehicles. # begins a comment. Keys are never
+// printed.
 
 #pragma once
 
@@ -19,7 +20,8 @@ namespace XBeeAT {
 constexpr int everybody = 0xFFFF; // the address of all vehicles
 
 using LinkKey = std::array<unsigned char, 16>;
-using LinkKeys = std::vector<LinkKey>; // at most two, the next one first; empty: unencrypted
+// at most two keys, the next one before the current one; without keys, communication is unencrypted
+using LinkKeys = std::vector<LinkKey>;
 
 // Returns the content of a secret's file or pipe (/dev/fd/3). Throws std::runtime_error, with
 // advice, if it cannot be read, belongs to another user, or is accessible to others.
@@ -27,9 +29,9 @@ std::string readSecret(const std::string& path);
 
 class KeyFile {
 public:
-    KeyFile() = default; // without keys: communication with every vehicle is unencrypted
-    // Reads a file. Throws std::runtime_error, with advice, if readSecret does or if a line is
-    // invalid.
+    KeyFile() = default; // no keys: communication with every vehicle is unencrypted
+    // Reads a key file. Throws std::runtime_error, with advice, if readSecret throws it or if a
+    // line is invalid.
     explicit KeyFile(const std::string& path);
 
     // Returns the keys of a vehicle; throws std::runtime_error if the file has none.

@@ -16,11 +16,12 @@ namespace {
 
 const int rates[] = {1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200};
 constexpr int factoryRate = 9600, fastestRate = 250000, replyMs = 500, tries = 3;
-// time-out for a reply in API mode, ms; the time on the line is added
+// time-out for a reply in API mode, ms; the transmission time on the line is added
 constexpr int apiReplyMs = 100;
-constexpr int mostGuard = 3300; // ms, of ATGT
+constexpr int mostGuard = 3300; // largest guard time of a modem (ATGT), ms
 
-// Returns the value of the parameter BD for a rate: a code, or the rate itself.
+// Returns the value of the parameter BD for a baud rate: a code for standard rates, otherwise the
+// rate itself.
 int codeOf(int baud) {
     for (int code = 0; code < 8; ++code)
         if (rates[code] == baud)
@@ -46,8 +47,8 @@ bool ModemSetup::pause(int ms) {
     return !stopped_;
 }
 
-// Returns the word of `words` with which the reply ends; "" after a time-out. Bytes received by
-// radio may precede a reply, and may contain carriage returns.
+// Waits for a reply that ends with one of `words`, and returns this word; returns "" after a
+// time-out. Bytes received by radio may precede the reply, and may contain carriage returns.
 std::string ModemSetup::readReply(int timeoutMs, std::initializer_list<std::string> words) {
     std::string reply;
     for (int leftUs = timeoutMs * 1000;;) {
@@ -70,7 +71,8 @@ std::string ModemSetup::readReply(int timeoutMs, std::initializer_list<std::stri
     return "";
 }
 
-// If the wait for an answer ends without one, it counts as the silence before the next +++.
+// Sends +++ after the guard time, and returns whether the modem answers OK. If it does not, the
+// time spent waiting counts as silence before the next +++.
 bool ModemSetup::enterCommandMode(int guardMs) {
     int guard = guardMs + guardMs / 8 + 5;
     if (silentMs_ < guard && !pause(guard - silentMs_))
@@ -90,15 +92,15 @@ std::string ModemSetup::ask(const std::string& text, std::initializer_list<std::
     if (serial_.write(line.data(), line.size()) != static_cast<ssize_t>(line.size()))
         return "";
     std::string reply = readReply(replyMs, words);
-    // The key is secret, so its command is logged without the value.
+    // The modem's key is secret, so the log contains the command KY without its value.
     log_(2, "AT" + (text.compare(0, 2, "KY") ? text : text.substr(0, 2)) + ": " + reply);
     return reply;
 }
 
-// Sets a parameter of a modem in API mode, or reads it if no value is given. Returns OK, ERROR or
-// the value in hexadecimal; "" if no answer arrives in time. With `endsLine`, a carriage return
-// follows the frame. A modem in command mode then handles the frame as a command line and refuses
-// it; "COMMAND" is returned in this case. A modem in API mode ignores bytes between frames.
+// Sets a parameter of a modem in API mode; without a value, reads the parameter. Returns OK, ERROR
+// or the value in hexadecimal; "" if no reply arrives in time. With `endsLine`, a carriage return
+// is sent after the frame. A modem in API mode ignores it. A modem in command mode takes the frame
+// for a command line and refuses it; the function then returns "COMMAND".
 std::string ModemSetup::askApi(const std::string& letters, const std::string& value, int timeoutMs,
                                bool endsLine) {
     constexpr uint8_t id = 0xA5;
@@ -153,8 +155,9 @@ bool ModemSetup::command(const std::string& text) {
     return false;
 }
 
-// Returns whether a modem at this rate answers without +++: it is in API mode, or still in command
-// mode because a program was killed during its set-up. No byte of the question needs to be escaped.
+// Returns whether a modem answers at this rate without +++. This is the case in API mode, and in
+// command mode, in which the modem remains if a program was killed during the set-up. No byte of
+// the question needs an escape.
 bool ModemSetup::findWithoutGuard(int baud) {
     serial_.setSpeed(rate_ = baud);
     const int ms = apiReplyMs + 190000 / baud;
@@ -165,10 +168,10 @@ bool ModemSetup::findWithoutGuard(int baud) {
     return isApi_ || reply == "COMMAND";
 }
 
-// Searches for the modem. The target rate is tried first, because a modem that was set up earlier
-// uses it; then the factory's rate. Then both are tried with a longer guard time, because a modem
-// keeps its ATGT, and a simulated modem may be slower than the clock. Finally all rates are tried.
-// Times: docs/modem.md.
+// Searches for the modem. First tries the rate in the settings, which a modem has that was set up
+// before, and then the factory's rate. Then tries both rates with a longer guard time: a modem may
+// have kept a longer ATGT, and a simulated modem may run slower than the clock. Finally tries all
+// rates. Times: docs/modem.md.
 bool ModemSetup::find() {
     const int guard = settings_.guardMs, longer = std::min(3 * guard, mostGuard);
     std::vector<std::pair<int, int>> candidates = {{settings_.baud, guard},
@@ -178,8 +181,8 @@ bool ModemSetup::find() {
     for (int i = 7; i >= 0; --i)
         if (rates[i] != settings_.baud && rates[i] != factoryRate)
             candidates.emplace_back(rates[i], guard);
-    // A modem in API mode or in command mode ignores +++. The wait for its answer is a part of the
-    // silence before +++.
+    // A modem in API mode or in command mode ignores +++, so such a modem is tried first. The time
+    // spent waiting for its answer counts as silence before the +++ that follows.
     for (int baud : {settings_.baud, factoryRate})
         if (findWithoutGuard(baud) || stopped_)
             return !stopped_;
@@ -212,19 +215,20 @@ bool ModemSetup::run() {
     return isApi_ ? finishApi() : finish();
 }
 
-// Leaves command mode. Changes to API mode if this is wanted and the modem supports it.
+// Leaves command mode. Switches to API mode if the settings request this mode and the modem
+// supports it.
 bool ModemSetup::finish() {
     const bool api = settings_.isApi && ask("AP1", {"OK", "ERROR"}) == "OK";
     if (!command("BD" + hex(codeOf(settings_.baud))) || !command("CN"))
         return false;
     serial_.setSpeed(rate_ = settings_.baud);
     isApi_ = api;
-    return pause(10); // the modem changes its rate after sending the last OK
+    return pause(10); // the modem changes its rate after it has sent the last OK
 }
 
-// Sets rate and mode of a modem that was found in API mode. AP 2 is kept, as well as the mode of a
-// modem that rejects the other mode. Each setting takes effect at once, so the reply may arrive at
-// either rate.
+// Sets rate and mode of a modem that was found in API mode. Leaves AP 2 unchanged, and also leaves
+// the mode unchanged if the modem rejects the other mode. Each setting takes effect at once, so the
+// reply may arrive at the old or the new rate.
 bool ModemSetup::finishApi() {
     const int found = rate_;
     for (int attempt = 0; attempt < tries && rate_ != settings_.baud; ++attempt) {

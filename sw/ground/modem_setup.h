@@ -13,19 +13,19 @@ namespace XBeeAT {
 
 class ModemSetup {
 public:
-    // Pauses for `ms`; with `forBytes`, only until the port has bytes to read. Returns the elapsed
-    // time in us; a negative result aborts the set-up.
+    // Waits for `ms`; with `forBytes`, returns earlier if the port has bytes to read. Returns the
+    // elapsed time in us. A negative result aborts the set-up.
     using Wait = std::function<int(int ms, bool forBytes)>;
 
     ModemSetup(SerialPort& serial, const Settings& settings, const Log& log, Wait wait)
         : serial_(serial), settings_(settings), log_(log), wait_(std::move(wait)) {}
 
     // Configures the modem. Returns false on failure; trouble() then returns the reason, which is
-    // empty if `wait` has aborted. Takes about two guard times if the port has the modem's rate,
-    // and one more for each wrong rate tried.
+    // empty if `wait` has aborted the set-up. Takes about two guard times if the modem has the rate
+    // of the settings, and one more for each wrong rate that is tried.
     bool run();
-    // Results of run(): encryption (EE) is on; the modem uses API frames (AP is not 0); the frames
-    // are escaped (AP is 2).
+    // Results of run(). encrypts: the modem encrypts packets (EE is on). isApi: the modem uses API
+    // frames (AP is not 0). escapes: bytes in these frames are escaped (AP is 2).
     bool encrypts() const { return encrypts_; }
     bool isApi() const { return isApi_; }
     bool escapes() const { return escapes_; }

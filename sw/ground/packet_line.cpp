@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// packet_line: sends one packet at a time to the serial port, and reads everything that arrives.
+// packet_line: sends one packet at a time to the serial port, and reads all bytes that arrive.
 
 #include "packet_line.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// packet_line: sends and receives packets by the modem on a serial port, in API mode or transparent
-// mode. Several senders (peers) share the time on the air.
+// packet_line: sends and receives packets through the modem on a serial port, in API mode or
+// transparent mode. Several senders (peers) share the time on the air.
 
 #pragma once
 
@@ -29,7 +29,7 @@ public:
         virtual bool isUp() const = 0;      // returns whether the peer has a session
         virtual U32 randomWait() const = 0; // returns RN for the peer's traffic
 
-        uint64_t airUs = 0; // air time used
+        uint64_t airUs = 0; // air time that this sender has used, microseconds
 
     private:
         const int address_;
@@ -39,20 +39,22 @@ public:
 
     explicit PacketLine(SerialPort& serial) : serial_(serial) {}
 
-    // Adds a sender. It is treated as if it had used as much air time as the sender that sent last.
+    // Adds a sender. It starts with the air time of the sender that sent last, so that it does not
+    // get all the air time at first.
     void join(Sender& sender) {
         sender.airUs = airUs_;
         senders_.push_back(&sender);
     }
-    // Starts the line after the modem has been set up. With `isApi`, the modem answers for each
-    // packet. `target` is DL.
+    // Starts the line after the modem has been set up. With `isApi`, the modem reports a result for
+    // each packet. `target` is the modem's parameter DL.
     void start(bool isApi, bool escapes, int target) {
         out_.clear();
         target_ = target;
         api_ = isApi ? std::make_unique<ApiModem>(escapes) : nullptr;
     }
     bool isApi() const { return api_ != nullptr; }
-    // Returns whether a sender's packets can reach its target; several vehicles need API mode.
+    // Returns whether packets of a sender can reach the sender's target. Without API mode, this is
+    // true only for the address in DL.
     bool reaches(const Sender& sender, bool hasLink) const {
         return api_ || (sender.address() == target_ && hasLink);
     }
@@ -60,9 +62,9 @@ public:
     // Sends a packet if the line is free. Returns whether the packet was accepted.
     bool send(Sender& sender, const U8* frame, U32 size, U32 now);
     // Reads the available bytes. Calls `deliver` for received bytes, and `answer` for each sent
-    // packet that the modem has answered. Returns the result of read().
+    // packet whose result has arrived. Returns the result of read().
     ssize_t read(const Deliver& deliver, const Answer& answer);
-    // Calls `answer(false)` for each packet that the modem will no longer answer.
+    // Calls `answer(false)` for each packet whose result is too late to be expected.
     void expire(U32 now, const Answer& answer) {
         if (api_)
             api_->expire(now, [&] { answer(false); });
@@ -76,7 +78,7 @@ private:
     std::vector<Sender*> senders_;
     std::unique_ptr<ApiModem> api_; // null in transparent mode
     std::vector<U8> out_;           // bytes of the packet that the port has not accepted yet
-    uint64_t airUs_ = 0;            // airUs of the sender that sent last
+    uint64_t airUs_ = 0;            // air time of the sender that sent last, microseconds
     int target_ = 0;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// peer: transfers messages from the programs' connections to the vehicle; runs in the engine's
-// thread.
+// peer: passes messages from the programs' connections to the vehicle. Its functions run in the
+// engine's thread.
 
 #include "peer.h"
 
@@ -20,7 +20,8 @@ namespace XBeeAT {
 namespace {
 
 constexpr U32 never = 0xFFFFFFFFu;
-constexpr U32 lookUs = 50000; // us between searches for a free channel while programs wait
+// interval between searches for a free channel while programs wait, us
+constexpr U32 lookUs = 50000;
 
 } // namespace
 
@@ -73,14 +74,14 @@ void Peer::refusePrograms() {
     waiting_.clear();
 }
 
-// Records that a message of a program waits for room.
+// Records that a program's message waits because the link has no room.
 void Peer::waitForRoom(int channel) {
     if (!full_)
         turn_ = channel;
     full_ |= 1u << channel;
 }
 
-// Sends the next message of a program. Returns whether the link accepted it.
+// Passes the next message of a program to the link. Returns whether the link accepted the message.
 bool Peer::sendMessage(int channel, U32 now) {
     ProgramConnection& program = programs_[channel];
     if (!program.is(ProgramConnection::State::Open))
@@ -102,9 +103,9 @@ bool Peer::sendMessage(int channel, U32 now) {
     return send(channel, now);
 }
 
-// Sends the programs' messages, one message of each program in turn, so that a program that floods
-// the link leaves room for others. While a message waits for room, the other programs may only send
-// short messages, for which the link has a reserve.
+// Passes on the programs' messages, one message of each program in turn, so that a program that
+// floods the link leaves room for others. While a message waits for room, other programs may only
+// send short messages; the link keeps room for these in reserve.
 void Peer::sendMessages(U32 now) {
     for (int idle = 0, channel = turn_; idle < LINK_CHANNELS; ++idle) {
         if (!full_)
@@ -127,8 +128,8 @@ void Peer::openWanted(U32 now) {
     }
 }
 
-// Ends the connections of programs whose messages have waited too long for room. Returns the time
-// in us until the next check.
+// Ends the connections of programs whose messages have waited for room too long. Returns the time
+// until the next check, in microseconds.
 U32 Peer::endLate(U32 now) {
     U32 wait = never;
     for (int channel = 0; channel < LINK_CHANNELS; ++channel) {

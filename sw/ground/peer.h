@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// peer: the destination of programs on the ground: one vehicle (VehiclePeer), or all vehicles at
-// once (BroadcastPeer). A peer owns the connections of the programs; the derived class carries
-// their messages to the vehicle.
+// peer: the other end of programs on the ground: one vehicle (VehiclePeer), or all vehicles at once
+// (BroadcastPeer). A peer owns the connections of the programs; the derived class carries their
+// messages.
 
 #pragma once
 
@@ -24,8 +24,8 @@ namespace XBeeAT {
 // number of channels that the ground station opens, 0 to 2; the UAV opens channel 3
 constexpr int ownChannels = 3;
 
-// Functions for programs take the lock. All other functions are called by the engine, which holds
-// the lock.
+// The functions for programs acquire the lock. All other functions are called by the engine, which
+// holds the lock.
 class Peer : public PacketLine::Sender {
 public:
     // Data that all peers of an engine share.
@@ -37,14 +37,15 @@ public:
         Clock& clock;
         PacketLine& line;
         std::mutex mutex;
-        bool hasMany = false;  // true with several peers: log lines then contain the peer's name
-        Link* radio = nullptr; // the first link, whose list of unanswered packets all links share
+        bool hasMany = false; // true with several peers: log lines then contain the peer's name
+        // first link; it holds the list of unanswered packets that all links share
+        Link* radio = nullptr;
 
         Host(const Settings& s, const Log& l, std::unique_ptr<Clock> c, PacketLine& p)
             : device(s.device), settings(s), log(l), ownClock(std::move(c)), clock(*ownClock),
               line(p) {}
         virtual ~Host() = default;
-        virtual void wake() = 0; // wakes the engine because a program needs service
+        virtual void wake() = 0; // wakes the engine's thread, because a program needs service
     };
 
     ~Peer() override;
@@ -53,42 +54,44 @@ public:
 
     // ---- functions for programs ----
 
-    // Opens a connection to the peer, on channel 0..2 or any (-1). Returns a socket for the
-    // program, or -1 if no descriptor is left. Messages are passed on when the link is up and a
-    // channel is free; programs get channels in turn. A lost serial port is opened again. If no
-    // modem answers, the socket is closed. A message that the peer has not accepted within `lateMs`
-    // is withdrawn: the session ends, or only the connection if the link had no room for the
-    // message. -1 disables this. Returns -1 with EBUSY while another ground station with the same
-    // address is connected to the vehicle.
+    // Opens a connection to the peer on channel 0 to 2, or on any of these (-1). Returns a socket
+    // for the program, or -1 if no descriptor is left. Messages are passed on when the link is up
+    // and a channel is free; programs get channels in turn. If the serial port was lost, opens it
+    // again. If no modem answers, closes the socket. If the peer has not accepted a message within
+    // `lateMs`, the message is withdrawn: the session ends, or only the connection if the message
+    // was never in the link. -1 disables this limit. While another ground station with the same
+    // address is connected to the vehicle, returns -1 with EBUSY.
     int connect(int channel, int lateMs = -1);
     size_t waiting() const; // number of programs that wait for a channel
-    // Lets the peer open connections. Each new connection makes the returned descriptor readable,
-    // even after the serial port was lost and found again. Returns -1 if another program already
-    // listens.
+    // Lets the peer open connections. Returns a descriptor that becomes readable for each new
+    // connection, even after the serial port was lost and found again. Returns -1 if another
+    // program already listens.
     int listen();
-    // Takes a connection that the peer opened. Returns a socket for the program, or -1 if the peer
-    // has not opened a connection.
+    // Accepts a connection that the peer has opened. Returns a socket for the program, or -1 if
+    // there is no such connection.
     int accept();
     void stopListening();
     virtual std::string statistics() const = 0; // statistics as one line of text
     const std::string& device() const { return host_.device; }
-    virtual U32 mostBytes() const = 0;           // size of the longest message, bytes
-    virtual const char* carrierName() const = 0; // name of what carries a message, for error texts
+    virtual U32 mostBytes() const = 0; // size of the longest message, bytes
+    // what carries messages to this peer, in words, for error texts
+    virtual const char* carrierName() const = 0;
 
     // ---- functions of the engine ----
 
     const LinkKeys& keys() const { return keys_; }
     virtual bool hasLink() const = 0; // true during a session with one vehicle
-    virtual bool isHeard() const = 0; // true while the vehicle is heard
-    bool isWanted() const;            // true if a program wants a connection
+    // true during a session of the vehicle, with this or with another ground station
+    virtual bool isHeard() const = 0;
+    bool isWanted() const; // true if a program wants a connection
     bool listens() const { return listening_; }
-    // Starts the peer when the modem is ready. `longest` is the largest frame in bytes; `isApi` is
-    // true if the modem answers for each packet.
+    // Starts the peer when the modem is ready. `longest`: size of the largest frame, bytes.
+    // `isApi`: the modem reports a result for each packet.
     virtual void start(U32 longest, bool isApi, U32 now) = 0;
     virtual void stop(U32 now) = 0; // stops the peer, and informs the vehicle
     void fail();                    // ends all connections and pending connects
     virtual void receive(const U8* bytes, size_t size, U32 now) = 0;
-    // Does the work that is due. Returns the time of the next call, in microseconds.
+    // Does the work that is due. Returns the time until the next call, in microseconds.
     U32 poll(U32 now);
     // Adds the descriptors for poll(2), one for each channel.
     void addInterest(std::vector<pollfd>& fds) const;
@@ -97,8 +100,8 @@ public:
 protected:
     Peer(Host& host, int address, const LinkKeys& keys);
 
-    // ---- functions of the derived classes ----
-    // Returns true if another ground station is connected to the vehicle.
+    // ---- functions of the derived classes ---- Returns true if this station has left the vehicle
+    // to another ground station.
     virtual bool isYielded() const { return false; }
     virtual bool isReady() const = 0;          // true if channels can be opened
     virtual bool openChannel(int channel) = 0; // opens a channel for a program
@@ -107,13 +110,13 @@ protected:
     virtual U32 longestMessage() const = 0; // to be called with the lock held
     // Sends the next message of a connection. Returns whether the message was accepted.
     virtual bool send(int channel, U32 now) = 0;
-    // Does the work that is due for the derived class. Returns the time of the next call, in
+    // Does the work of the derived class that is due. Returns the time until the next call, in
     // microseconds.
     virtual U32 pollWay(U32 now) = 0;
 
-    // Ends a program's connection. `why` is the end of the log line about it.
+    // Ends a program's connection and logs this at `level`. `why` is the end of the log line.
     void end(int channel, int level, const std::string& why);
-    void refusePrograms();       // ends the connections of programs that have no channel yet
+    void refusePrograms();       // ends the connections of programs that do not have a channel yet
     void placePrograms(U32 now); // assigns free channels to waiting programs
     void openWanted(U32 now);
     void waitForRoom(int channel);
@@ -122,7 +125,7 @@ protected:
     Host& host_;
     LinkKeys keys_;
     ProgramConnection programs_[LINK_CHANNELS];
-    unsigned full_ = 0; // set of channels with a message that waits for room
+    unsigned full_ = 0; // channels on which a message waits for room, one bit each
     int acceptPipe_[2] = {-1, -1};
     bool listening_ = false;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// peer_programs: the functions of a peer that programs call, each in its own thread.
+// peer_programs: the functions of a peer that programs call. Each program calls them in its own
+// thread.
 
 #include "peer.h"
 
@@ -37,8 +38,8 @@ bool hasLeft(int fd) {
 } // namespace
 
 // Returns a channel for a program: `wanted`, or any channel if `wanted` is -1. Prefers a free
-// channel. Otherwise takes the channel of the program that has been silent longest, if it has been
-// silent long enough; otherwise returns -1.
+// channel. If there is none, takes the channel of the program that has been silent longest,
+// provided that its silence was long enough. Otherwise returns -1.
 int Peer::freeChannel(int wanted, U32 now) {
     U32 longest =
         host_.settings.idleMs ? static_cast<U32>(host_.settings.idleMs) * 1000 - 1 : 0xFFFFFFFFu;
@@ -47,7 +48,7 @@ int Peer::freeChannel(int wanted, U32 now) {
         const int channel = wanted >= 0 ? wanted : (nextChannel_ + i) % ownChannels;
         ProgramConnection& s = programs_[channel];
         if (s.is(ProgramConnection::State::Wanted) &&
-            hasLeft(s.fd())) // the program disconnected before the link was up
+            hasLeft(s.fd())) // the program has disconnected before its channel was opened
             s.close();
         if (s.is(ProgramConnection::State::Closed)) {
             nextChannel_ = (channel + 1) % ownChannels;
@@ -65,8 +66,8 @@ int Peer::freeChannel(int wanted, U32 now) {
     return idlest;
 }
 
-// Assigns channels to waiting programs in the order in which they came. A program that has
-// disconnected gets none.
+// Assigns channels to waiting programs in the order of their arrival. A program that has
+// disconnected gets no channel.
 void Peer::placePrograms(U32 now) {
     for (auto program = waiting_.begin(); program != waiting_.end();) {
         const bool isGone = hasLeft(program->fd);
@@ -138,7 +139,7 @@ int Peer::accept() {
     int ends[2];
     if (channel < 0)
         return -1;
-    if (!makePair(ends)) { // no socket can be made, so no program can reply to the UAV
+    if (!makePair(ends)) { // the system has no socket left, so no program can reply to the UAV
         log(0, std::string("cannot accept a call of the UAV: no socket can be made: ") +
                    std::strerror(errno));
         end(channel, 1, "is refused");

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// plugin_connection: data shared by the endpoints of one communicator (defaults, logger, peers),
-// and the connections that Ice opens to the UAV or accepts from it. Ice reads and writes a socket.
+// plugin_connection: the data that the endpoints of one communicator share (defaults, logger,
+// peers), and the connections that Ice opens to the UAV or accepts from it. Ice reads and writes
+// each connection as a socket.
 
 #pragma once
 
@@ -25,10 +26,10 @@
 
 namespace XBeeAT {
 
-// numbers of the endpoint types; the second one is never sent
+// numbers of the two endpoint types; the number for wires never appears on the wire
 constexpr Ice::Short endpointType = 0x4158, wireType = 0x4159;
 inline const std::string protocolName = "xbee-at", wireName = "serial";
-constexpr Ice::Int defaultTimeoutMs = 30000; // setting a modem up takes seconds
+constexpr Ice::Int defaultTimeoutMs = 30000; // long, because the set-up of a modem takes seconds
 
 struct EndpointOptions {
     Settings serial;
@@ -73,7 +74,8 @@ public:
     }
     const EndpointOptions& defaults() const { return defaults_; }
 
-    // A thread may request a connection while another destroys the communicator.
+    // Several threads may call this: one may request a connection while another destroys the
+    // communicator.
     std::shared_ptr<Peer> peer(const EndpointOptions& o) {
         std::lock_guard<std::mutex> lock(mutex_);
         if (!communicator_)
@@ -126,8 +128,8 @@ public:
         : IceInternal::NativeInfo(fd), peer_(peer) {}
     IceInternal::NativeInfoPtr getNativeInfo() override { return this; }
     IceInternal::SocketOperation initialize(IceInternal::Buffer&, IceInternal::Buffer&) override {
-        // Ice then waits for the first message of the peer, at most for the connect time-out. The
-        // message means that the link is up.
+        // Ice waits for the peer's first message, at most for the connect time-out. This message
+        // shows that the link is up.
         return IceInternal::SocketOperationNone;
     }
     IceInternal::SocketOperation closing(bool initiator, const Ice::LocalException&) override {

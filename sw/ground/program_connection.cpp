@@ -17,7 +17,8 @@ constexpr size_t bufferBytes = 4096;
 constexpr U32 noBeat = 0xFFFFFFFFu;
 // interval of heartbeats during a call, us; shorter than any sensible Ice.ACM.Timeout
 constexpr U32 heartbeatUs = 5000000;
-// interval of heartbeats without a call, us; Ice 3.8 closes a connection without traffic after 60 s
+// interval of heartbeats without a call, us; needed because Ice 3.8 closes a connection after 60 s
+// without traffic
 constexpr U32 signUs = 10000000;
 constexpr U32 leavingUs = 10000000;
 
@@ -95,7 +96,7 @@ void ProgramConnection::read(U32 nowUs) {
     if (count > 0)
         out_.insert(out_.end(), bytes, bytes + count);
     ended_ = isOver(count);
-    // a partial message does not count as activity
+    // an incomplete message does not count as activity
     if (out_.size() >= IceHeader::bytes && out_.size() >= messageSize()) {
         if (!owesSign_)
             owesSince_ = nowUs;
@@ -181,7 +182,8 @@ U32 ProgramConnection::beat(U32 nowUs) {
     if (since < limit)
         return limit - since;
     pollfd end{fd_, POLLRDHUP, 0};
-    if (in_.empty() && poll(&end, 1, 0) == 0) { // the program has not closed its end
+    // the program has read everything and has not closed its end
+    if (in_.empty() && poll(&end, 1, 0) == 0) {
         const U32 activeAt = activeAt_;
         (void)giveHead(IceHeader::Validate, nowUs);
         activeAt_ = activeAt;

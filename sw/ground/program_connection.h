@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// program_connection: one connection of a program: its socket, the Ice messages on it, and its
-// state between program and link. Of the Ice protocol, this file uses only the message header and
-// the id of a request (ice_header.h).
+// program_connection: one connection of a program: the socket, the Ice messages on it, and its
+// state between program and link. This file uses only two parts of the Ice protocol: the message
+// header and the id of a request (ice_header.h).
 
 #pragma once
 
@@ -21,9 +21,9 @@ public:
     enum class State {
         Closed,
         Wanted, // the program has requested the connection; the link has not opened the channel yet
-        Called, // the peer has opened the connection; no program has taken it yet
+        Called, // the vehicle has opened the connection; no program has accepted it yet
         Open,   // messages pass between program and link
-        Leaving // the link's channel is closed; the program has not read everything yet
+        Leaving // the link's channel is closed; the program has not read all messages yet
     };
 
     ProgramConnection() = default;
@@ -32,30 +32,31 @@ public:
     ProgramConnection& operator=(const ProgramConnection&) = delete;
 
     bool is(State state) const { return state_ == state; }
-    // Takes the program's socket, which must be non-blocking; the destructor closes it. `name` is
-    // used in log lines. A called program is a server, and its first ValidateConnection is its
-    // greeting. A message is late if the peer has not taken it after `lateUs`.
+    // want and accept take the program's socket, which must be non-blocking; the destructor closes
+    // it. `name` is used in log lines. A program that accepts a connection is a server; the first
+    // ValidateConnection that it sends is its greeting. A message is late if the link has not
+    // accepted it within `lateUs`.
     static constexpr U32 never = 2000000000;
     void want(int fd, const std::string& name, U32 lateUs = never);
-    void call(); // reports that the peer opened this connection
+    void call(); // records that the vehicle has opened this connection
     void accept(int fd, const std::string& name);
     void open(U32 nowUs);
     // Records that the link's channel is closed; the program may read the remaining messages for
-    // ten seconds. Returns the number of calls that were not sent, if the program has disconnected
-    // and cannot be informed.
+    // ten seconds. If the program has disconnected, returns the number of its calls that were not
+    // sent, because it cannot be informed; otherwise 0.
     unsigned leave(U32 nowUs);
     void close(State to = State::Closed);
     const std::string& name() const { return name_; }
     int fd() const { return fd_; }
 
-    // Returns the events for poll, or fd -1 for no events. `reads` is true if the link has room for
-    // messages.
+    // Returns the descriptor and its events for poll; fd is -1 if there are no events. `reads` is
+    // true if the link has room for messages.
     pollfd interest(bool reads) const;
     void read(U32 nowUs);                 // reads from the program, at most one buffer
     bool ended() const { return ended_; } // true if the program will send nothing more
     enum class Next { None, Message, Senseless };
-    // Finds the next complete message of at most `longest` bytes. Heartbeats are skipped, because
-    // the link itself detects whether the peer is there.
+    // Finds the program's next complete message of at most `longest` bytes. Skips heartbeats,
+    // because the link itself detects whether the vehicle is there.
     Next next(U32 longest);
     bool isCall() const;                                // true if the next message is a call
     enum class Kind { Twoway, Oneway, Goodbye, Other }; // Oneway: a call that has no reply
@@ -67,25 +68,25 @@ public:
     // records that the link has accepted the message
     void taken(U32 nowUs);
 
-    // Passes a message to the program. Returns false if the program has not read 64 KiB of earlier
-    // messages.
+    // Passes a message to the program. Returns false if the program still has 64 KiB of earlier
+    // messages to read.
     bool give(const U8* message, U32 size, U32 nowUs);
     void write(U32 nowUs);
-    // Sends a heartbeat if the program waits for a reply and has received nothing for a while, as a
-    // busy server would, but without using the air. Other messages of the program, including
-    // heartbeats, are also answered by a heartbeat, because Ice 3.8 closes silent connections. Ice
-    // 3.7 sends no heartbeats while it is idle, and gets none, so that it can close its idle
-    // connections. This function also ends a closing that takes too long. Returns the time of the
-    // next call, in microseconds.
+    // Sends a heartbeat to the program if it waits for a reply and has received nothing for a
+    // while. A busy server would do the same, but this heartbeat does not use the air. After any
+    // other message of the program, including a heartbeat, also sends a heartbeat, because Ice 3.8
+    // closes silent connections. An idle Ice 3.7 program sends no heartbeats and gets none, so it
+    // can close its idle connection. Also ends a closing that takes too long. Returns the time
+    // until the next call, in microseconds.
     U32 beat(U32 nowUs);
-    // Returns the time since the program last sent a complete message or read a byte; 0 while the
-    // program waits for a reply.
+    // Returns the time since the program last sent a complete message or read a byte. Returns 0
+    // while the program waits for a reply.
     U32 silentUs(U32 nowUs) const;
-    // Sends Ice's CloseConnection to the program, which may then open another connection.
+    // Sends Ice's CloseConnection to the program. The program may then open another connection.
     void sayGoodbye(U32 nowUs);
-    void greet(U32 nowUs); // sends the first message of a server
-    // Removes the next message, a two-way call, and replies to it with an error that contains
-    // `text`.
+    void greet(U32 nowUs); // sends ValidateConnection, the first message of a server
+    // Removes the program's next message, a two-way call, and replies with an error that contains
+    // `why`.
     void refuse(const std::string& why, U32 nowUs);
 
     static constexpr size_t mostUnread = 64 * 1024; // bytes
@@ -103,10 +104,10 @@ private:
     bool owesSign_ =
         false;          // true if the program has sent something since it last received something
     U32 owesSince_ = 0; // since then
-    unsigned pending_ = 0; // two-way requests of the program without a reply so far
+    unsigned pending_ = 0; // number of two-way requests of the program that have no reply yet
     U32 heardAt_ = 0;      // time of the last message to the program
-    // time at which the current message is late; time of the last read; time since which the next
-    // message waits
+    // lateUs_: time after which a message is late. readAt_: time of the last read. since_: time
+    // since which the next message waits.
     U32 lateUs_ = never, readAt_ = 0, since_ = 0;
     // time of the last byte sent or received; time at which closing began
     U32 activeAt_ = 0, leftAt_ = 0;

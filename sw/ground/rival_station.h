@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// rival_station: leaves a vehicle to another ground station with the same address, and resumes
-// later.
+// rival_station: decides when this ground station yields a vehicle to another ground station with
+// the same address, and when it calls the vehicle again.
 //
-// The other ground station has the vehicle if the session of this side ended while the vehicle
-// continued to send to another one. Two ground stations that both call would take the vehicle from
-// each other forever.
+// The other ground station has the vehicle if this station's session ended while the vehicle was
+// still sending to another station. If both ground stations continued to call, they would take the
+// vehicle from each other forever.
 
 #pragma once
 
@@ -23,9 +23,9 @@ public:
     bool isYielded() const { return isYielded_; }
 
     // Examines bytes from the vehicle before the link processes them. Returns false if the link
-    // must not get the bytes. While this side has yielded, only a HELLO of the vehicle at the
-    // beginning of a packet is accepted, because it means that the vehicle has no session. The
-    // HELLO is in hello(); `bytes` and `size` are set to the bytes after it.
+    // must not get the bytes. While this station has yielded, only a packet that begins with a
+    // HELLO of the vehicle is accepted; a HELLO means that the vehicle has no session. The HELLO is
+    // then in hello(), and `bytes` and `size` describe the bytes after it.
     bool admits(const U8*& bytes, size_t& size, U32 now) {
         if (now - heardAt_ >= LINK_FRAME_GAP)
             headSize_ = 0;
@@ -38,16 +38,15 @@ public:
                head_[1] == LINK_VERSION;
     }
     const U8* hello() const { return head_; }
-    // Records whether the last frame that was heard belongs to this side's session.
+    // Records the last frame that was heard: isOwn is true if it belongs to this station's session.
     void heard(bool isOwn) { hearsOther_ = !isOwn; }
     // Records that the session has begun or ended.
     void sessionIs(bool isUp, U32 now) {
         isLost_ = !isUp && hearsOther_ && now - heardAt_ < speaksWithinUs;
     }
 
-    // Returns the next action. `connects` is true if the link calls the vehicle. `callsAgain` is
-    // true if the vehicle does not call this ground station by itself; this side then calls after a
-    // minute.
+    // Returns the next action. `connects`: this station calls the vehicle. `callsAgain`: the
+    // vehicle never calls this station, so this station calls again after a minute.
     enum class Step { None, Yield, Resume };
     Step poll(bool connects, bool callsAgain, U32 now) {
         const bool yields = isLost_ && connects;
@@ -55,7 +54,7 @@ public:
         if (yields) {
             isYielded_ = true;
             heardAt_ = yieldedAt_ = now;
-            headSize_ = LINK_HEADER; // the current packet is not a HELLO
+            headSize_ = LINK_HEADER; // the packet that is arriving does not count as a HELLO
             head_[0] = 0;
             return Step::Yield;
         }
@@ -66,18 +65,18 @@ public:
     void resume() { isYielded_ = hearsOther_ = false; }
 
 private:
-    // silence after which this station assumes that the other one has lost the vehicle
+    // silence after which this station assumes that the other station has lost the vehicle
     static constexpr U32 quietUs = LINK_AGE_LAST;
     static constexpr U32 longestUs = 60'000'000;
-    // A vehicle with a session sends at least this often, because it is pinged when silent. Earlier
-    // bytes belong to a frame that a reset has cut.
+    // A vehicle in a session sends at least this often, because it is pinged when it is silent.
+    // Bytes heard before this time belong to a frame that was cut off by a reset.
     static constexpr U32 speaksWithinUs = LINK_PING_AFTER + 4 * LINK_PING_EVERY;
 
     bool isYielded_ = false;
-    bool isLost_ = false;     // the session ended while another one was heard
-    bool hearsOther_ = false; // the last frame belonged to another session
+    bool isLost_ = false;     // the session ended while the vehicle was sending to another station
+    bool hearsOther_ = false; // the last frame that was heard belonged to another station's session
     U32 heardAt_ = 0, yieldedAt_ = 0;
-    U8 head_[LINK_HEADER]; // header of the current packet, while yielded
+    U8 head_[LINK_HEADER]; // header of the packet that is arriving, while this station has yielded
     U32 headSize_ = 0;
 };
 

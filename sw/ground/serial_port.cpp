@@ -4,7 +4,7 @@
 
 #include "serial_port.h"
 
-#include <asm/termbits.h> // for struct termios2, which allows any rate, including 111,111
+#include <asm/termbits.h> // defines struct termios2, which allows any rate, including 111,111
 #include <cerrno>
 #include <fcntl.h>
 #include <sys/ioctl.h>
@@ -46,8 +46,8 @@ void SerialPort::open(const std::string& device) {
         why = ": process " + std::to_string(userOf(fd_)) + " is using it";
     }
     if (!error) {
-        // Exclusive use also keeps terminal programs away. Not for a pty, which would stay locked
-        // if this process were killed.
+        // Exclusive use also keeps terminal programs away. A pty is not locked, because it would
+        // stay locked if this process were killed.
         if (!isPty(fd_))
             ioctl(fd_, TIOCEXCL);
         return;
@@ -77,15 +77,15 @@ ssize_t SerialPort::write(const void* bytes, size_t size) {
     return count;
 }
 
-// A pty reports an empty queue, so the simulator counts its bytes.
+// For a pty the system reports an empty queue, so the count of the simulator is used.
 size_t SerialPort::waiting() const {
     int queued = 0;
     ioctl(fd_, TIOCOUTQ, &queued);
     return static_cast<size_t>(queued) + clock_.waiting();
 }
 
-// Reads and drops the bytes that have arrived. TCFLSH would not count them as read, which clock.h
-// requires.
+// Reads and drops the bytes that have arrived. TCFLSH cannot be used: clock.h requires a count of
+// the bytes read.
 void SerialPort::drop() {
     char bytes[256];
     while (read(bytes, sizeof bytes) > 0)
@@ -96,7 +96,8 @@ void SerialPort::setSpeed(int baud) {
     termios2 t{};
     if (ioctl(fd_, TCGETS2, &t) != 0)
         return;
-    // An idle modem asserts CTS; if CTS is off, it is not wired, and flow control stays off.
+    // An idle modem asserts CTS. If CTS is off, the wire is missing, and flow control is not
+    // enabled.
     int lines = 0;
     const bool hasCts = ioctl(fd_, TIOCMGET, &lines) == 0 && (lines & TIOCM_CTS);
     t.c_iflag = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// serial_port: the serial port of the modem. It reports the bytes that it reads and writes to the
-// clock.
+// serial_port: the serial port of the modem. Reports to the clock how many bytes it reads and
+// writes.
 
 #pragma once
 
@@ -19,16 +19,16 @@ public:
     SerialPort(const SerialPort&) = delete;
     SerialPort& operator=(const SerialPort&) = delete;
 
-    // Opens a device. Throws std::system_error if that fails, if the device is not a terminal, or
-    // if another process has opened it for exclusive use.
+    // Opens a device. Throws std::system_error if the device cannot be opened, is not a terminal,
+    // or is in exclusive use by another process.
     void open(const std::string& device);
     void close();
     int fd() const { return fd_; }
     // Work like the system calls read and write; never wait.
     ssize_t read(void* bytes, size_t room);
     ssize_t write(const void* bytes, size_t size);
-    // Returns the number of bytes that were written but not sent yet, because CTS is off or the
-    // line is slower.
+    // Returns the number of written bytes that are not on the line yet, because CTS is off or the
+    // line is slower than the program.
     size_t waiting() const;
     void drop(); // drops the bytes that have arrived
     // Sets the baud rate.

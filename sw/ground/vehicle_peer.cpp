@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// vehicle_peer: connects programs with the link to a vehicle: callbacks from the link, and requests
-// to the link.
+// vehicle_peer: connects the programs with the link to one vehicle. It handles the link's callbacks
+// and passes the programs' messages to the link.
 
 #include "vehicle_peer.h"
 
@@ -15,7 +15,8 @@ namespace XBeeAT {
 
 namespace {
 
-constexpr U32 briefBytes = 128; // largest message for one fragment with a compressed header
+// largest message that fits into one fragment with a compressed header
+constexpr U32 briefBytes = 128;
 
 } // namespace
 
@@ -39,7 +40,7 @@ VehiclePeer::~VehiclePeer() {
         Link_setKey(link_.get(), static_cast<int>(slot), nullptr, LINK_GROUND);
 }
 
-// ---- callbacks of the link, in the engine's thread, mutex held ----
+// ---- callbacks of the link, called by the engine's thread while it holds the mutex ----
 
 int VehiclePeer::onTransmit(void* context, const U8* frame, U32 size) {
     VehiclePeer& e = self(context);
@@ -56,7 +57,8 @@ int VehiclePeer::onMessage(void* context, int channel, const U8* data, U32 size)
     U32 now = e.host_.clock.nowUs();
     bool isWanted =
         program.is(ProgramConnection::State::Open) || program.is(ProgramConnection::State::Called);
-    // The link delivers in order, so holding back a message would hold back all other programs.
+    // The link delivers messages in order. Holding back the messages of one program would hold back
+    // those of all programs.
     if (isWanted && !program.give(data, size, now))
         e.end(channel, 0,
               "does not read; more than " + std::to_string(ProgramConnection::mostUnread) +
@@ -131,7 +133,8 @@ bool VehiclePeer::send(int channel, U32 now) {
     return status == LINK_OK;
 }
 
-// Logs the calls of disconnected programs, because no program can be informed.
+// Logs the calls of disconnected programs that were not confirmed, because these programs cannot be
+// informed.
 void VehiclePeer::reportLost() {
     if (lost_)
         log(0, "calls of disconnected programs that may not have reached the UAV: " +
@@ -139,8 +142,8 @@ void VehiclePeer::reportLost() {
     lost_ = 0;
 }
 
-// Ends the session if a message is late, so that the vehicle does not execute a call that its
-// caller has abandoned. Returns the time of the next check, in microseconds.
+// Ends the session if a message in the link is late. Otherwise the vehicle could execute a call
+// that its caller has already abandoned. Returns the time until the next check, in microseconds.
 U32 VehiclePeer::withdrawLate(U32 now) {
     U32 wait = 0xFFFFFFFFu;
     for (int channel = 0; channel < LINK_CHANNELS; ++channel) {
@@ -170,11 +173,11 @@ void VehiclePeer::stop(U32 now) {
     reportLost();
 }
 
-// Passes bytes to the link as they arrive on the line.
+// Passes received bytes to the link.
 void VehiclePeer::receive(const U8* bytes, size_t size, U32 now) {
     if (!rival_.admits(bytes, size, now))
         return;
-    if (rival_.isYielded()) { // the vehicle calls
+    if (rival_.isYielded()) { // this station has yielded, and the vehicle calls
         resume(now);
         Link_receive(link_.get(), rival_.hello(), LINK_HEADER, now);
     }
@@ -185,7 +188,8 @@ void VehiclePeer::receive(const U8* bytes, size_t size, U32 now) {
         rival_.heard(s.framesReceived != frames);
 }
 
-// By itself, a vehicle only calls a ground station with address 0.
+// Calls again after a minute if this station has another address than 0, because a vehicle without
+// a session only calls the ground station with address 0.
 void VehiclePeer::yieldOrResume(U32 now) {
     const bool connects = Link_state(link_.get()) == LINK_STATE_CONNECTING;
     switch (rival_.poll(connects, host_.settings.source != 0, now)) {

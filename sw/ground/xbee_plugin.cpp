@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee_plugin: the xbee-at transport of ZeroC Ice 3.7. It contains the endpoint, its options as
-// text and on the wire, and the factory of endpoints. The file is compiled twice, as a library for
-// the C++98 mapping, which Python also uses, and as a library for the C++11 mapping. It links to
-// ZeroC Ice, which is GPL-2.0.
+// xbee_plugin: the xbee-at transport of ZeroC Ice 3.7: the endpoint, its options as text and on the
+// wire, and the factory of endpoints. The file is compiled twice: as a library for the C++98
+// mapping, which Python also uses, and as a library for the C++11 mapping. The libraries are linked
+// with ZeroC Ice, which is GPL-2.0.
 
 #include "plugin_connection.h"
 
@@ -27,7 +27,8 @@ public:
         : instance_(instance), o_(options) {}
 
     void streamWriteImpl(Ice::OutputStream* s) const override {
-        // Only what a peer can use is sent in a proxy; the device of this machine is not.
+        // A proxy contains only the options that a peer can use. The serial device of this machine
+        // is not one of them.
         s->write(static_cast<Ice::Short>(o_.serial.target));
         s->write(static_cast<Ice::Byte>(o_.channel));
         s->write(o_.timeoutMs);
@@ -62,8 +63,9 @@ public:
         callback->connectors(list);
     }
     IceInternal::AcceptorPtr acceptor(const std::string&) const override {
-        // The acceptor publishes the address of this side. With the peer's address, Ice would take
-        // a proxy to the peer on the same device for an object of this process.
+        // The acceptor's endpoint contains the address of this side. If it contained the peer's
+        // address, Ice would take a proxy to the peer on the same device for a proxy to an object
+        // of this process.
         return new Acceptor(instance_, o_,
                             with([](EndpointOptions& o) { o.serial.target = o.serial.source; }));
     }
@@ -202,7 +204,7 @@ public:
         o.channel = channel > 2 ? 255 : channel;
         return ICE_MAKE_SHARED(Endpoint, instance_, o);
     }
-    // Keeps the instance, because another thread may be parsing a proxy; the instance refuses
+    // Keeps the instance, because another thread may still be parsing a proxy. The instance refuses
     // further connections.
     void destroy() override { instance_->destroy(); }
     IceInternal::EndpointFactoryPtr clone(const IceInternal::ProtocolInstancePtr&) const override {

@@ -70,8 +70,8 @@ int Hw_Core_answers(const Hw_Core* self) {
 Hw_Status Hw_Core_run(Hw_Core* self, U32 operation, U32 ms) {
     self->done[operation] = 0;
     Hw_Core_act(self, operation);
-    /* A post that an abandoned call has left ends one wait too early, so the flag of the event
-     * decides. */
+    /* An abandoned call may have left a post, which ends one wait too early. Therefore only `done`
+     * shows whether the operation has ended. */
     while (!self->done[operation])
         if (!self->port->wait(self->context, operation, ms) && !self->done[operation]) {
             FSMC_write(self->slot, CONTROL, RESET);
@@ -88,8 +88,8 @@ void Hw_Core_begin(Hw_Core* self, U32 operation, U32 ms) {
 
 void Hw_Core_later(Hw_Core* self, U32 operation) {
     self->later[operation] = 1;
-    /* Wakes the polling task, because the event may already be pending or this deadline may be the
-     * earliest one. */
+    /* Wakes the polling task. The event may already have occurred, or this deadline may be earlier
+     * than all others. */
     self->port->post(self->context, operation);
 }
 
@@ -131,7 +131,7 @@ float Hw_float(U32 bits) {
     return value;
 }
 
-/* Returns one half of a double; the Cortex-M3 and the host both store the low word first. */
+/* Returns one half of a double. On the Cortex-M3 and on the host, the low word is stored first. */
 U32 Hw_doubleBits(double value, int high) {
     U32 words[2];
     memcpy(words, &value, sizeof words);

@@ -15,38 +15,43 @@
 
 typedef enum Hw_Status {
     HW_OK = 0,
-    HW_WRONG_CORE, /* the slot contains another ID */
+    HW_WRONG_CORE, /* the slot contains a core with another ID */
     HW_BUSY,       /* the operation is still running */
-    HW_REFUSED,    /* the core refused the operation */
+    HW_REFUSED,    /* the core rejected the operation */
     HW_TIMEOUT,    /* the event did not arrive in time, and the core was reset */
-    HW_UNALIGNED   /* the buffers do not begin at a multiple of their size */
+    HW_UNALIGNED   /* the address of the buffers is not a multiple of their size */
 } Hw_Status;
 
-/* Buffers in DDR3 for frames, from the core that captures them to the core that processes them.
- * The servant of a camera core writes base, stride, width and height; the application sets the
- * other fields. */
+/* Buffers in DDR3 for the frames of a camera. The camera's core writes frames into them; another
+ * core processes the frames. The servant of the camera's core sets base, stride, width and height;
+ * the application sets the other fields. */
 typedef struct Hw_Frames {
-    /* byte address of the first of three buffers, and the distance between buffers, bytes */
+    /* byte address of the first of three buffers, and distance from one buffer to the next, bytes
+     */
     U32 base, stride;
-    /* size of a frame, pixels; width 0 means that no camera is running, and `picture` is the
-     * frame */
+    /* size of a frame, pixels. Width 0 means that no camera is running; `picture` is then the
+     * frame. */
     U32 width, height;
-    /* byte addresses of a picture, and of its width and height, which are two values of 32 bits */
+    /* byte address of a picture in memory, and byte address of its size: width and height, 32 bits
+     * each */
     U32 picture, pictureSize;
-    void (*processed)(U32 findings); /* called for each frame that was processed */
+    /* function called for each frame that was processed; 0 if not needed */
+    void (*processed)(U32 findings);
 } Hw_Frames;
 
-/* Port between a core's servant and the system: functions that make the servant's task wait, and
- * resources that several servants share. On uC/OS-II a semaphore (OSSemPend, OSSemPost) is used for
- * waiting; one per operation is needed if several tasks call operations that take time. */
+/* Port of a servant to the operating system: functions with which its task waits, and resources
+ * that several servants share. On uC/OS-II, a semaphore (OSSemPend, OSSemPost) implements wait and
+ * post. If several tasks call operations that take time, each operation needs a semaphore of its
+ * own. */
 typedef struct Hw_Port {
     /* Waits until post is called for the operation, or until `ms` have passed. Returns 1 after a
-     * post, and 0 after the time. A post before the wait is not lost. */
+     * post, and 0 after a time-out. A post that precedes the wait is not lost. */
     int (*wait)(void* context, U32 operation, U32 ms);
     void (*post)(void* context, U32 operation);
-    U32 (*nowMs)(void* context); /* milliseconds since any time; wraps */
-    /* Returns the number of accesses that were not answered so far; the data of such reads is
-     * not valid. */
+    /* Returns milliseconds since an arbitrary time; the count wraps. */
+    U32 (*nowMs)(void* context);
+    /* Returns how many accesses have not been answered so far. If this number increases during a
+     * read, the data of the read is not valid. */
     U32 (*busErrors)(void* context);
     Hw_Frames* frames; /* frames of the camera; 0 if no core of the program processes frames */
 } Hw_Port;
@@ -60,20 +65,20 @@ typedef struct Hw_Core {
     void* context;
     volatile U8 done[HW_OPERATIONS];  /* set by the interrupt routine when an operation has ended */
     U32 memory;                       /* DDR3 byte address of the buffers */
-    volatile U8 later[HW_OPERATIONS]; /* operations that the polling task must answer */
-    U32 deadline[HW_OPERATIONS];      /* deadlines of these operations, ms */
+    volatile U8 later[HW_OPERATIONS]; /* operations whose replies the polling task must send */
+    U32 deadline[HW_OPERATIONS];      /* times at which these operations time out, ms */
 } Hw_Core;
 
 /* Initialises a core: resets the core, and clears and enables its events. `id` is the expected
  * value of word ID; if it differs, returns HW_WRONG_CORE. */
 Hw_Status Hw_Core_init(Hw_Core* self, U32 slot, U32 id, const Hw_Port* port, void* context);
-/* Handles the slot's events while its interrupt line is high; called by the interrupt routine or
- * a task. */
+/* Handles all events of the slot until its interrupt line is low; called by the interrupt routine
+ * or by a task. */
 void Hw_Core_interrupt(Hw_Core* self);
 
-/* Access a word on `page` of a slot with more than 16 words. The register PAGE is restored
- * afterwards, so an interrupted task continues correctly. Tasks of equal priority that share
- * time must not use these functions. */
+/* Access a word on `page` of a slot with more than 16 words, and then restore the register PAGE, so
+ * that an interrupted task continues on its page. Tasks of equal priority that share processor time
+ * must not use these functions. */
 U32 Hw_Core_read(const Hw_Core* self, U32 word, U32 page);
 void Hw_Core_write(const Hw_Core* self, U32 word, U32 page, U32 value);
 
@@ -82,18 +87,20 @@ void Hw_Core_write(const Hw_Core* self, U32 word, U32 page, U32 value);
  * `ms`. */
 Hw_Status Hw_Core_ready(const Hw_Core* self, U32 operation);
 void Hw_Core_act(const Hw_Core* self, U32 operation);
-/* Returns 1 if the core responds, which shows that all earlier accesses have been carried out; 0
- * if the core's clock is stopped. */
+/* Returns 1 if the core responds to a read; all earlier accesses are then complete. Returns 0 if
+ * the core's clock is stopped. */
 int Hw_Core_answers(const Hw_Core* self);
 Hw_Status Hw_Core_run(Hw_Core* self, U32 operation, U32 ms);
 
-/* Steps of an operation that is answered later. begin: starts the operation and its time. later:
- * leaves the reply to the polling task. ended: if the operation has ended, returns 1 and the
- * status; otherwise returns 0 and reduces `next` to the time left. */
+/* Steps of an operation whose reply is sent later. begin: starts the operation and its time-out.
+ * later: leaves the reply to the polling task. ended: returns 1 and sets the status if the
+ * operation has ended; otherwise returns 0, and if less than `next` ms are left until the time-out,
+ * reduces `next` to this time. */
 void Hw_Core_begin(Hw_Core* self, U32 operation, U32 ms);
 void Hw_Core_later(Hw_Core* self, U32 operation);
 int Hw_Core_ended(Hw_Core* self, U32 operation, U32 nowMs, Hw_Status* status, U32* next);
-/* Returns 1 if the core has raised the event since the last call of this function. */
+/* Returns 1 if the core has raised the event since the previous call of this function for this
+ * event. */
 int Hw_Core_event(Hw_Core* self, U32 event);
 
 /* Convert between numbers and their IEEE 754 bits in registers. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * hw_instance: the cores of the chip with their servants. The table is generated from ip/cores.list
- * (soc_cores.c).
+ * hw_instance: the table of the chip's cores and their servants, which is generated from
+ * ip/cores.list (soc_cores.c).
  */
 #pragma once
 
@@ -15,13 +15,14 @@ typedef struct Hw_Instance {
     Ice_ObjectPtr servant;
     Hw_Status (*start)(const Hw_Port* port, void* context);
     void (*interrupt)(void);
-    /* Replies to calls that are done or have timed out. Returns the time in ms until it must be
-     * called again even without an event, or HW_NEVER. */
+    /* Replies to calls that have ended or timed out. Returns the time in ms after which the
+     * function must be called again if there is no event before; HW_NEVER if no call is in
+     * progress. */
     U32 (*poll)(U32 nowMs);
 } Hw_Instance;
 
 extern const Hw_Instance hw_instances[];
 
-/* Hashes of the registers for which the firmware was built, one entry per slot; the member `chip`
- * is 0. */
+/* Hashes of the registers for which the firmware was built, one entry per slot. The member `chip`
+ * of each entry is 0. */
 extern const Hw_Contract hw_contracts[MAP_CONTRACTS];

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * hw_listener: keeps two proxies, so that neither task must wait for the other.
+ * hw_listener: stores the listener's proxy twice, so that the task that sets the proxy and the task
+ * that uses it never wait for each other.
  */
 #include "hw_listener.h"
 
@@ -14,9 +15,9 @@ void Hw_Listener_set(Hw_Listener* self, const Ice_ObjectPrx* proxy, const Ice_Cu
     U8 next = (U8)(self->count + 1U);
     Ice_ObjectPrx* stored = self->proxies + (next & 1U);
     int connection = 0;
-    /* 0: the proxy is not fixed to a connection */
+    /* 0 means that the proxy is not bound to a connection */
     U16 generation = 0;
-    /* the proxy has neither endpoints nor an adapter */
+    /* true for a proxy without endpoints and without an adapter */
     if (!Ice_ObjectPrx_isNull(proxy) && proxy->endpointsSize == 2 &&
         Ice_Connection_createProxy(current->communicator, current->connection, "listener",
                                    stored) == ICE_OK) {

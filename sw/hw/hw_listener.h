@@ -8,13 +8,14 @@
 
 typedef struct Hw_Listener {
     Ice_ObjectPrx proxies[2];
-    volatile U8 count; /* number of changes; the lowest bit selects the valid one of two proxies */
+    /* number of changes so far; its lowest bit is the index of the valid proxy */
+    volatile U8 count;
 } Hw_Listener;
 
 /* Initialises a listener without a proxy. */
 void Hw_Listener_init(Hw_Listener* self);
-/* Stores a proxy that was passed in a call. A proxy without endpoints is called over the connection
- * of this call, until the connection ends. */
+/* Stores a proxy that was a parameter of a call. If the proxy has no endpoints, it is called over
+ * the connection of this call, as long as this connection exists. */
 void Hw_Listener_set(Hw_Listener* self, const Ice_ObjectPrx* proxy, const Ice_Current* current);
 /* Copies the proxy. Returns 0 if no proxy is set. */
 int Hw_Listener_get(const Hw_Listener* self, Ice_ObjectPrx* proxy);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_adapter: object adapters, which find the servant of an identity.
+ * ice_adapter: implements object adapters, which find the servant for an identity.
  */
 #include "ice_private.h"
 
@@ -37,7 +37,8 @@ Ice_Status Ice_Communicator_createObjectAdapterWithEndpoints(Ice_CommunicatorPtr
         ic->adapters = adapter;
     }
     for (t = 0; ICE_TRANSPORTS > 1 && t < ic->transportCount && status != ICE_OK; ++t)
-        if (adapter->transports >> t & 1) /* the endpoints of a failed adapter stop listening */
+        /* an adapter that could not listen on all its endpoints stops listening on the others */
+        if (adapter->transports >> t & 1)
             (void)ic->transports[t].endpoint->listen(ic->transports[t].context, 0);
     icec_unlock(ic, ICE_LOCK_STATE);
     return status;

@@ -4,7 +4,7 @@
  */
 #include "ice_message.h"
 
-#define MODE 1 /* nonmutating, the mode that Ice itself uses for these operations */
+#define MODE 1 /* mode of these requests: nonmutating, as in Ice */
 
 Ice_Status Ice_ObjectPrx_ice_ping(Ice_ObjectPrxPtr self) {
     Ice_InputStreamPtr is;

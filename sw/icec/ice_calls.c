@@ -52,8 +52,8 @@ void icec_wakeCalls(Ice_CommunicatorPtr ic) {
             ic->os->wake(ic->osContext, c);
 }
 
-/* Ends the call `id` if it still waits for its reply: wakes the waiting task, or calls the
- * callback. `is` is 0 without a reply. */
+/* Ends the call with this id if it still waits for its reply: wakes the waiting task, or calls the
+ * callback. `is` is 0 if there is no reply. */
 static void finish(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id, Ice_Status status,
                    Ice_InputStreamPtr is) {
     static const Ice_Byte nothing[1] = {0};
@@ -66,10 +66,11 @@ static void finish(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id, Ice_Statu
         callback = call->callback;
         cookie = call->cookie;
         call->status = status;
-        /* The callback may make the next call. */
+        /* The slot is free before the callback runs, because the callback may make the next call.
+         */
         call->state = callback ? ICE_CALL_FREE : ICE_CALL_DONE;
         if (!callback) {
-            call->is.size = 0; /* no results to keep */
+            call->is.size = 0; /* empty: there is no reply, so there are no results */
             ic->os->wake(ic->osContext, (int)(call - ic->calls));
         }
     }
@@ -82,7 +83,7 @@ void icec_loseConnection(Ice_CommunicatorPtr ic, int connection, Ice_Status stat
     int c;
     icec_lock(ic, ICE_LOCK_STATE);
     ic->connections[connection].state = ICE_CONNECTION_NONE;
-    icec_wakeCalls(ic); /* some tasks may wait for this connection */
+    icec_wakeCalls(ic); /* some tasks may wait until this connection is open */
     icec_unlock(ic, ICE_LOCK_STATE);
     for (c = 0; c < ICE_CALLS; ++c) {
         Ice_Call* call = &ic->calls[c];
@@ -138,13 +139,15 @@ static void keepReply(Ice_Call* call, Ice_InputStreamPtr is) {
     }
     memcpy(call->reply, is->data + is->position, (size_t)size);
     Ice_InputStream_init(is, (const Ice_Byte*)call->reply, size);
-    size = (size + 7) / 8 * 2; /* in words: the arena begins at a multiple of 8 */
+    /* size in words; rounded up to a multiple of 8 bytes, where the arena begins */
+    size = (size + 7) / 8 * 2;
     is->arena = call->reply + size;
     is->arenaSize = call->replySize / 4 - size;
     is->communicator = ic;
 }
 
-/* Returns the call that waits for the reply `id`; 0 if the call has timed out or does not exist. */
+/* Returns the call that waits for the reply with this id; 0 if there is no such call or it has
+ * timed out. */
 static Ice_Call* waitingCall(Ice_CommunicatorPtr ic, int connection, Ice_Int id) {
     Ice_Call* call;
     for (call = ic->calls; call < ic->calls + ICE_CALLS; ++call)
@@ -157,7 +160,7 @@ void icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr i
     Ice_Int id = Ice_InputStream_readInt(is);
     Ice_Call* call;
     int isAsynchronous = 0;
-    icec_lock(ic, ICE_LOCK_STATE); /* keeps the call from timing out meanwhile */
+    icec_lock(ic, ICE_LOCK_STATE); /* while this lock is held, the call cannot time out */
     call = waitingCall(ic, connection, id);
     if (call && call->callback) {
         isAsynchronous = 1;

@@ -7,8 +7,8 @@
 
 #include <string.h>
 
-/* Rank of a servant's entry for a target. An exact entry is preferred to the default servant of
- * the category, which is preferred to the default servant of all categories. */
+/* Rank of a servant's entry for a request: an exact entry is preferred to the default servant of
+ * the category, and that one to the default servant of all categories. */
 enum { NO_MATCH, DEFAULT_OF_ALL, DEFAULT_OF_CATEGORY, EXACT };
 
 static int match(const Ice_Servant* entry, const Ice_Current* current, Ice_Status* status) {
@@ -26,9 +26,9 @@ static int match(const Ice_Servant* entry, const Ice_Current* current, Ice_Statu
     return Ice_String_same(&entry->facet, &current->facet) ? EXACT : NO_MATCH;
 }
 
-/* Finds the servant for `current`, sets current->adapter, and counts an operation in progress.
- * Returns 0 and sets `status` if there is no servant; the status is ICE_CONNECTION_CLOSED after
- * shutdown. */
+/* Finds the servant for `current`, sets current->adapter, and counts the operation as in progress.
+ * Returns 0 and sets `status` if there is no servant; after shutdown, the status is
+ * ICE_CONNECTION_CLOSED. */
 static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current* current, Ice_Status* status) {
     Ice_ObjectAdapterPtr adapter;
     Ice_ObjectPtr servant = 0;
@@ -89,8 +89,8 @@ Ice_Status Ice_Object_invoke(Ice_ObjectPtr servant, const Ice_Current* current,
     return ICE_OK;
 }
 
-/* Runs an operation that is counted for its connection. `answers` is set to 0 if no reply is
- * sent now, because the reply is sent later or the caller has disconnected. */
+/* Executes an operation that is counted as in progress on its connection. Sets `answers` to 0 if no
+ * reply must be sent now: the servant replies later, or the caller has disconnected. */
 static Ice_Status runCounted(Ice_ObjectPtr servant, const Ice_Current* current,
                              Ice_InputStreamPtr is, Ice_OutputStreamPtr os, int* answers) {
     Ice_CommunicatorPtr ic = current->communicator;
@@ -109,8 +109,8 @@ static Ice_Status runCounted(Ice_ObjectPtr servant, const Ice_Current* current,
     return status;
 }
 
-/* Reads the fields of a request after its id, and narrows `is` to the parameters. Returns the same
- * as icec_enterEncapsulation. */
+/* Reads the fields of a request that follow the id, and restricts `is` to the parameters. Returns
+ * the status of icec_enterEncapsulation. */
 static Ice_Status readRequest(Ice_InputStreamPtr is, Ice_Current* current, Icec_Target* target) {
     Ice_Int begin = is->position;
     target->data = is->data + begin;
@@ -126,8 +126,8 @@ static Ice_Status readRequest(Ice_InputStreamPtr is, Ice_Current* current, Icec_
     return icec_enterEncapsulation(is);
 }
 
-/* Writes the header of the reply. It is written last, because a reply in between may have used
- * the same bytes. */
+/* Writes the header of the reply. This is done last, because another reply that was sent meanwhile
+ * may have used the same buffer. */
 static void writeHead(Ice_OutputStreamPtr os, Ice_Int id) {
     Ice_OutputStream head;
     Ice_OutputStream_init(&head, os->data, ICEC_REPLY_HEAD);
@@ -136,16 +136,17 @@ static void writeHead(Ice_OutputStreamPtr os, Ice_Int id) {
     icec_beginReply(&head, id);
 }
 
-/* Sends the results at ICEC_REPLY_HEAD of `os`, or the failure `status` with its reason as text.
- * The caller holds ICE_LOCK_SEND. `target` is 0 if the target is not known any more. */
+/* Sends the results, which start at ICEC_REPLY_HEAD of `os`; or sends the failure `status`, with
+ * its reason as text. The caller holds ICE_LOCK_SEND. `target` is 0 if the request's names are no
+ * longer known. */
 static Ice_Status sendReply(Ice_CommunicatorPtr ic, int connection, Ice_OutputStreamPtr os,
                             Ice_Int id, Ice_Status status, const Icec_Target* target) {
     const char* reason;
     if (os->failed)
         status = ICE_MARSHAL;
     reason = os->failed ? Ice_Failed_text(os->failed, os->bound) : Ice_Status_text(status);
-    /* The request's bytes no longer exist, nor the names that the reply with this failure would
-     * repeat. */
+    /* A reply with this failure would have to repeat the names in the request, but the request's
+     * bytes no longer exist. */
     if (!target && status >= ICE_OBJECT_NOT_EXIST && status <= ICE_OPERATION_NOT_EXIST)
         status = ICE_UNKNOWN_EXCEPTION;
     writeHead(os, id);
@@ -158,7 +159,8 @@ static Ice_Status sendReply(Ice_CommunicatorPtr ic, int connection, Ice_OutputSt
     return icec_send(ic, connection, os);
 }
 
-/* Executes the request that follows the id, and leaves `is` at the end of its parameters. */
+/* Executes a request whose id was already read. Leaves `is` at the end of the request's
+ * parameters. */
 static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is,
                            Ice_Int id) {
     Ice_OutputStream os;
@@ -182,7 +184,8 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
         if (servant) {
             status = runCounted(servant, &current, is, &os, &answers);
         } else if (status == ICE_CONNECTION_CLOSED) {
-            icec_askToClose(ic, connection); /* the request was not executed */
+            /* asks the peer to close the connection, because the request was not executed */
+            icec_askToClose(ic, connection);
             answers = 0;
         }
     }
@@ -216,7 +219,7 @@ int Ice_markBroadcast(Ice_Byte* message, Ice_Int size) {
     Ice_InputStream_init(&is, message, size);
     if (icec_readHead(&is) != ICEC_REQUEST || Ice_InputStream_readInt(&is) != 0)
         return 0;
-    icec_skipStrings(&is, 2); /* the identity; facet and operation follow */
+    icec_skipStrings(&is, 2); /* skips the identity, then the facet and the operation's name */
     icec_skipStrings(&is, (U32)Ice_InputStream_readSize(&is) + 1U);
     if (is.failed || is.position == size)
         return 0;
@@ -290,6 +293,7 @@ void* Ice_Current_allocate(const Ice_Current* current, Ice_Int bytes) {
     void* room;
     is->failed = 0;
     room = bytes > 0 ? Ice_InputStream_allocate(is, bytes, 1) : 0;
-    is->failed = failed; /* a lack of room is the servant's failure, not the stream's */
+    /* restored, because a lack of room here is a failure of the servant, not of the stream */
+    is->failed = failed;
     return room;
 }

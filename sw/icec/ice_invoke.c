@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_invoke: calls made through proxies: connect, request, wait, reply.
+ * ice_invoke: makes calls through proxies: connects, sends the request, waits for the reply.
  */
 #include "ice_private.h"
 
 #include <string.h>
 
-/* Records which limit was reached, or which other failure happened, for Ice_ObjectPrx_failure.
+/* Records for Ice_ObjectPrx_failure which limit was reached, or which other failure occurred.
  * `bound` is the field of the stream. */
 static Ice_Status fail(Ice_ObjectPrxPtr self, Ice_Status status, int why, const char* bound) {
     self->reason = Ice_Failed_text((Ice_Byte)why, bound);
@@ -17,7 +17,7 @@ static int isValidating(Ice_CommunicatorPtr ic, int connection) {
     return icec_connectionState(ic, connection) == ICE_CONNECTION_VALIDATING;
 }
 
-/* Connects to one endpoint with the matching transport, or uses the existing connection. */
+/* Connects to one endpoint with the transport that supports it, or uses the existing connection. */
 static Ice_Status open(Ice_ObjectPrxPtr self, const Ice_Byte* endpoint, Ice_Int size) {
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_Status status = ICE_NO_ENDPOINT;
@@ -45,8 +45,8 @@ static Ice_Status connect(Ice_ObjectPrxPtr self) {
     if (self->mode >= ICE_DATAGRAM)
         return ICE_NO_ENDPOINT;
     if (self->versions[0] != 1 || self->versions[2] != 1)
-        return ICE_PROTOCOL; /* this side has no version in common with the object */
-    if (self->generation)    /* a fixed proxy has only this connection */
+        return ICE_PROTOCOL; /* the proxy's versions of protocol and encoding are not supported */
+    if (self->generation)    /* a fixed proxy can only use its own connection */
         return icec_countPending(ic, self->connection, self->generation, 0) ? ICE_OK
                                                                             : ICE_CONNECTION_LOST;
     Ice_InputStream_init(&is, self->endpoints + 1, self->endpointsSize - 1);
@@ -66,7 +66,7 @@ static Ice_Status connect(Ice_ObjectPrxPtr self) {
 }
 
 Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int* connection) {
-    /* takes a slot in which the task can wait */
+    /* begins a call, because only a call has a slot in which this task can wait */
     Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, "", 0);
     if (!os)
         return (Ice_Status)self->status;
@@ -93,7 +93,7 @@ static void beginRequest(Ice_ObjectPrxPtr self, const char* operation, Ice_Byte 
     Ice_OutputStream_init(os, ic->requestData, ICE_REQUEST_MAX);
     if (!self->batch) {
         if (self->mode == ICE_TWOWAY) {
-            /* an id is never 0, because 0 marks a one-way request */
+            /* keeps ids above 0, because 0 marks a one-way request */
             ic->lastId = (ic->lastId & 0x3FFFFFFF) + 1;
             self->id = ic->lastId;
         }
@@ -128,7 +128,7 @@ Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char* opera
     return &ic->request;
 }
 
-/* Registers the call before its reply can arrive. */
+/* Enters the call into the table, before its reply can arrive. */
 static void registerCall(Ice_ObjectPrxPtr self, Ice_Callback callback, void* cookie) {
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_Call* call = &ic->calls[self->call];
@@ -143,7 +143,8 @@ static void registerCall(Ice_ObjectPrxPtr self, Ice_Callback callback, void* coo
     call->replySize = self->reply ? self->replySize : (Ice_Int)sizeof call->replyData;
     if (self->mode == ICE_TWOWAY)
         call->state = ICE_CALL_WAITING;
-    /* the slot has the status of an asynchronous call, because its proxy may not exist any more */
+    /* an asynchronous call stores its status in the slot, because the proxy may no longer exist
+     * when the call ends */
     self->status = ICE_LATER;
     icec_unlock(ic, ICE_LOCK_STATE);
 }
@@ -163,7 +164,7 @@ static Ice_Status sendRequest(Ice_ObjectPrxPtr self, Ice_Callback callback, void
     return icec_send(self->communicator, self->connection, os);
 }
 
-/* Sends the request, and releases the buffer. */
+/* Sends the request, and releases the request buffer. */
 static Ice_Status sendAndUnlock(Ice_ObjectPrxPtr self, Ice_Callback callback, void* cookie) {
     Ice_Status status = sendRequest(self, callback, cookie);
     icec_unlock(self->communicator, ICE_LOCK_SEND);
@@ -195,14 +196,14 @@ Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callbac
     Ice_Status status = sendAndUnlock(self, callback, cookie);
     if (status != ICE_OK || self->mode != ICE_TWOWAY)
         return Ice_ObjectPrx_end(self, status);
-    /* Wakes the receiving task, so that it does not sleep longer than until this call times out. */
+    /* Wakes the receiving task, so that it wakes again in time for this call's time-out. */
     if (isWaiting(ic, slot))
         icec_wake(ic);
     return ICE_OK;
 }
 
-/* Largest body of a reply that contains nothing to which a pointer could refer: status,
- * encapsulation, and a result of one byte. */
+/* Largest body of a reply whose results need not be kept, because no pointer can refer into it:
+ * status, encapsulation, and a result of one byte. */
 #define NOTHING_KEPT 8
 
 Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status) {
@@ -230,7 +231,7 @@ void Ice_ObjectPrx_failure(const Ice_ObjectPrx* self, Ice_Failure* failure) {
     else if (self->id != 0) {
         const Ice_Call* call = &self->communicator->calls[self->call];
         icec_lock(self->communicator, ICE_LOCK_STATE);
-        if (call->id == self->id) { /* the reply is still there */
+        if (call->id == self->id) { /* the slot still holds the reply to this call */
             failure->unknown = call->unknown;
             if (status == ICE_LATER)
                 status = call->status;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_loop: waits for events of connections, and handles them.
+ * ice_loop: waits for events of the connections, and handles them.
  */
 #include "ice_private.h"
 
@@ -12,8 +12,8 @@ static void validate(Ice_CommunicatorPtr ic, int connection) {
     icec_unlock(ic, ICE_LOCK_STATE);
 }
 
-/* Handles a message. Returns ICE_OK, or the status with which the connection must be closed.
- * After a malformed message the connection is lost. */
+/* Handles a message. Returns ICE_OK, or the reason why the connection must be closed. A malformed
+ * message ends its connection. */
 static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_Byte* in,
                               Ice_Int size) {
     Ice_InputStream is;
@@ -35,8 +35,8 @@ static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_
     case ICEC_CLOSE:
         return ICE_CONNECTION_CLOSED;
     default:
-        /* A compressed request cannot be answered. Closing the connection informs its caller
-         * that the request was not executed. */
+        /* A compressed request cannot be answered. CLOSE informs the caller that the request was
+         * not executed. */
         if (type > 0xFF)
             (void)icec_sendHead(ic, connection, ICEC_CLOSE);
         return ICE_CONNECTION_LOST;
@@ -48,7 +48,7 @@ static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte* in, const Ic
     Ice_Status end = ICE_CONNECTION_LOST;
     if (event->kind == ICE_EVENT_NONE)
         return ICE_TIMEOUT;
-    /* the side that accepts a connection sends the first message */
+    /* the side that has accepted the connection sends the first message */
     if (event->kind == ICE_EVENT_OPENED) {
         int isRefused;
         icec_lock(ic, ICE_LOCK_STATE);
@@ -72,9 +72,9 @@ static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte* in, const Ic
     return ICE_OK;
 }
 
-/* Finds a connection on which a heartbeat is due because callers wait for an operation, and
- * records the heartbeat. Returns -1 if there is none. Shortens `waitMs` to the time until the
- * next heartbeat. The caller holds the state lock. */
+/* Finds a connection on which a heartbeat is due because its caller waits for an operation, and
+ * records that the heartbeat is sent. Returns -1 if there is no such connection. Reduces `waitMs`
+ * to the time until the next heartbeat. The caller holds the state lock. */
 static int heartbeatDue(Ice_CommunicatorPtr ic, U32 now, Ice_Int* waitMs) {
     int c, due = -1;
     for (c = 0; c < ICE_TRANSPORTS * ICE_CONNECTIONS && due < 0; ++c) {
@@ -93,8 +93,9 @@ static int heartbeatDue(Ice_CommunicatorPtr ic, U32 now, Ice_Int* waitMs) {
     return due;
 }
 
-/* Sends the heartbeats that are due, and ends asynchronous calls that have timed out. Shortens
- * `waitMs` to the time until the next such event. Returns whether shutdown was called. */
+/* Sends the heartbeats that are due, and ends asynchronous calls that have timed out. Reduces
+ * `waitMs` to the time until the next heartbeat or time-out. Returns whether shutdown was
+ * called. */
 static int keepTimes(Ice_CommunicatorPtr ic, Ice_Int* waitMs) {
     for (;;) {
         U32 now = icec_nowMs(ic);
@@ -115,10 +116,10 @@ static int keepTimes(Ice_CommunicatorPtr ic, Ice_Int* waitMs) {
     }
 }
 
-/* Number of events after which a busy transport passes the turn to the next transport. */
+/* Number of successive events of one transport, after which the next transport has its turn. */
 #define TURN_EVENTS 32
 
-/* Receives from the transport whose turn it is. If nothing arrives, it is the next transport's
+/* Receives from the transport whose turn it is. If nothing arrives, the next transport has its
  * turn. */
 static Ice_Status receive(Ice_CommunicatorPtr ic, Ice_Byte* in, Ice_Int timeoutMs,
                           Ice_Event* event) {
@@ -137,7 +138,7 @@ static Ice_Status receive(Ice_CommunicatorPtr ic, Ice_Byte* in, Ice_Int timeoutM
     return status;
 }
 
-#define SERVE (-1) /* value for timeoutMs: until shutdown is called */
+#define SERVE (-1) /* value for timeoutMs: no time-out, until shutdown is called */
 #define POLL_MS 1000
 
 /* Handles at most one event of the transport whose turn it is. The calling task acts as the
@@ -162,22 +163,24 @@ static Ice_Status receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     return status;
 }
 
-/* ---- which of several tasks receives ----
- * One task at a time has the role of the receiver. A server (waitForShutdown, poll) takes the role
- * as soon as it can. Without a server, a task that waits for a reply (a leader) has the role while
- * it waits. `receiver` and `servers` are only changed by a task that holds the state lock. A task
- * that leaves the role wakes another one that may want it.
+/* ---- the receiver ---- One of several tasks has the role of the receiver. A server (a task in
+ * waitForShutdown or poll) takes the role as soon as it is free. If there is no server, a task that
+ * waits for a reply (a leader) has the role while it waits. `receiver` and `servers` are only
+ * changed by a task that holds the state lock. A task that gives the role up wakes another task
+ * that may want it.
  */
 
 typedef enum Role {
     ROLE_NONE,  /* another task has the role */
     ROLE_TAKEN, /* this task has taken the role, and must return it with giveRole */
-    ROLE_HAD    /* this task already had the role: it makes the call within an operation */
+    /* this task already had the role, because it makes this call while it executes an operation */
+    ROLE_HAD
 } Role;
-/* time-out value: until the role is free, or until shutdown is called */
+/* value for timeoutMs: waits until the role is free, or until shutdown is called */
 #define FOREVER 0x7FFFFFFF
 
-/* Gives up the role and wakes a task that may want it. The caller holds the state lock. */
+/* Gives up the role of the receiver, and wakes a task that may want the role. The caller holds the
+ * state lock. */
 static void giveUp(Ice_CommunicatorPtr ic) {
     ic->receiver = -1;
     if (ic->servers)
@@ -186,7 +189,7 @@ static void giveUp(Ice_CommunicatorPtr ic) {
         icec_wakeCalls(ic);
 }
 
-/* Takes the role of the receiver for a server, waiting for it up to timeoutMs. */
+/* Takes the role of the receiver for a server. Waits up to timeoutMs until the role is free. */
 static Role takeRole(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     int task = ic->os->task(ic->osContext);
     U32 begin = icec_nowMs(ic);
@@ -195,7 +198,7 @@ static Role takeRole(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     if (ic->receiver == task) {
         role = ROLE_HAD;
     } else {
-        ++ic->servers; /* a leader that reads this gives the role up */
+        ++ic->servers; /* when a leader sees this number, it gives the role up */
         while (ic->receiver >= 0) {
             Ice_Int left = FOREVER;
             if (timeoutMs != FOREVER)
@@ -213,7 +216,7 @@ static Role takeRole(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
         else
             ic->receiver = task;
         if (ic->stopping && ic->servers)
-            /* wakes the next server that has to leave */
+            /* shutdown was called: wakes the next server, which must also return */
             ic->os->wake(ic->osContext, ICEC_SERVER_SLOT);
     }
     icec_unlock(ic, ICE_LOCK_STATE);
@@ -226,8 +229,9 @@ static void giveRole(Ice_CommunicatorPtr ic) {
     icec_unlock(ic, ICE_LOCK_STATE);
 }
 
-/* Returns whether a task that waits for a reply must receive now. Such a task leads (`leads`) if no
- * other task has or wants the role, and gives the role to a server that wants it. */
+/* Returns whether this task, which waits for a reply, must receive now. The task becomes the leader
+ * and sets `leads` if no task has the role and no server wants it. A leader gives the role up as
+ * soon as a server wants it. */
 static int mayReceive(Ice_CommunicatorPtr ic, int* leads) {
     int task = ic->os->task(ic->osContext), may;
     icec_lock(ic, ICE_LOCK_STATE);

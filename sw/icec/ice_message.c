@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_message: writes and reads the heads of IceP messages, and the parameters of an operation.
+ * ice_message: writes and reads the headers of IceP messages, and the encapsulations of parameters
+ * and results.
  */
 #include "ice_message.h"
 #include "ice_operation.h"
@@ -8,12 +9,13 @@
 #include <string.h>
 
 #define TYPE_AT 8
-#define COMPRESSION_AT 9 /* 0 and 1: not compressed; 2: compressed */
+/* offset of the compression byte; 0 and 1 mean not compressed, 2 means compressed */
+#define COMPRESSION_AT 9
 #define SIZE_AT 10
 #define MAGIC_BYTES 4
 
-/* Template of a message head: "IceP", versions of protocol and encoding, type, compression,
- * size. */
+/* Template of a message header: "IceP", version of the protocol, version of the encoding, type,
+ * compression, size. */
 static const Ice_Byte head[ICEC_HEADER] = {'I', 'c', 'e', 'P', 1, 0, 1, 0, 0, 0, ICEC_HEADER};
 
 void icec_beginMessage(Ice_OutputStreamPtr os, Ice_Byte type) {
@@ -40,7 +42,7 @@ Ice_Int icec_readHead(Ice_InputStreamPtr is) {
     const Ice_Byte* begin = Ice_InputStream_readBlob(is, TYPE_AT);
     if (!begin || memcmp(begin, head, TYPE_AT) != 0)
         return -1;
-    /* compression 0 and 1 both mean that the message is not compressed */
+    /* the mask removes bit 0 of the compression, because 0 and 1 both mean not compressed */
     type = Ice_InputStream_readShort(is) & 0xFEFF;
     return Ice_InputStream_readInt(is) == is->size ? type : -1;
 }

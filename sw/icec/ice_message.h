@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_message: functions of both the full and the minimal run time: messages of the Ice protocol as
- * bytes (headers, requests, replies, encapsulations), and functions that make proxies.
+ * ice_message: functions that the full and the minimal run time share. They write and read the
+ * parts of Ice messages (headers, requests, replies, encapsulations), and make proxies.
  */
 #pragma once
 
@@ -17,24 +17,25 @@ enum { ICEC_REQUEST, ICEC_BATCH, ICEC_REPLY, ICEC_VALIDATE, ICEC_CLOSE };
  * into the header. */
 void icec_beginMessage(Ice_OutputStreamPtr os, Ice_Byte type);
 void icec_endMessage(Ice_OutputStreamPtr os);
-/* Returns the size of a message from its header (ICEC_HEADER bytes), and whether it is compressed;
- * -1 if the header does not begin with Ice's magic, or the size is too small. */
+/* Returns the size of a message from its header (ICEC_HEADER bytes), and whether the message is
+ * compressed. Returns -1 if the header does not begin with Ice's magic bytes, or if the size is too
+ * small. */
 Ice_Int icec_messageSize(const Ice_Byte* header, int* isCompressed);
-/* Checks and skips the header of a message of is->size bytes. Returns the type of the message,
- * which is greater than 0xFF if the message is compressed; -1 if this is not a message of IceP
- * 1.0. */
+/* Checks and skips the header of a message of is->size bytes. Returns the type of the message; a
+ * value above 0xFF means that the message is compressed. Returns -1 if this is not a message of
+ * IceP 1.0. */
 Ice_Int icec_readHead(Ice_InputStreamPtr is);
 
-/* Writes size and encoding of an encapsulation. Returns the position of its begin, which
- * icec_endEncapsulation needs to write the size. */
+/* Writes the size and the encoding of an encapsulation. Returns the start position, which
+ * icec_endEncapsulation needs in order to write the size. */
 Ice_Int icec_beginEncapsulation(Ice_OutputStreamPtr os);
 void icec_endEncapsulation(Ice_OutputStreamPtr os, Ice_Int begin);
-/* Narrows `is` to the encapsulation that follows. Returns ICE_MARSHAL if it is malformed, and
- * ICE_PROTOCOL if its encoding is neither 1.0 nor 1.1. */
+/* Restricts `is` to the encapsulation that follows. Returns ICE_MARSHAL if the encapsulation is
+ * malformed, and ICE_PROTOCOL if its encoding is neither 1.0 nor 1.1. */
 Ice_Status icec_enterEncapsulation(Ice_InputStreamPtr is);
 
-/* Write and read a facet as on the wire: a sequence that is empty or has one string. A longer
- * sequence is malformed, as in Ice. */
+/* Write and read a facet, which is encoded as a sequence of strings with one element, or without
+ * elements if there is no facet. A longer sequence is malformed, as in Ice. */
 void icec_writeFacet(Ice_OutputStreamPtr os, const Ice_String* facet);
 void icec_readFacet(Ice_InputStreamPtr is, Ice_String* facet);
 void icec_skipStrings(Ice_InputStreamPtr is, U32 count);
@@ -46,12 +47,13 @@ typedef struct Icec_Target {
     Ice_Int size;
 } Icec_Target;
 
-/* Writes a reply's id, and the fields up to the begin of the results. */
+/* Writes the id of a reply, and the fields that precede the results. */
 void icec_beginReply(Ice_OutputStreamPtr os, Ice_Int id);
-/* Sets the status of a reply. A failure replaces the results; the text of its reason is empty. */
+/* Sets the status of a reply. A failure replaces the results, and has an empty text as its
+ * reason. */
 void icec_endReply(Ice_OutputStreamPtr os, Ice_Status status, const Icec_Target* target);
-/* Reads the status of a reply, and narrows `is` to its results or exception. Returns the status,
- * or the failure if the reply is malformed. */
+/* Reads the status of a reply, and restricts `is` to the results or the exception. Returns the
+ * status; if the reply is malformed, returns the failure. */
 Ice_Status icec_readReply(Ice_InputStreamPtr is);
 
 /* ---- ice_proxy ---- */
@@ -66,7 +68,7 @@ Ice_Status icec_setIdentity(Ice_ObjectPrxPtr prx, const Ice_String* name,
  * no transport supports it. */
 int icec_printEndpoint(Ice_CommunicatorPtr ic, const Ice_Byte* encoded, Ice_Int size,
                        Ice_OutputStreamPtr text);
-/* Write a text, or a number in decimal, without a size before it. */
+/* Append text, or a number in decimal, without a size in front of it. */
 void icec_put(Ice_OutputStreamPtr os, const char* text);
 void icec_putNumber(Ice_OutputStreamPtr os, U32 value);
 /* Splits "category/name" or "name" into an identity. */

@@ -8,7 +8,7 @@
 
 typedef struct Ice_Servant {
     Ice_ObjectPtr servant; /* 0: free */
-    /* identity of the servant; with an empty name, a default servant of the category */
+    /* identity of the servant; an empty name makes it the default servant of the category */
     Ice_Identity identity;
     Ice_String facet;
 } Ice_Servant;
@@ -23,7 +23,7 @@ struct Ice_ObjectAdapter {
 
 typedef enum Ice_CallState {
     ICE_CALL_FREE,
-    ICE_CALL_KEPT,     /* ended; its task may still use the results */
+    ICE_CALL_KEPT,     /* the call has ended, but its task may still use the results */
     ICE_CALL_BUILDING, /* the request is being written */
     ICE_CALL_WAITING,  /* the reply is expected */
     ICE_CALL_DONE      /* the reply has arrived, or will never arrive */
@@ -40,7 +40,7 @@ typedef struct Ice_Call {
     Ice_Callback callback; /* callback of an asynchronous call; 0 if a task waits */
     void* cookie;
     Ice_InputStream is;
-    Ice_String unknown; /* name of an unknown exception, for Ice_Failure */
+    Ice_String unknown; /* name of an exception that is not declared, for Ice_Failure */
     U32* reply;         /* the reply, followed by its decoded sequences */
     Ice_Int replySize;
     U32 replyData[ICE_REPLY_MAX / 4];
@@ -54,10 +54,12 @@ typedef enum Ice_ConnectionState {
 
 typedef struct Ice_Connection {
     Ice_ConnectionState state;
-    Ice_Byte pending; /* number of operations in progress, or to be answered later */
+    /* number of operations in progress, including those whose replies are sent later */
+    Ice_Byte pending;
     Ice_Byte closing; /* the peer has been asked to close */
-    U16 generation;   /* counts the connections that had this number; never 0 */
-    /* time of the last heartbeat to the callers, or of the start of the wait, ms */
+    /* number of the connection among all connections that have used this slot; never 0 */
+    U16 generation;
+    /* time of the last heartbeat to the callers, or time since which the callers wait, ms */
     U32 signMs;
 } Ice_Connection;
 
@@ -66,22 +68,24 @@ typedef struct Ice_Transport {
     void* context;
 } Ice_Transport;
 
-/* Small members first: their offsets are short in the code. The connection c of transport t has the
- * number t * ICE_CONNECTIONS + c. */
+/* Small members come first, because short offsets make shorter code. Connection c of transport t
+ * has the number t * ICE_CONNECTIONS + c. */
 struct Ice_Communicator {
     Ice_Transport transports[ICE_TRANSPORTS];
     Ice_ObjectAdapterPtr adapters;
     Ice_Byte stopping;
     Ice_Byte transportCount;
-    Ice_Byte turn;     /* transport that is listened to now */
-    Ice_Byte turnUsed; /* events handled in this turn */
-    int receiver;      /* task that receives; -1 without one */
-    int servers;       /* number of tasks that want to receive */
+    Ice_Byte turn;     /* transport whose turn it is */
+    Ice_Byte turnUsed; /* number of events handled during this turn */
+    int receiver;      /* task that has the role of the receiver; -1 if no task has it */
+    int servers;       /* number of servers, which want the role of the receiver */
     int depth;         /* number of messages being handled */
     Ice_Int lastId;
-    Ice_OutputStream request;    /* request that is being built, under ICE_LOCK_SEND */
-    Ice_Int requestBody;         /* offset of the request's encapsulation */
-    Ice_InputStreamPtr decoding; /* stream of the innermost operation, with its part of the arena */
+    Ice_OutputStream request; /* request that is being built, under ICE_LOCK_SEND */
+    Ice_Int requestBody;      /* offset of the request's encapsulation */
+    /* stream of the operation that is being executed (the innermost one), with its part of the
+     * arena */
+    Ice_InputStreamPtr decoding;
     const Ice_Os* os;
     void* osContext;
     const char* const* properties;

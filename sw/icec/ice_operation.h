@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_operation: tables with which generated code describes the operations of an interface.
+ * ice_operation: tables that generated code contains, and that describe the operations of an
+ * interface.
  */
 #pragma once
 
@@ -13,8 +14,9 @@ enum { ICE_NORMAL = 0, ICE_NONMUTATING = 1, ICE_IDEMPOTENT = 2 };
 /* Number added to the mode of a request that arrived by broadcast (Ice_markBroadcast). */
 #define ICE_BROADCAST 4
 
-/* Request modes that an operation accepts, one bit each. ICE_TAKES_BROADCAST adds the same modes by
- * broadcast, for operations with metadata [":broadcast"]. */
+/* Request modes that an operation accepts, one bit each. ICE_TAKES_BROADCAST also accepts these
+ * modes in requests that arrive by broadcast; it is set for operations with metadata
+ * [":broadcast"]. */
 enum {
     ICE_TAKES_NORMAL = 1 << ICE_NORMAL,
     ICE_TAKES_IDEMPOTENT = 1 << ICE_NONMUTATING | 1 << ICE_IDEMPOTENT
@@ -39,13 +41,13 @@ typedef struct Ice_Interface {
 
 struct Ice_Base {
     const Ice_Interface* interface; /* 0 marks the end of the list */
-    /* offset of the base's table of functions in the table of the derived interface */
+    /* offset of the base's table of functions, inside the table of the derived interface */
     size_t offset;
 };
 
-/* Calls the operation that `current` names. Returns ICE_PROTOCOL if the mode of the request does
- * not fit: only one of request and operation is idempotent, or the request arrived by broadcast and
- * the operation does not allow this. */
+/* Calls the operation that `current` names. Returns ICE_PROTOCOL if the mode of the request is not
+ * allowed: only one of the request and the operation is idempotent, or the request arrived by
+ * broadcast and the operation does not accept broadcasts. */
 Ice_Status Ice_Object_dispatch(const Ice_Interface* interface, const void* table,
                                Ice_ObjectPtr self, const Ice_Current* current,
                                Ice_InputStreamPtr is, Ice_OutputStreamPtr os);

@@ -8,8 +8,8 @@
 
 #include <string.h>
 
-/* Finds the next word of the options, without its quotes. Returns the text after the word. Returns
- * 0 at the end of the options, and also if quotes do not match; `size` is then -1. */
+/* Finds the next word of the options, and removes its quotes. Returns the text after the word. At
+ * the end of the options, returns 0. If a quote is not closed, returns 0 and sets `size` to -1. */
 static const char* nextWord(const char* text, const char** word, Ice_Int* size) {
     char quote = 0;
     *size = 0;
@@ -26,7 +26,7 @@ static const char* nextWord(const char* text, const char** word, Ice_Int* size) 
     if (*text == '"' || *text == '\'')
         quote = *text++;
     *word = text;
-    /* Within single quotes, too, a colon ends the endpoint. */
+    /* A colon also ends the endpoint within single quotes. */
     text += strcspn(text, quote == '"' ? "\"" : quote ? "':" : ICEC_SPACES ":'\"");
     *size = (Ice_Int)(text - *word);
     if (quote && *text == quote && text[-1] != '\\')
@@ -34,7 +34,7 @@ static const char* nextWord(const char* text, const char** word, Ice_Int* size) 
     else if (quote)
         *size = -1;
     if (*text && strchr(ICEC_SPACES ":", *text) == 0)
-        *size = -1; /* a quote in the middle of a word is an error */
+        *size = -1; /* a quote is only allowed at the start of a word */
     return *size < 0 ? 0 : text;
 }
 

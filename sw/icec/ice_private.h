@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_private: declares the functions shared by the files of the full run time, bottom layer first.
+ * ice_private: declares the functions that the files of the full run time share, lowest layer
+ * first.
  */
 #pragma once
 
 #include "ice_message.h"
 
-/* ---- ice_transport: transports, locks, time; states of the connections, and sending on
- * connections ---- */
+/* ---- ice_transport: transports, locks and time; states of the connections, and sending on them
+ * ---- */
 
-/* Number of transports, for loops. With ICE_TRANSPORTS 1 the compiler removes the loop. */
+/* Number of transports, for use in loops. If ICE_TRANSPORTS is 1, the compiler removes the loop. */
 #define ICEC_TRANSPORTS(ic) (ICE_TRANSPORTS == 1 ? 1 : (ic)->transportCount)
 
 /* Takes a lock. `which` is ICE_LOCK_STATE or ICE_LOCK_SEND. */
@@ -31,15 +32,16 @@ void icec_wake(Ice_CommunicatorPtr ic);
 const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text, int* transport);
 /* Returns the text after the next colon outside quotes; 0 if there is no such colon. */
 const char* icec_nextEndpoint(const char* text);
-/* Adds an endpoint of a transport; with `options` 0, the endpoint on which the transport
+/* Adds an endpoint of a transport to a proxy; if `options` is 0, the endpoint on which this side
  * listens. Returns ICE_LIMIT if the endpoints exceed ICE_ENDPOINT_MAX. */
 Ice_Status icec_addEndpoint(Ice_ObjectPrxPtr prx, int transport, const char* options);
 
-/* Replaces escape sequences as Ice does. `special` may also be escaped; unknown escapes are
- * kept. Fails `os` if an escape is malformed, or if the text has control characters. */
+/* Replaces escape sequences as Ice does, and writes the text to `os`. The character `special` may
+ * also be escaped; unknown escape sequences are kept. Fails `os` if an escape sequence is
+ * malformed, or if the text contains control characters. */
 void icec_unescape(Ice_String text, char special, Ice_OutputStreamPtr os);
-/* Returns the status for a stream that failed: ICE_PARSE if the text is malformed, otherwise
- * ICE_LIMIT. */
+/* Returns the status that corresponds to a failed stream: ICE_PARSE if the text is malformed,
+ * otherwise ICE_LIMIT. */
 #define icec_parseFailure(os) ((os)->failed == ICE_FAILED_MALFORMED ? ICE_PARSE : ICE_LIMIT)
 
 /* Sends the complete message in `os`; the caller holds ICE_LOCK_SEND. Returns
@@ -48,15 +50,16 @@ Ice_Status icec_send(Ice_CommunicatorPtr ic, int connection, Ice_OutputStreamPtr
 /* Sends a message without a body: ICEC_VALIDATE or ICEC_CLOSE. */
 Ice_Status icec_sendHead(Ice_CommunicatorPtr ic, int connection, Ice_Byte type);
 
-/* Begins a connection with this number; the caller holds the state lock. */
+/* Records that a connection with this number has begun; the caller holds the state lock. */
 void icec_openConnection(Ice_CommunicatorPtr ic, int connection, Ice_ConnectionState state);
-/* Closes the transport's connection. The calls on it are ended by icec_loseConnection. */
+/* Closes the connection in its transport. Calls that wait for replies on it continue to wait until
+ * icec_loseConnection. */
 void icec_closeConnection(Ice_CommunicatorPtr ic, int connection);
 Ice_ConnectionState icec_connectionState(Ice_CommunicatorPtr ic, int connection);
 
-/* Sends CloseConnection once. It informs the peer that its pending requests were not executed; the
- * peer then closes the connection. While operations are in progress, nothing is sent; after their
- * replies, the next call of this function sends the message. */
+/* Sends CloseConnection, once per connection. The message informs the peer that its pending
+ * requests were not executed; the peer then closes the connection. While operations are in
+ * progress, sends nothing; the function must be called again after their replies. */
 void icec_askToClose(Ice_CommunicatorPtr ic, int connection);
 int icec_isStopping(Ice_CommunicatorPtr ic);
 
@@ -64,26 +67,27 @@ int icec_isStopping(Ice_CommunicatorPtr ic);
  * connection of this `generation` has ended. */
 int icec_countPending(Ice_CommunicatorPtr ic, int connection, U16 generation, int change);
 
-/* Gives `is` the part of the communicator's arena that outer operations do not use. */
+/* Gives `is` the part of the communicator's arena that no operation in progress uses. */
 void icec_giveArena(Ice_CommunicatorPtr ic, Ice_InputStreamPtr is);
 
 /* ---- ice_calls: the table of calls that wait for replies ---- */
 
-/* Takes a slot for a call that is being built: a free slot, or the slot of this task's previous
- * call. Returns -1 if all slots are taken. */
+/* Takes a slot for a call that is being prepared: a free slot, or the slot of this task's previous
+ * call. Returns -1 if all slots are in use. */
 int icec_takeCall(Ice_CommunicatorPtr ic);
 Ice_CallState icec_callState(Ice_CommunicatorPtr ic, int slot);
 
-/* Hands a reply to the call that waits for it. `is` stands at the reply's body. */
+/* Passes a reply to the call that waits for it. `is` is at the start of the reply's body. */
 void icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
-/* Finds an asynchronous call that has timed out, and its id; returns 0 if no call has timed out.
- * Shortens `waitMs` to the next time-out. The caller holds the state lock. */
+/* Finds an asynchronous call that has timed out, and sets `id` to its id; returns 0 if no
+ * call has timed out. Reduces `waitMs` to the time until the next time-out. The caller holds
+ * the state lock. */
 Ice_Call* icec_expiredCall(Ice_CommunicatorPtr ic, U32 now, Ice_Int* id, Ice_Int* waitMs);
 /* Ends a call found by icec_expiredCall, unless the call has ended in the meantime. */
 void icec_expireCall(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id);
-/* Marks a connection as closed, and fails its calls with `status`. */
+/* Marks a connection as closed, and ends the calls on it with `status`. */
 void icec_loseConnection(Ice_CommunicatorPtr ic, int connection, Ice_Status status);
-/* Wakes every task that is making a call; the caller holds the state lock. */
+/* Wakes every task that waits in a call; the caller holds the state lock. */
 void icec_wakeCalls(Ice_CommunicatorPtr ic);
 
 /* ---- ice_dispatch: incoming requests, from the message to the servant, and replies ---- */
@@ -93,14 +97,15 @@ void icec_wakeCalls(Ice_CommunicatorPtr ic);
 Ice_Status icec_dispatchRequest(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
 Ice_Status icec_dispatchBatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
 
-/* ---- ice_loop: waits for events and handles them; one of several tasks does this at a time
+/* ---- ice_loop: waits for events and handles them; only one of several tasks does this at a time
  * ---- */
 
-/* Receives, or waits while another task receives, as long as `waits(ic, which)` is true. It may
- * also be called during an operation. The task sleeps on `slot`, the slot of its call. Returns
- * ICE_TIMEOUT or ICE_LIMIT if it fails. */
+/* Receives, or waits while another task receives, until `waits(ic, which)` returns 0. May also be
+ * called while an operation is executed. The task sleeps on `slot`, the slot of its call. Returns
+ * ICE_TIMEOUT or ICE_LIMIT if the wait fails. */
 Ice_Status icec_await(Ice_CommunicatorPtr ic, int (*waits)(Ice_CommunicatorPtr ic, int which),
                       int which, int slot, Ice_Int timeoutMs);
 
-/* Slot of Ice_Os in which tasks that want to receive sleep; 0..ICE_CALLS-1 belong to calls. */
+/* Slot of Ice_Os on which tasks sleep that want to be the receiver; slots 0..ICE_CALLS-1 belong to
+ * calls. */
 #define ICEC_SERVER_SLOT ICE_CALLS

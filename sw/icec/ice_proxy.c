@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_proxy: reads and writes proxies, and changes copies of them. * Identity, facet and endpoints
- * are stored as they are encoded in messages, because proxies are mostly sent.
+ * ice_proxy: reads and writes proxies, and makes changed copies of proxies. * Identity, facet and
+ * endpoints are stored in their encoded form, because sending is the most frequent use of a proxy.
  */
 #include "ice_message.h"
 
@@ -16,7 +16,7 @@ void icec_initProxy(Ice_ObjectPrxPtr prx, Ice_CommunicatorPtr ic) {
     if (ICEC_FULL) {
         prx->call = prx->connection = -1;
         memset(prx->versions, 1, sizeof prx->versions);
-        prx->versions[1] = 0; /* protocol 1.0, encoding 1.1 */
+        prx->versions[1] = 0; /* default versions: protocol 1.0, encoding 1.1 */
     }
 }
 
@@ -59,8 +59,8 @@ Ice_String Ice_ObjectPrx_getFacet(const Ice_ObjectPrx* prx) {
     return facet;
 }
 
-/* Gives endpoints the encoding of their message, as Ice does, if this program has their transport.
- * Other endpoints are unchanged. */
+/* Sets the encoding of those endpoints whose transport this program has to the encoding of the
+ * message, as Ice does. Other endpoints remain unchanged. */
 static void adoptEncoding(Ice_CommunicatorPtr ic, Ice_Byte* endpoints, Ice_Byte minor) {
     Ice_Byte* at = endpoints + 1;
     int n;
@@ -88,15 +88,14 @@ void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx)
     Ice_OutputStream_writeShort(os, (Ice_Short)(prx->mode | prx->secure << 8));
     if (ICEC_FULL && os->minor != 0)
         Ice_OutputStream_writeBlob(os, prx->versions, 4);
-    else if (os->minor != 0) /* protocol 1.0, the encoding */
+    else if (os->minor != 0) /* protocol 1.0, then the encoding */
         Ice_OutputStream_writeInt(os, 0x00010001 | prx->minor << 24);
     Ice_OutputStream_writeBlob(os, prx->endpoints, prx->endpointsSize);
     if (ICEC_FULL && !os->failed && prx->communicator)
         adoptEncoding(prx->communicator, os->data + os->size - prx->endpointsSize, os->minor);
 }
 
-/* Appends bytes of the message to those that the proxy already has. Returns 0 if there is no
- * room. */
+/* Appends bytes of the message to the endpoints of the proxy. Returns 0 if there is no room. */
 static int keep(Ice_InputStreamPtr is, Ice_Int begin, Ice_ObjectPrxPtr prx) {
     Ice_Int size = is->position - begin;
     if (is->failed || size > ICE_ENDPOINT_MAX - prx->endpointsSize)
@@ -119,13 +118,13 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
         is->failed = ICE_FAILED_IDENTITY;
     prx->mode = Ice_InputStream_readByte(is);
     prx->secure = Ice_InputStream_readBool(is);
-    /* encoding 1.0 sends no version with a proxy; the version of the stream is used */
+    /* In encoding 1.0, a proxy has no version; the version of the stream is used. */
     prx->minor = is->minor;
     if (ICEC_FULL)
         prx->versions[3] = is->minor;
     if (is->minor != 0) {
         const Ice_Byte* versions = Ice_InputStream_readBlob(is, 4);
-        /* a peer with a later version of the encoding also supports 1.1 */
+        /* a peer that supports a later encoding also supports 1.1 */
         prx->minor = versions && versions[3] != 0;
         if (ICEC_FULL && versions)
             memcpy(prx->versions, versions, 4);
@@ -138,7 +137,8 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
         if (!is->failed && !keep(is, begin, prx))
             is->failed = ICE_FAILED_ENDPOINT;
     }
-    /* Endpoints that do not fit are omitted, if at least one endpoint fits. */
+    /* Endpoints for which there is no room are omitted, provided that there is room for at least
+     * one. */
     for (; n > 0 && !is->failed; --n) {
         Ice_Int size;
         begin = is->position;

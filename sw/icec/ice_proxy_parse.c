@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_proxy_parse: makes a proxy from its string, by the manual's "Proxy and Endpoint Syntax".
+ * ice_proxy_parse: makes a proxy from its string form, which the manual of Ice defines ("Proxy and
+ * Endpoint Syntax").
  */
 #include "ice_private.h"
 
@@ -18,8 +19,9 @@ U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
     return end == at + size && *at != '-' ? value : 0xFFFFFFFFU;
 }
 
-/* Sets `found` to the next word without its quotes. A word ends at a character of `ends`. Escape
- * sequences are kept. Returns the text after the word; 0 if its quotes do not match. */
+/* Sets `found` to the next word, without its quotes. A word ends before any of the characters in
+ * `ends`. Escape sequences remain in the word. Returns the text after the word; 0 if a quote is not
+ * closed. */
 static const char* word(const char* text, const char* ends, Ice_String* found) {
     const char quote = *text;
     int isQuoted = quote == '"' || quote == '\'';
@@ -83,7 +85,8 @@ static int base64(char c) {
     return digit ? (int)(digit - digits) : c == '=' ? 63 : -1;
 }
 
-/* Decodes base 64 in groups of four characters; missing ones count as 'A', as in Ice. */
+/* Decodes base 64 in groups of four characters. Characters missing at the end count as 'A', as in
+ * Ice. */
 static void decodeBase64(const char* text, Ice_Int size, Ice_OutputStreamPtr os) {
     for (; size > 0 && !os->failed; size -= 4, text += 4) {
         char c[4];
@@ -123,7 +126,7 @@ static int parseVersion(Ice_String text, Ice_Byte* version) {
     return i == text.size + 1;
 }
 
-/* Returns how many options of this letter there are. */
+/* Returns how often an option with this letter occurs. */
 static int countOptions(const char* options, char letter) {
     int count = 0;
     for (; *options && *options != ':'; ++options)
@@ -131,8 +134,8 @@ static int countOptions(const char* options, char letter) {
     return count;
 }
 
-/* Parses an endpoint that is passed on unchanged: "opaque -t type -e encoding -v bytes in base
- * 64". */
+/* Parses an endpoint of an unknown transport, which is passed on unchanged: "opaque -t type -e
+ * encoding -v bytes in base 64". */
 static Ice_Status parseOpaque(const char* options, Ice_ObjectPrxPtr prx) {
     Ice_Int type = -1;
     Ice_String value, version;
@@ -171,8 +174,8 @@ const char* icec_nextEndpoint(const char* text) {
     return 0;
 }
 
-/* Parses the endpoints after the colon at `text`. Endpoints of unknown transports are omitted, as
- * long as another one remains. */
+/* Parses the endpoints that follow the colon at `text`. Endpoints of unknown transports are
+ * omitted, provided that at least one other endpoint remains. */
 static Ice_Status parseEndpoints(const char* text, Ice_ObjectPrxPtr prx) {
     Ice_Status status = ICE_OK;
     while (status == ICE_OK && (text = icec_nextEndpoint(text)) != 0) {
@@ -197,7 +200,8 @@ static Ice_Status parseAdapter(const char* text, Ice_ObjectPrxPtr prx) {
     if (!text || text[strspn(text, ICEC_SPACES)] != 0)
         return ICE_PARSE;
     Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);
-    os.size = 2; /* no endpoints; the size of the adapter id follows */
+    /* the number of endpoints, 0, and the length of the adapter id, which is set below */
+    os.size = 2;
     icec_unescape(id, 0, &os);
     if (os.failed)
         return icec_parseFailure(&os);
@@ -206,10 +210,12 @@ static Ice_Status parseAdapter(const char* text, Ice_ObjectPrxPtr prx) {
     return os.size == 2 ? ICE_PARSE : ICE_OK;
 }
 
-/* Parses an option before the endpoints, with its value (of size 0 without one). */
+/* Parses an option that precedes the endpoints. An option without a value has a `value` of
+ * size 0. */
 static Ice_Status parseOption(char letter, Ice_String value, Ice_String* facet,
                               Ice_ObjectPrxPtr prx) {
-    static const char modes[] = "toOdD"; /* letters of ICE_TWOWAY and the following modes */
+    /* letters for the modes, in the order of their numbers, starting with ICE_TWOWAY */
+    static const char modes[] = "toOdD";
     const char* mode = letter ? strchr(modes, letter) : 0;
     int isRight = value.size != 0;
     if (mode) {
@@ -243,7 +249,7 @@ static Ice_Status parse(const char* text, Ice_ObjectPrxPtr prx) {
         return text != begin && text[strspn(text, ICEC_SPACES)] == 0 ? ICE_OK : ICE_PARSE;
     for (;;) {
         text += strspn(text, ICEC_SPACES);
-        if (strchr(":@", *text)) /* or the text ends */
+        if (strchr(":@", *text)) /* strchr also finds the zero at the end of the text */
             break;
         text += strcspn(option.data = text, ICEC_SPACES ":@");
         option.size = (Ice_Int)(text - option.data);

@@ -16,7 +16,8 @@ void icec_putNumber(Ice_OutputStreamPtr os, U32 value) {
     Ice_OutputStream_writeByte(os, (Ice_Byte)('0' + value % 10));
 }
 
-/* Escapes special characters but not UTF-8. `special`: one more character to escape, or 0. */
+/* Escapes special characters; bytes of UTF-8 characters remain unchanged. `special` is an
+ * additional character to escape, or 0. */
 static void escape(Ice_OutputStreamPtr os, Ice_String text, char special) {
     static const char from[] = "\a\b\f\n\r\t\v\\'\"", to[] = "abfnrtv\\'\"";
     Ice_Int i;
@@ -38,7 +39,7 @@ static void escape(Ice_OutputStreamPtr os, Ice_String text, char special) {
     }
 }
 
-/* Puts the text that begins at `begin` in quotes if necessary. */
+/* Puts the text from `begin` to the end of the stream in quotes if necessary. */
 static void quote(Ice_OutputStreamPtr os, Ice_Int begin) {
     Ice_Int i;
     for (i = begin; i < os->size; ++i)

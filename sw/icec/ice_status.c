@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_status: converts statuses to text, with the name of Ice's exception if there is one.
+ * ice_status: converts a status to text: the name of the corresponding exception of Ice, if there
+ * is one.
  */
 #include "ice_port.h"
 #include "ice_value.h"

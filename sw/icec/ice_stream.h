@@ -22,8 +22,8 @@ typedef struct Ice_Long {
     S32 high;
 } Ice_Long;
 
-/* A string with its size. It has no end mark, and points into a message or to text of the
- * caller. */
+/* A string with its size. It has no terminating zero. Its bytes are in a message or in the caller's
+ * memory. */
 typedef struct Ice_String {
     Ice_Int size;
     const char* data;
@@ -31,18 +31,19 @@ typedef struct Ice_String {
 
 Ice_String Ice_String_from(const char* terminated);
 int Ice_String_equals(Ice_String a, const char* terminated);
-/* Compares a string, passed by pointer because that makes shorter code. */
+/* Returns whether a string equals a C string. The string is passed by pointer, because this makes
+ * shorter code. */
 int Ice_String_is(const Ice_String* a, const char* terminated);
 int Ice_String_same(const Ice_String* a, const Ice_String* b);
 
-/* Copies as many whole UTF-8 characters of the string as fit into `size` bytes, end mark included.
- * Returns 1 if all of it fits. */
+/* Copies as many whole UTF-8 characters of the string as fit into `size` bytes, including a
+ * terminating zero. Returns 1 if the whole string fits. */
 int Ice_String_copy(Ice_String s, char* to, Ice_Int size);
 /* The two arguments for "%.*s": printf("%.*s\n", ICE_PRINTF(name)). `s` is evaluated three times.
  */
 #define ICE_PRINTF(s) (int)(s).size, (s).data ? (s).data : ""
 
-/* Converts Ice_Long from and to `long long`, if the compiler has this type. */
+/* Convert Ice_Long from and to `long long`, if the compiler has this type. */
 #if (defined(__STDC_VERSION__) && __STDC_VERSION__ >= 199901L) || \
     (defined(__cplusplus) && __cplusplus >= 201103L)
 static inline Ice_Long Ice_Long_from(long long v) {
@@ -60,10 +61,10 @@ struct Ice_Communicator;
 struct Ice_OutputValues; /* ice_value.h */
 struct Ice_InputValues;
 
-/* Reasons of a stream's failure: malformed bytes, or a limit. The first reason is kept. */
+/* Reason why a stream has failed: malformed bytes, or a limit. A stream keeps its first reason. */
 typedef enum Ice_Failed {
     ICE_FAILED_MALFORMED = 1,
-    /* the output buffer is full; its size is ICE_RESULT_MAX unless stated otherwise */
+    /* the output buffer is full; unless stated otherwise, its size is ICE_RESULT_MAX */
     ICE_FAILED_RESULT,
     ICE_FAILED_REQUEST,
     ICE_FAILED_REPLY,
@@ -72,10 +73,11 @@ typedef enum Ice_Failed {
     ICE_FAILED_VALUE_TYPES,
     ICE_FAILED_IDENTITY,
     ICE_FAILED_ENDPOINT,
-    ICE_FAILED_CALLS, /* the limit of calls: reason of an ICE_LIMIT, not of a stream */
+    ICE_FAILED_CALLS, /* the limit of calls; a reason of ICE_LIMIT, never of a stream */
     ICE_FAILED_CONNECTIONS,
     ICE_FAILED_NESTING,
-    ICE_FAILED_BOUND /* limit of a type in Slice, ["c:max:N"], named by the stream's `bound` */
+    /* the limit of a type in Slice, set by ["c:max:N"]; the stream's `bound` names it */
+    ICE_FAILED_BOUND
 } Ice_Failed;
 
 /* Returns the reason as text: the limit, its macro and its value. `bound` is the field of the
@@ -87,8 +89,8 @@ typedef struct Ice_OutputStream {
     Ice_Int size, capacity;
     Ice_Byte minor;  /* minor version of the encoding: 1.minor */
     Ice_Byte failed; /* reason of the failure (Ice_Failed); 0 without a failure */
-    /* 1 if user exceptions are in the sliced format, with which a peer can skip slices it does not
-     * know */
+    /* 1 if user exceptions are written in the sliced format, which lets a peer skip slices of
+     * unknown types */
     Ice_Byte sliced;
     Ice_Byte sliceFlags;             /* flags of the current slice */
     const char* bound;               /* text of the reason ICE_FAILED_BOUND */
@@ -106,7 +108,7 @@ typedef struct Ice_InputStream {
     U32* arena;          /* memory for decoded sequences */
     /* used part of the arena, and its size, in words of 4 bytes */
     Ice_Int arenaUsed, arenaSize;
-    /* communicator to which proxies belong that are read from the stream */
+    /* communicator of the proxies that are read from the stream */
     struct Ice_Communicator* communicator;
     struct Ice_InputValues* values; /* table of class instances; 0 before the first one */
 } Ice_InputStream, *Ice_InputStreamPtr;
@@ -154,8 +156,8 @@ Ice_Int Ice_InputStream_readSize(Ice_InputStreamPtr is);
 Ice_String Ice_InputStream_readString(Ice_InputStreamPtr is);
 void Ice_InputStream_takeString(Ice_InputStreamPtr is, Ice_String* s);
 Ice_Int Ice_InputStream_readEnum(Ice_InputStreamPtr is, Ice_Int largest);
-/* Reads the size of a sequence with elements of at least `least` bytes each. A size beyond the
- * message fails the stream. */
+/* Reads the size of a sequence whose elements have at least `least` bytes each. Fails the stream if
+ * such a sequence would exceed the message. */
 Ice_Int Ice_InputStream_readSequence(Ice_InputStreamPtr is, Ice_Int least);
 /* Returns room for `count` elements of `bytes` bytes each, aligned to 8. Without room, returns 0
  * and fails the stream. */
@@ -167,33 +169,33 @@ enum {
     ICE_OPTIONAL_F1,
     ICE_OPTIONAL_F2,
     ICE_OPTIONAL_F4,
-    ICE_OPTIONAL_F8,    /* 1, 2, 4, 8 bytes */
+    ICE_OPTIONAL_F8,    /* value of a fixed size: 1, 2, 4 or 8 bytes */
     ICE_OPTIONAL_SIZE,  /* an enum */
-    ICE_OPTIONAL_VSIZE, /* a size, followed by that number of bytes */
-    ICE_OPTIONAL_FSIZE, /* a size of 4 bytes, followed by that number of bytes */
+    ICE_OPTIONAL_VSIZE, /* a size, followed by as many bytes */
+    ICE_OPTIONAL_FSIZE, /* a size of 4 bytes, followed by as many bytes */
     ICE_OPTIONAL_CLASS
 };
 
-/* Begins an optional value that is present. Optional values follow the required ones, in the order
- * of their tags. Returns 0 if the encoding has no optional values: the caller then writes
+/* Begins an optional value that is present. Optional values follow the required values, in the
+ * order of their tags. Returns 0 if the encoding has no optional values; the caller must then write
  * nothing. */
 Ice_Bool Ice_OutputStream_writeOptional(Ice_OutputStreamPtr os, Ice_Int tag, Ice_Int format);
-/* Returns 1 if the optional value with this tag is present; its bytes follow. Unknown tags
- * before it are skipped. */
+/* Returns 1 if the optional value with this tag is present; its bytes follow. Skips unknown tags
+ * before it. */
 Ice_Bool Ice_InputStream_readOptional(Ice_InputStreamPtr is, Ice_Int tag, Ice_Int format);
 /* Skips the remaining optional values of the slice or encapsulation. */
 void Ice_InputStream_skipOptionals(Ice_InputStreamPtr is);
 
-/* Ends the reading of parameters, results or an exception: skips remaining optional values, and
- * fails the stream if other bytes follow, as stock Ice does. Returns is->failed. The minimal run
- * time ignores such bytes. */
+/* Ends the reading of parameters, results or an exception: skips optional values that were not
+ * read, and fails the stream if other bytes follow, as stock Ice does. Returns is->failed. The
+ * minimal run time ignores such bytes. */
 #ifdef ICEC_MINIMAL
 #define Ice_InputStream_end(is) ((is)->failed)
 #define Ice_InputStream_endEmpty(is) ((void)(is), 0)
 #else
 Ice_Bool Ice_InputStream_end(Ice_InputStreamPtr is);
-/* Ends the reading of parameters, results or an exception without members. In encoding 1.1
- * optional values that a newer peer has added are skipped; encoding 1.0 has no optional values. */
+/* Ends the reading of parameters, results or an exception without members. In encoding 1.1, skips
+ * optional values, which a newer peer may have added; encoding 1.0 has no optional values. */
 Ice_Bool Ice_InputStream_endEmpty(Ice_InputStreamPtr is);
 #endif
 
@@ -207,7 +209,7 @@ void Ice_OutputStream_endSlice(Ice_OutputStreamPtr os, Ice_Int begin, Ice_Bool l
 void Ice_InputStream_startException(Ice_InputStreamPtr is);
 /* Begins to read a slice. Returns its type id, or an empty string after the last slice. */
 Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is);
-/* Skips to the next slice. Returns 0 if no slice follows, or if the format does not contain the
- * position of the next one. */
+/* Skips to the next slice. Returns 0 if no slice follows, or if the format does not store the sizes
+ * of slices. */
 Ice_Bool Ice_InputStream_skipSlice(Ice_InputStreamPtr is);
 void Ice_InputStream_endSlice(Ice_InputStreamPtr is);

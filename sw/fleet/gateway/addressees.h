@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// addressees: finds the client to which a request of the vehicle belongs. It is the only client
-// that has passed the vehicle a proxy of the called object. If no client has passed such a proxy,
-// it is the only client with a two-way call in progress. Addressees has no lock: the forwarder
-// calls it while it holds its own lock.
+// addressees: finds the client that receives a request of the vehicle. This is the only client that
+// has passed the vehicle a proxy of the called object. If no client has passed such a proxy, it is
+// the only client with a two-way call in progress. Addressees has no lock: the forwarder holds a
+// lock whenever it calls Addressees.
 
 #pragma once
 
@@ -26,7 +26,7 @@ public:
             owner = owner->second.empty() ? owners_.erase(owner) : std::next(owner);
         }
     }
-    // Returns the client that a call to an object is for; null if no client or several clients
+    // Returns the client that receives a call to `object`; null if no client or several clients
     // qualify. `sent`: requests of clients that have no reply yet.
     Connection of(const Ice::Identity& object,
                   const std::set<std::shared_ptr<Request>>& sent) const {
@@ -42,7 +42,7 @@ public:
     }
 
 private:
-    // clients that have passed a proxy of an object, by object
+    // for each object, the clients that have passed a proxy of this object
     std::map<Ice::Identity, std::set<Connection>> owners_;
 };
 

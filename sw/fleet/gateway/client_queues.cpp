@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// client_queues: stores the waiting requests by client and by subject.
+// client_queues: stores the waiting requests of each client, and groups the clients by subject.
 
 #include "client_queues.h"
 
@@ -10,7 +10,7 @@ namespace gateway {
 
 namespace {
 
-// fixed cost of a request in its turn, counted as bytes in addition to its size
+// fixed cost of a request for the fair shares, in bytes; added to the size of the request
 constexpr size_t requestCost = 100;
 
 size_t costOf(const Client& client) {
@@ -32,8 +32,8 @@ std::shared_ptr<Client> ClientQueues::clientOf(const Request& request) {
     return client;
 }
 
-// Ends the turns of a client that has nothing more to send, and the turns of its subject if all its
-// clients have nothing more to send.
+// Takes a client that has nothing more to send out of the turns. Does the same with the client's
+// subject if none of its clients has anything to send.
 void ClientQueues::restIfEmpty(const Client& client) {
     if (!client.requests.empty())
         return;
@@ -115,7 +115,8 @@ std::shared_ptr<Request> ClientQueues::pop(const std::shared_ptr<Client>& client
     return request;
 }
 
-// Returns the client whose turn is next, among the clients of a subject that may send now.
+// Returns the client whose turn is next among those clients of a subject that may send now; null if
+// no client may send.
 std::shared_ptr<Client> ClientQueues::firstOf(const Subject& subject, const MayGo& mayGo) const {
     std::shared_ptr<Client> first;
     uint64_t least = 0;
@@ -154,7 +155,8 @@ std::shared_ptr<Request> ClientQueues::popNext(const MayGo& mayGo) {
 
 Requests ClientQueues::popOlder(std::chrono::steady_clock::time_point due) {
     Requests out;
-    const auto clients = clients_; // a copy, because pop removes disconnected clients
+    // iterates over a copy, because pop removes disconnected clients from clients_
+    const auto clients = clients_;
     for (const auto& [connection, client] : clients)
         while (!client->requests.empty() && client->requests.front()->since < due)
             out.push_back(pop(client));

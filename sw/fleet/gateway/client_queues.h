@@ -2,10 +2,11 @@
 //
 // client_queues: holds the waiting requests of all clients, and picks the next one to send.
 //
-// The link's bytes are shared evenly (turns.h) among the subjects, and the share of each subject
-// evenly among its connections. A subject is the subject of a certificate, or the host of a client
-// without a certificate. The requests of one client keep their order. ClientQueues has no lock: the
-// forwarder calls it while it holds its own lock.
+// A client is a connection to the gateway. Its subject is the subject of its certificate, or its
+// host if it has no certificate. The bytes that the link can carry are shared evenly among the
+// subjects (turns.h), and the share of a subject evenly among its clients. The requests of one
+// client keep their order. ClientQueues has no lock: the forwarder holds a lock whenever it calls
+// ClientQueues.
 
 #pragma once
 
@@ -22,8 +23,8 @@ struct Client {
     Connection connection;
     std::string subject;
     std::deque<std::shared_ptr<Request>> requests; // waiting requests, oldest first
-    size_t underWay = 0;  // number of requests that may not have reached the vehicle yet
-    int lane = 0;         // lane on which these requests were sent
+    size_t underWay = 0;  // number of sent requests that may not have reached the vehicle yet
+    int lane = 0;         // lane on which the client's latest request was sent
     size_t objects = 0;   // number of objects that this client has passed to the vehicle
     bool hasLeft = false; // true if the client has disconnected; its one-way requests remain
 };
@@ -41,11 +42,12 @@ public:
     explicit ClientQueues(std::function<void(const Connection&)> onClosed)
         : onClosed_(std::move(onClosed)) {}
 
-    // Returns whether a request may wait here. The first request of a client always may, unless the
-    // subject has too many clients. Disconnected clients whose one-way requests still wait are
-    // counted, so that a subject gains nothing by reconnecting.
+    // Returns whether there is room for a request in the queues. The first request of a client
+    // always has room, unless the subject has too many clients. A disconnected client still counts
+    // while its one-way requests wait, so a subject gains nothing by reconnecting.
     bool hasRoom(const Request& request);
-    // Counts a thread that waits for room. Returns false if its subject has too many such threads.
+    // Counts a thread that waits for room. Returns false if too many threads of the subject already
+    // wait.
     bool block(const std::string& subject);
     void unblock(const std::string& subject) { --subjects_[subject].blocked; }
     void add(std::shared_ptr<Request> request);
@@ -54,7 +56,7 @@ public:
     std::shared_ptr<Client> leave(const Connection& connection);
 
     using MayGo = std::function<bool(const Client&)>;
-    // Returns whether at least one client with waiting requests satisfies the condition.
+    // Returns whether the condition is true for at least one client that has waiting requests.
     bool isAnyWaiting(const MayGo& condition) const;
     // Chooses the client whose turn it is among those that may send now; removes and returns its
     // oldest request. Returns null if no client may send.
@@ -66,7 +68,8 @@ private:
     struct Subject {
         Turns<const Client*> turns;
         std::set<std::shared_ptr<Client>> clients;
-        size_t bytes = 0, blocked = 0; // bytes queued by a subject; number of its blocked threads
+        // bytes of the subject's queued requests; number of its blocked threads
+        size_t bytes = 0, blocked = 0;
     };
     std::shared_ptr<Client> clientOf(const Request& request);
     std::shared_ptr<Client> firstOf(const Subject& subject, const MayGo& mayGo) const;

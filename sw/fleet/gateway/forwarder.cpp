@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// forwarder: the two lanes to the vehicle, and the calls of the vehicle.
+// forwarder: sends the clients' calls on the two lanes to the vehicle, and passes on the vehicle's
+// calls.
 
 #include "forwarder.h"
 #include "passed_proxies.h"
@@ -17,10 +18,12 @@ const char* const maintenanceType = "::IceSoC::Maintenance";
 
 // size in bytes above which a call or reply uses the lane for long messages
 constexpr size_t longBytes = 512;
-constexpr size_t mostUnderWay = 8; // requests of a lane
-// Bytes in flight, short lane and long lane; a single longer request is allowed.
+constexpr size_t mostUnderWay = 8; // limit of the requests in flight on one lane
+// limit of the bytes in flight on the short and the long lane; a lane without other requests
+// accepts a larger one
 constexpr size_t mostBytesUnderWay[] = {1536, 8192};
-// limit of the one-way requests after which a ping must confirm that they have arrived
+// number of one-way requests after which a ping is sent, whose reply confirms that the requests
+// have arrived
 constexpr size_t mostUnconfirmed = 4;
 
 std::exception_ptr refusal(const Ice::Identity& maintained) {
@@ -32,7 +35,8 @@ std::exception_ptr refusal(const Ice::Identity& maintained) {
 
 Forwarder::Forwarder(const std::shared_ptr<Ice::ObjectPrx>& vehicle, std::chrono::seconds wait)
     : vehicle_(vehicle->ice_connectionCached(false)), wait_(wait) {
-    // With a cached connection, Ice could return one that has been lost.
+    // The proxy does not cache its connection: a cached connection could be one that is already
+    // lost.
 }
 
 void Forwarder::setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter) {
@@ -55,8 +59,8 @@ void Forwarder::take(std::shared_ptr<Request> request) {
         if (!queues_.hasRoom(*request) && !stopped_) {
             if (!queues_.block(request->subject)) {
                 lock.unlock();
-                // a one-way request has no reply, so its loss is only noticed when the connection
-                // closes
+                // a one-way request has no reply, so the client only notices the loss if its
+                // connection is closed
                 if (request->isOneway())
                     request->current.con->close(Ice::ConnectionClose::Forcefully);
                 throw Ice::UnknownException(__FILE__, __LINE__,
@@ -83,7 +87,7 @@ int Forwarder::laneOf(const Request& request) const {
     return isLong && !lanes_[longCalls].isMissing ? longCalls : shortCalls;
 }
 
-// Returns whether a client's first request may be sent now.
+// Returns whether the oldest request of a client may be sent now.
 bool Forwarder::mayGo(const Client& client) const {
     const Request& request = *client.requests.front();
     const int number = laneOf(request);
@@ -94,7 +98,8 @@ bool Forwarder::mayGo(const Client& client) const {
              lane.bytes + request.parameters.size() <= mostBytesUnderWay[number]));
 }
 
-// Returns a lane that has waiting requests and no connection; -1 if none.
+// Returns a lane that must be connected: requests wait for it, and it has no connection. Returns -1
+// if there is no such lane.
 int Forwarder::laneToConnect() const {
     const bool isConnected = lanes_[shortCalls].connection != nullptr;
     int found = -1;
@@ -107,7 +112,8 @@ int Forwarder::laneToConnect() const {
     return found;
 }
 
-// Returns the next request in turn if it may be sent now. The caller holds the mutex.
+// Removes and returns the next request that may be sent now; returns null if there is none. The
+// caller holds the mutex.
 std::shared_ptr<Request> Forwarder::nextRequest() {
     auto request = queues_.popNext([this](const Client& client) { return mayGo(client); });
     if (!request)
@@ -121,7 +127,8 @@ std::shared_ptr<Request> Forwarder::nextRequest() {
     return request;
 }
 
-// Records that a request has arrived, or that it can no longer arrive.
+// Ends the counting of a request as in flight, because the request has arrived or can no longer
+// arrive.
 void Forwarder::release(Request& request) {
     if (!request.isCounted)
         return;
@@ -132,8 +139,8 @@ void Forwarder::release(Request& request) {
         --request.client->underWay;
 }
 
-// Sends the requests that may be sent. One thread at a time does this; it also sends requests that
-// arrive in the meantime.
+// Sends all requests that may be sent. Only one thread at a time is in this function; it also sends
+// the requests that arrive in the meantime.
 void Forwarder::send() {
     std::unique_lock<std::mutex> lock(mutex_);
     if (isSending_)
@@ -171,16 +178,17 @@ void Forwarder::send() {
     isSending_ = false;
 }
 
-// ---- objects for maintenance: the gateway asks the vehicle once for the type of each object ----
+// ---- maintenance objects: the gateway asks the vehicle once for the type of each object ----
 
 void Forwarder::ask(const Connection& connection, const Object& object) {
     const auto failed = [this, object](std::exception_ptr why) {
         try {
             std::rethrow_exception(why);
-        } catch (const Ice::RequestFailedException&) { // the object may exist later
+        } catch (const Ice::RequestFailedException&) {
+            // the object does not exist now, but may exist later
             answered(object, false, false, nullptr);
         } catch (const Ice::MarshalException&) {
-            // the vehicle has answered, but its object does not report a type
+            // the vehicle has replied, but this object cannot report a type
             answered(object, true, false, nullptr);
         } catch (...) {
             answered(object, false, false, why);
@@ -199,8 +207,8 @@ void Forwarder::ask(const Connection& connection, const Object& object) {
     }
 }
 
-// Sends the requests that waited for an object's type, or fails them, if the object is for
-// maintenance. If the type remains unknown, they fail with `why`.
+// Sends the requests that waited for an object's type; if it is a maintenance object, fails them
+// instead. If the type remains unknown because of an error, fails the requests with `why`.
 void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
                          std::exception_ptr why) {
     Requests waiting;
@@ -210,7 +218,7 @@ void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
         if (isKnown && lanes_[shortCalls].connection)
             types_.record(object, isMaintenance);
         for (const auto& request : waiting) {
-            // this request is sent without asking for the type again
+            // this request is sent now, without another question for the type
             request->mayMaintain = !isMaintenance;
             if (!why && !isMaintenance)
                 ready_.push_back(request);
@@ -224,8 +232,8 @@ void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
 
 // ---- the lanes ----
 
-// Records the client as owner of the objects that a request passes to the vehicle. Every client may
-// call ice_ping and similar operations, which pass no objects.
+// Records the client as an owner of the objects whose proxies a request passes to the vehicle.
+// Operations such as ice_ping pass no proxies, so they are skipped.
 void Forwarder::recordProxies(const Request& request) {
     if (!request.client || request.current.operation.compare(0, 4, "ice_") == 0)
         return;
@@ -234,14 +242,15 @@ void Forwarder::recordProxies(const Request& request) {
     addressees_.record(*request.client, passed);
 }
 
-// Sends a request on its lane. It is called only by the thread that is in send().
+// Sends a request on its lane. Only the thread that executes send() calls this function.
 void Forwarder::sendOne(const std::shared_ptr<Request>& request) {
     recordProxies(*request);
     const auto failed = [this, request](std::exception_ptr why) {
         finish(request, false, [&] { fail({request}, why); });
     };
     Connection connection;
-    bool isUnsure = false; // true if one-way requests were sent of which the arrival is unknown
+    // true if it is unknown whether the one-way requests sent so far have arrived
+    bool isUnsure = false;
     {
         std::lock_guard<std::mutex> lock(mutex_);
         Lane& lane = lanes_[request->lane];
@@ -303,10 +312,11 @@ void Forwarder::confirm(int number, const Ice::Current& of) {
     sendOne(ping);
 }
 
-// Ends a request. If it has arrived, requests sent before it have also arrived.
+// Ends a request. If the request has arrived, all requests sent before it on the same lane have
+// also arrived.
 void Forwarder::finish(const std::shared_ptr<Request>& request, bool hasArrived,
                        const std::function<void()>& answer) {
-    bool isAwaited; // false after giveUp: nobody waits for the connection any more
+    bool isAwaited; // false if giveUp has already failed this request
     {
         std::lock_guard<std::mutex> lock(mutex_);
         auto& underWay = lanes_[request->lane].underWay;
@@ -337,7 +347,7 @@ void Forwarder::opened(int lane, const Connection& connection) {
     }
     connection->setCloseCallback([this, lane](const Connection& over) {
         closed(lane, over);
-    }); // this function may be called immediately
+    }); // Ice may call this function before setCloseCallback returns
     send();
 }
 
@@ -368,7 +378,9 @@ void Forwarder::connect(int lane) {
     const auto failed = [this, lane](std::exception_ptr why) {
         if (lane == shortCalls)
             return failAll(std::move(why));
-        { // the vehicle or this ground station has no free channel for a lane
+        // the lane for long calls gets no connection: the vehicle or this ground station has no
+        // free channel
+        {
             std::lock_guard<std::mutex> lock(mutex_);
             lanes_[lane].isConnecting = false;
             lanes_[lane].isMissing = true;
@@ -444,7 +456,8 @@ void Forwarder::failLateRequests() {
     failWaiting(std::chrono::steady_clock::now() - wait_,
                 unknown("waited " + std::to_string(wait_.count()) +
                         " s for the radio (limit: --wait); the call was not sent to the vehicle"));
-    // Calls that the vehicle answers late fill a lane. A ping shows that they have arrived.
+    // Calls that the vehicle answers late use up the limits of a lane. The reply to a ping confirms
+    // that these calls have arrived.
     for (int number = 0; number < lanes; ++number) {
         Ice::Current last;
         {
@@ -469,7 +482,8 @@ void Forwarder::stop() {
         stopped_ = true;
         room_.notify_all();
     }
-    // When Ice stops, it waits for the answers of all requests.
+    // The replies are sent here because Ice, when it is destroyed, waits for the replies to all
+    // requests.
     failAll(std::make_exception_ptr(Ice::CommunicatorDestroyedException(__FILE__, __LINE__)));
 }
 
@@ -488,7 +502,8 @@ void Forwarder::takeCallback(std::shared_ptr<Request> request) {
     };
     if (!addressee)
         return isMissing(current);
-    // A one-way request is sent two-way, because only a reply shows whether the object exists.
+    // The vehicle's one-way request is sent to the client as a two-way request, because only a
+    // reply shows whether the object exists.
     Request asked = *request;
     asked.current.requestId = 1;
     try {

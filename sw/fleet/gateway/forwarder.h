@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
 // forwarder: passes the requests of many clients to the vehicle, and the vehicle's requests back to
-// them.
+// the clients.
 //
-// The clients' requests wait in queues (client_queues.h). There are two connections to the vehicle,
-// because on one connection a short message waits for the long ones before it: a lane for short
-// calls, and a lane for calls that are long or have long replies. Few requests are in flight on
-// each. A one-way request counts until a reply to a later request shows that it has arrived. Each
-// request is sent at most once, and the requests of one client are sent in order.
+// The clients' requests wait in queues (client_queues.h). On one connection, a short message would
+// wait for the long messages before it. There are therefore two connections to the vehicle, called
+// lanes: one for short calls, and one for calls that are long or have long replies. Few requests
+// are in flight on each lane. A one-way request counts as in flight until a reply to a later
+// request shows that it has arrived. Each request is sent at most once, and the requests of one
+// client are sent in order.
 
 #pragma once
 
@@ -25,29 +26,31 @@ namespace gateway {
 // Passes requests in both directions. Its functions may be called by any thread.
 class Forwarder {
 public:
-    // Creates a forwarder. `vehicle` is a proxy with the vehicle's endpoint; `wait` is the longest
-    // time that a request waits for its turn before it fails.
+    // Creates a forwarder. `vehicle` is a proxy with the vehicle's endpoint. `wait` is the longest
+    // time for which a request may wait to be sent; after this time the request fails.
     Forwarder(const std::shared_ptr<Ice::ObjectPrx>& vehicle, std::chrono::seconds wait);
 
     // Queues a client's request. Blocks while the queue holds 256 KiB of requests of the client's
-    // subject, unless it is the first request of one of the subject's 200 clients. At most 16
-    // requests of a subject block at a time; more requests fail, and a one-way request that fails
-    // closes its connection.
+    // subject. The first request of each of the subject's 200 clients does not block. At most 16
+    // requests of a subject block at a time; any further request fails, and if it is one-way, its
+    // connection is closed.
     void take(std::shared_ptr<Request> request);
     // Passes a request of the vehicle to the only client that gave the vehicle a proxy with this
-    // identity; without such a client, to the only client with a two-way call in progress. Replies
-    // ObjectNotExistException if no client or several clients qualify.
+    // identity. Without such a client, passes the request to the only client with a two-way call in
+    // progress. If no client or several clients qualify, replies ObjectNotExistException.
     void takeCallback(std::shared_ptr<Request> request);
-    // Sets the adapter that dispatches the vehicle's requests on the clients' connections.
+    // Sets the adapter that dispatches requests which the vehicle sends on the clients'
+    // connections.
     void setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter);
 
-    // Connects to the vehicle and keeps the connection; to be called periodically. After the first
-    // call, requests that arrive while there is no connection fail with ObjectNotExistException;
-    // they no longer wait.
+    // Connects to the vehicle and keeps the connection; must be called periodically. Before the
+    // first call, requests wait for a connection. After it, a request that arrives while there is
+    // no connection fails with ObjectNotExistException.
     void hold();
     unsigned session() const; // number of the current connection; 0 without one
     void refuseWaiting();     // fails waiting requests with ObjectNotExistException
-    // Fails requests in flight that are older than `age`: it is unknown whether they were executed.
+    // Fails requests in flight that are older than `age`. It is then unknown whether the vehicle
+    // has executed them.
     void giveUp(std::chrono::milliseconds age);
     void failLateRequests(); // fails requests that have waited too long; to be called periodically
     void stop();             // fails all waiting requests
@@ -93,11 +96,12 @@ private:
     Addressees addressees_;
     ObjectTypes types_;
     std::array<Lane, lanes> lanes_;
-    std::set<std::shared_ptr<Request>> sent_;    // requests without a reply so far
-    std::deque<std::shared_ptr<Request>> ready_; // requests chosen, which may be sent
+    std::set<std::shared_ptr<Request>> sent_; // requests that have no reply yet
+    // requests that may be sent now, in the order of sending
+    std::deque<std::shared_ptr<Request>> ready_;
     std::set<std::pair<Ice::Identity, std::string>> longReplies_; // operations with long replies
     bool isSending_ = false, stopped_ = false, holds_ = false;
-    unsigned connections_ = 0; // number of connections that were made to the vehicle so far
+    unsigned connections_ = 0; // number of connections made to the vehicle so far
 };
 
 } // namespace gateway

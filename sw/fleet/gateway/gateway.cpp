@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// gateway: a stock Ice server that passes requests to the vehicle. Through the gateway, several Ice
-// programs at a time, in any language and of any version, call the vehicle's objects. The vehicle's
-// calls reach a server on the ground.
+// gateway: an Ice server that passes requests to the vehicle. Several Ice programs, in any language
+// and of any version, can call the vehicle's objects through the gateway at the same time. The
+// vehicle's calls reach a server on the ground.
 //
-// Endpoints, TLS, WebSocket, compression and connections are handled by Ice; forwarder.h shares the
-// radio.
+// Endpoints, TLS, WebSocket, compression and connections are handled by unmodified Ice; forwarder.h
+// shares the radio.
 
 #include "gateway_options.h"
 #include "pages.h"
@@ -24,7 +24,8 @@
 
 namespace {
 
-// Returns in words why Ice failed. Ice's own text begins with a position in its source code.
+// Returns the reason why Ice failed, in words. Ice's message is not used, because it begins with a
+// position in Ice's source code.
 std::string reasonOf(const Ice::Exception& e) {
     if (const auto* file = dynamic_cast<const Ice::FileException*>(&e))
         return file->path + ": " + std::generic_category().message(file->error);
@@ -44,7 +45,7 @@ std::string reasonOf(const Ice::Exception& e) {
         return proxy->str;
     if (const auto* endpoint = dynamic_cast<const Ice::NoEndpointException*>(&e))
         return "expected a proxy with endpoints, got '" + endpoint->proxy + "'";
-    // The other exceptions have no text: returns the words of their name.
+    // Other exceptions have no text. Their reason is the name of the exception, split into words.
     const std::string id = e.ice_id();
     std::string words;
     for (const char c : id.substr(id.rfind(':') + 1))
@@ -59,7 +60,7 @@ using namespace gateway;
 
 using Take = std::function<void(std::shared_ptr<Request>)>;
 
-// Servant dispatches the calls for all objects of an adapter.
+// Servant handles the calls to all objects of an adapter.
 class Servant : public Ice::BlobjectArrayAsync {
 public:
     explicit Servant(Take take) : take_(std::move(take)) {}
@@ -72,8 +73,8 @@ private:
     const Take take_;
 };
 
-// Returns the subject to which requests of a connection are assigned: the subject of the client's
-// certificate, or the host without one.
+// Returns the subject that is charged for the requests of a connection: the subject of the client's
+// certificate, or without a certificate the client's host.
 std::string turnOf(const std::shared_ptr<Ice::Connection>& connection, const std::string& subject) {
     if (!subject.empty())
         return subject;
@@ -83,9 +84,9 @@ std::string turnOf(const std::shared_ptr<Ice::Connection>& connection, const std
     return "";
 }
 
-// Returns a function that passes the clients' calls to the vehicle if --rights permits them, and if
-// they do not come from a foreign web page. Without `allowsMaintenance` objects that change keys or
-// programs are refused.
+// Returns a function that passes a client's call to the vehicle if --rights permits the call and if
+// it does not come from a foreign web page. Without `allowsMaintenance`, this function refuses
+// calls to objects that change keys or programs.
 Take toVehicle(Forwarder& forwarder, const Rights& rights, const Pages& pages,
                bool allowsMaintenance) {
     return [&forwarder, &rights, &pages, allowsMaintenance](std::shared_ptr<Request> request) {
@@ -108,8 +109,9 @@ Take toVehicle(Forwarder& forwarder, const Rights& rights, const Pages& pages,
     };
 }
 
-// Returns a function that passes the vehicle's calls to the station at `where`, or to a topic.
-// `vehicle` is a proxy with which programs on the ground reach the vehicle.
+// Returns a function that passes the vehicle's calls to the object `station`, whose endpoint is
+// `where`, or to the topic of `events`. `vehicle` is a proxy by which programs on the ground can
+// call the vehicle.
 Take toStation(const std::shared_ptr<Ice::ObjectPrx>& station, const std::string& where,
                const Events* events, const std::shared_ptr<Ice::ObjectPrx>& vehicle) {
     return [=](const std::shared_ptr<Request>& request) {
@@ -152,8 +154,8 @@ void refuseResumption(const std::shared_ptr<Ice::Communicator>& ic) {
     }
 }
 
-// Returns the port of the first endpoint of an adapter. Throws if an endpoint accepts unencrypted
-// calls from other machines.
+// Returns the port of the first endpoint of an adapter. Throws an exception if one of the endpoints
+// accepts unencrypted calls from other machines.
 int checkedPort(const std::shared_ptr<Ice::ObjectAdapter>& adapter) {
     int port = 0;
     for (const auto& endpoint : adapter->getEndpoints()) {
@@ -175,8 +177,8 @@ int checkedPort(const std::shared_ptr<Ice::ObjectAdapter>& adapter) {
     return port;
 }
 
-// Returns the publisher of the topic "vehicles" of an IceStorm service; null without the option
-// --topics.
+// Returns the publisher of the topic "vehicles" of an IceStorm service. Returns null without the
+// option --topics.
 std::shared_ptr<Ice::ObjectPrx> publisherOf(const std::shared_ptr<Ice::Communicator>& ic,
                                             const std::string& topics) {
     if (topics.empty())
@@ -203,7 +205,7 @@ std::shared_ptr<Ice::ObjectAdapter> adapterOf(const std::shared_ptr<Ice::Communi
             return endpoints.empty() ? ic->createObjectAdapter(name)
                                      : ic->createObjectAdapterWithEndpoints(name, endpoints);
         } catch (const Ice::ConnectFailedException&) {
-            throw; // an error of the modem's serial port
+            throw; // the modem's serial port has failed
         } catch (const Ice::SocketException& e) {
             const std::string place = endpoints.empty()
                                           ? ic->getProperties()->getProperty(name + ".Endpoints")
@@ -218,7 +220,8 @@ std::shared_ptr<Ice::ObjectAdapter> adapterOf(const std::shared_ptr<Ice::Communi
 // Vehicle is one vehicle that the modem reaches, with the adapters for its clients.
 class Vehicle {
 public:
-    // `place` is the index of the vehicle in the fleet; it is added to the given ports.
+    // Creates a vehicle. `place` is the vehicle's number in the fleet, from 0; it is added to the
+    // ports given on the command line.
     Vehicle(const std::shared_ptr<Ice::Communicator>& ic, const Options& o, const Rights& rights,
             Pages& pages, const std::string& name, int address, int place,
             const std::shared_ptr<Ice::ObjectPrx>& publisher)
@@ -282,7 +285,7 @@ private:
     std::vector<std::shared_ptr<Ice::ObjectAdapter>> adapters_;
 };
 
-// Returns the signals that stop the gateway.
+// Returns the set of signals that stop the gateway.
 sigset_t endings() {
     sigset_t signals;
     sigemptyset(&signals);
@@ -304,8 +307,8 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
     for (const auto& [name, address] : fleetOf(o))
         vehicles.emplace_back(ic, o, rights, pages, name, address, int(vehicles.size()), publisher);
     pages.start(ic->getProperties()->getProperty("IceSSL.CertFile"));
-    // Returns the error of a call of the registry; empty if the registry answers, or if no registry
-    // is configured.
+    // Calls a function of the registration of each vehicle. Returns the text of the first error;
+    // empty if there is no error or no registry is configured.
     const auto ask = [&](void (Registration::*question)()) -> std::string {
         try {
             for (Vehicle& vehicle : vehicles)
@@ -330,7 +333,7 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
     ask(&Registration::leave);
     for (Vehicle& vehicle : vehicles)
         vehicle.forwarder.stop();
-    ic->destroy(); // the objects that Ice's callbacks use still exist here
+    ic->destroy(); // Ice is destroyed here, while the objects that its callbacks use still exist
 }
 
 } // namespace
@@ -351,7 +354,8 @@ int main(int argc, char** argv) {
     try {
         Ice::StringSeq words(argv, argv + argc);
         Ice::InitializationData data;
-        data.properties = Ice::createProperties(words); // the first word is the name in the log
+        // the program's name, which is the first word, appears in the log
+        data.properties = Ice::createProperties(words);
         words.erase(words.begin());
         for (const char* prefix : {"IceSSL", "XBeeAT"})
             words = data.properties->parseCommandLineOptions(prefix, words);
@@ -363,7 +367,7 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& e) {
         return app.exit(e);
     } catch (const Ice::ConnectFailedException& e) {
-        // an error of the modem's serial port; the plugin has logged the details
+        // the modem's serial port has failed; the plugin has already logged the details
         std::cerr << "gateway: error: cannot use " << o.device << ": " << reasonOf(e) << "\n";
         return 1;
     } catch (const Ice::Exception& e) {

@@ -19,7 +19,7 @@ namespace gateway {
 
 namespace {
 
-// Returns Ice endpoints for an argument, which is HOST:PORT or already consists of endpoints.
+// Returns Ice endpoints for an argument. The argument is HOST:PORT, or is an endpoint already.
 std::string given(const std::string& text) {
     if (text.find(' ') != std::string::npos)
         return text;
@@ -40,7 +40,8 @@ std::string given(const std::string& text) {
     return "tcp -h \"" + host + "\" -p " + port;
 }
 
-// Reads the modem's key from a file. An argument would show it to every user of the machine.
+// Reads the modem's key from a file. On the command line, every user of the machine could see the
+// key.
 std::string readModemKey(const std::string& path) {
     std::string key = XBeeAT::readSecret(path);
     key.erase(key.find_last_not_of(" \n") + 1);
@@ -138,11 +139,14 @@ void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o) 
     };
     preset("Ice.ThreadPool.Server.Size", "4");
     preset("Ice.ThreadPool.Server.SizeMax",
-           "256"); // a client that waits for room holds a thread
+           // Many threads, because each client that waits for room in the queue blocks one of them.
+           "256");
     preset("Ice.ThreadPool.Server.Serialize", "1");
     preset("Ice.ThreadPool.Client.Size", "4");
-    preset("Ice.ACM.Client.Close", "0"); // never close: the vehicle may call back at any time
-    // always send heartbeats: Ice 3.8 closes the connection of a silent peer after 60 s
+    // 0: never closes idle connections, because the vehicle may call back at any time
+    preset("Ice.ACM.Client.Close", "0");
+    // 3: always sends heartbeats, because Ice 3.8 closes a connection on which it receives nothing
+    // for 60 s
     preset("Ice.ACM.Server.Heartbeat", "3");
     preset("Ice.RetryIntervals", "-1");
     preset("Ice.Override.CloseTimeout", "5000");
@@ -153,7 +157,7 @@ void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o) 
     p->setProperty("XBeeAT.Setup", o.setUp ? "1" : "0");
     p->setProperty("XBeeAT.Api", o.isApi ? "1" : "0");
     p->setProperty("XBeeAT.KeyFile", o.keyFile);
-    // connecting includes the set-up of the modem
+    // connecting takes long, because it includes the set-up of the modem
     p->setProperty("Ice.Override.ConnectTimeout", "30000");
     if (!o.modemKeyFile.empty())
         p->setProperty("XBeeAT.ModemKey", readModemKey(o.modemKeyFile));
@@ -182,13 +186,13 @@ std::map<std::string, int> fleetOf(const Options& o) {
         const size_t equals = text.find('=');
         const std::string name = text.substr(0, equals);
         const std::string number = equals < text.size() ? text.substr(equals + 1) : "";
-        char* end = nullptr; // strtol returns the largest long for a number that is too large
+        char* end = nullptr; // strtol returns the largest long if the number is too large
         const long address = std::strtol(number.c_str(), &end, 0);
         if (name.empty() || number.empty() || !std::isdigit(number[0]) || address > 0xFFFF || *end)
             throw std::runtime_error("--vehicle: expected NAME=ADDRESS such as uav7=0x0007, got '" +
                                      text + "'");
-        // calls to all vehicles use a one-way proxy of the plugin's endpoint instead
-        // (docs/fleet.md)
+        // no vehicle may have the address for calls to all vehicles; such calls use a one-way proxy
+        // with the plugin's endpoint (docs/fleet.md)
         if (address == XBeeAT::everybody)
             throw std::runtime_error(
                 "--vehicle " + text +

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// gateway_options: the gateway's options, and the properties and endpoints that they set in Ice.
+// gateway_options: the command-line options of the gateway, and the Ice properties and endpoints
+// that result from them.
 
 #pragma once
 
@@ -15,7 +16,8 @@ namespace gateway {
 struct Options {
     std::string device, keyFile, modemKeyFile, rights, station, maintenance, topics, page;
     std::vector<std::string> vehicles; // vehicles, each as NAME=ADDRESS
-    std::vector<std::string> origins;  // origins of other web pages that may call
+    // origins of other web pages that may call through the gateway
+    std::vector<std::string> origins;
     std::string listen = "127.0.0.1:10000";
     int baud = 115200, target = 1, source = 0, rfChannel = 0x0C, pan = 0x3332, guardMs = 1000;
     int trace = 0, wait = 30;
@@ -23,12 +25,14 @@ struct Options {
 };
 
 void addOptions(CLI::App& app, Options& o);
-// Sets Ice's properties, including the radio's, unless the command line sets them.
+// Sets the properties of Ice and of the radio plugin, except those that the command line sets.
 void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o);
 
-// Returns the vehicles' names and addresses. Throws if a name or an address is not valid.
+// Returns the address of each vehicle by the vehicle's name. Throws an exception if a name or an
+// address is not valid.
 std::map<std::string, int> fleetOf(const Options& o);
-// Returns the endpoint, at the serial port, for the vehicle and for its calls.
+// Returns the endpoint that reaches a vehicle by the modem at the serial port; the vehicle's calls
+// use the same endpoint.
 std::string radioEndpoint(const Options& o, int address);
 // Returns Ice endpoints for "HOST:PORT" or "[::1]:PORT", or for text that already is an endpoint.
 // Ports are increased by `place`; port 0 (any) stays 0.

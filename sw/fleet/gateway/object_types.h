@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// object_types: remembers which objects of the vehicle are for maintenance. The gateway asks the
-// vehicle once per session for the type of each object; requests to an object of unknown type wait
-// here. ObjectTypes has no lock: the forwarder calls it while it holds its own lock.
+// object_types: remembers which objects of the vehicle are maintenance objects. The gateway asks
+// the vehicle once per session for the type of each object. Until the type is known, requests to
+// the object wait here. ObjectTypes has no lock: the forwarder holds a lock whenever it calls
+// ObjectTypes.
 
 #pragma once
 
@@ -12,7 +13,7 @@
 
 namespace gateway {
 
-constexpr size_t mostKnown = 1000; // limit of the objects, or operations, that are remembered
+constexpr size_t mostKnown = 1000; // limit of the remembered objects or operations
 
 class ObjectTypes {
 public:
@@ -21,8 +22,8 @@ public:
         return {request.current.id, request.current.facet};
     }
 
-    // What happens to a request. Asks: the caller must ask the vehicle for the type of the object,
-    // and report it to answered().
+    // Decision about a request: send it, keep it waiting, or refuse it. Asks: keep it waiting, and
+    // the caller must ask the vehicle for the object's type and report the answer to answered().
     enum class Verdict { Goes, Waits, Asks, Refused };
     Verdict verdictOn(const std::shared_ptr<Request>& request) {
         const Object object = objectOf(*request);
@@ -48,7 +49,7 @@ public:
             isMaintenance_.clear();
         isMaintenance_[object] = isMaintenance;
     }
-    // Forgets all types, because the next vehicle may have other objects.
+    // Forgets all types. Another vehicle, which may connect next, may have other objects.
     void clear() { isMaintenance_.clear(); }
 
 private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// pages: checks origins and cookies of browsers, and starts the program that serves the page.
+// pages: checks the origins and cookies of browsers, and starts the program that serves the
+// gateway's page.
 
 #include "pages.h"
 
@@ -25,8 +26,9 @@ std::string drawSecret() {
     return secret;
 }
 
-// Returns the connection or endpoint information of this class in a chain of transports; null if
-// there is none.
+// Returns the information about a connection or endpoint that has the class `Wanted`. The
+// information is a chain, with one link for each layer of the transport; returns null if no link
+// has this class.
 template <class Wanted, class Info> std::shared_ptr<Wanted> layer(std::shared_ptr<Info> info) {
     for (; info; info = info->underlying)
         if (auto found = std::dynamic_pointer_cast<Wanted>(info))
@@ -34,7 +36,8 @@ template <class Wanted, class Info> std::shared_ptr<Wanted> layer(std::shared_pt
     return nullptr;
 }
 
-// Returns the value of a header. Ignores the case of names, because browsers differ.
+// Returns the value of an HTTP header. Ignores the case of header names, because browsers use
+// different cases.
 std::string header(const Ice::HeaderDict& headers, const char* name) {
     for (const auto& [key, value] : headers)
         if (strcasecmp(key.c_str(), name) == 0)
@@ -135,7 +138,7 @@ void Pages::start(const std::string& certificate) {
     for (std::string& word : words)
         arguments.push_back(word.data());
     arguments.push_back(nullptr);
-    // in the environment, because other users can read arguments
+    // passed in the environment, because other users can read a program's arguments
     setenv("ICESOC_PAGE_SECRET", secret_.c_str(), 1);
     server_ = fork();
     if (server_ == 0) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// pages: web pages that call through the gateway: the gateway's page, and pages of other origins,
-// which are refused.
+// pages: decides which web pages may call through the gateway, and serves the gateway's page.
 //
-// A browser sends the origin of a page with each WebSocket, and Ice accepts every origin: any page
-// that a user visits could call a gateway of the same machine. The gateway therefore refuses calls
-// of all pages except its own one (--page) and those of --origin. Its own page also has to send a
-// cookie with a secret, which the browser sends for this page only.
+// A browser sends the origin of a page with each WebSocket, and Ice accepts every origin. Without a
+// check, any page that a user visits could call a gateway on the user's machine. The gateway
+// therefore refuses calls of all pages except the page that it serves (--page) and pages from the
+// origins given by --origin. The gateway's page must also send a cookie that contains a secret; the
+// browser sends this cookie for no other page.
 
 #pragma once
 
@@ -23,18 +23,18 @@ public:
     Pages(const Pages&) = delete;
     Pages& operator=(const Pages&) = delete;
 
-    // Returns the reason to refuse the calls of a connection; empty if they are allowed. A program
-    // that is not a browser sends no origin, and is allowed.
+    // Returns the reason to refuse the calls of a connection; empty if the calls are allowed. A
+    // program that is not a browser sends no origin; its calls are allowed.
     std::string refusal(const std::shared_ptr<Ice::Connection>& connection) const;
 
-    // Returns the endpoints at which to listen: the given endpoints, and an additional one for
-    // browsers if the page needs it.
+    // Returns the endpoints at which the gateway must listen: the endpoints from the options, and
+    // an additional one for browsers if the page needs it.
     std::string endpoints(bool hasCertificate) const;
 
     // Adds a vehicle, with the adapter that browsers call.
     void add(const std::string& vehicle, const std::shared_ptr<Ice::ObjectAdapter>& adapter);
 
-    // Starts the server of the page, icesoc-page, if there is --page.
+    // Starts icesoc-page, the server of the page, if the option --page is given.
     void start(const std::string& certificate);
 
     // Throws if the server of the page has ended.

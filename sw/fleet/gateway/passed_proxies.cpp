@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// passed_proxies: tries to read a proxy at each offset, and keeps those that are valid.
+// passed_proxies: tries to read a proxy at each offset of the parameters, and collects the valid
+// ones.
 
 #include "passed_proxies.h"
 
@@ -10,9 +11,11 @@ namespace {
 
 // size of the header of an encapsulation (size and encoding), bytes
 constexpr size_t head = 6;
-constexpr size_t longestName = 254; // longest name; its size then takes one byte
+// length of the longest name, bytes; the length itself then takes one byte
+constexpr size_t longestName = 254;
 
-// Reads bytes from `at`. Fails at the end of the bytes, or if a byte is not in the expected range.
+// Reads bytes, starting at `at`. Clears isRight after the last byte, and if a byte is outside its
+// expected range.
 struct Reader {
     const std::vector<Ice::Byte>& bytes;
     size_t at;
@@ -46,7 +49,8 @@ std::vector<Ice::Identity> passedProxies(const std::vector<Ice::Byte>& encapsula
         id.category = in.text(0);
         for (const char c : id.name + id.category)
             in.isRight = in.isRight && (c < 0 || c >= ' ');
-        // without versions, a row of zeros would look like a proxy
+        // Without versions, a short name is rejected; otherwise a row of zeros would look like a
+        // proxy.
         in.isRight = in.isRight && (hasVersions || id.name.size() > 3);
         if (in.byte(0, 1))
             in.text(0); // facet

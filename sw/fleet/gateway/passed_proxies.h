@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// passed_proxies: finds the proxies in the parameters of a request over which the vehicle can call
-// the client back. These are proxies without endpoints; the vehicle calls them over the client's
-// connection.
+// passed_proxies: finds the proxies in a request's parameters that let the vehicle call the client
+// back. These proxies have no endpoints; the vehicle calls them over the client's connection.
 //
-// The gateway does not know the types of parameters, so it searches for the bytes of such a proxy:
-// name and category, an optional facet, mode, security, protocol 1.0, encoding 1.x (absent in an
-// encapsulation of 1.0), no endpoints, no adapter.
+// The gateway does not know the types of the parameters. It therefore searches for the bytes of
+// such a proxy: name and category, an optional facet, mode, security, protocol 1.0, encoding 1.x,
+// no endpoints, no adapter. In an encapsulation of encoding 1.0, a proxy has no protocol and
+// encoding.
 
 #pragma once
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// registration: registers a vehicle in IceGrid when its session starts, and removes the entry when
-// the session ends.
+// registration: enters a vehicle into IceGrid's registry when a session with the vehicle starts,
+// and removes the entry when the session ends.
 
 #include "registration.h"
 
@@ -11,10 +11,11 @@ namespace gateway {
 
 namespace {
 
-// Time-out of the calls in progress when the vehicle has moved to another ground station.
+// Time for which calls in progress may still be answered after the vehicle has moved to another
+// ground station.
 constexpr std::chrono::milliseconds late{500};
 
-// Returns whether connections to the endpoints of a proxy are refused.
+// Returns whether no program listens at the endpoints of a proxy.
 bool isDead(const std::shared_ptr<Ice::ObjectPrx>& proxy) {
     try {
         proxy->ice_invocationTimeout(Registration::patienceMs)->ice_getConnection();
@@ -57,7 +58,7 @@ void Events::tell(bool isHere) const {
     out.writeSize(0);
     out.endEncapsulation();
     const auto in = out.finished();
-    // errors are ignored; the next event is sent anyway
+    // errors are ignored, because the next event is published in any case
     const auto ignored = [](std::exception_ptr) {};
     publisher_->ice_invokeAsync("vehicleState", Ice::OperationMode::Normal, in, nullptr, ignored,
                                 nullptr, {{"vehicle", vehicle_}});
@@ -82,7 +83,7 @@ std::shared_ptr<Ice::ObjectPrx> Registration::find() const {
     }
 }
 
-// Writes the endpoints of the vehicle into the registry; null removes them.
+// Sets the vehicle's endpoints in the registry to those of a proxy. A null proxy removes the entry.
 void Registration::enter(const std::shared_ptr<Ice::ObjectPrx>& proxy) const {
     const auto registry = locator_->getRegistry();
     registry->ice_invocationTimeout(patienceMs)->setAdapterDirectProxy(name_, proxy);
@@ -112,8 +113,8 @@ void Registration::come() {
     events_.tell(true);
 }
 
-// Closes the adapter, so that clients ask the registry again. Calls that wait here have not been
-// sent; clients may send them to another ground station.
+// Closes the adapter, so that clients ask the registry again. Calls that still wait here have not
+// been sent to the vehicle; clients may send them to another ground station.
 void Registration::close() {
     if (!adapter_)
         return;
@@ -145,7 +146,8 @@ void Registration::look() {
     }
 }
 
-// Removes this ground station from the registry, unless another one is registered by now.
+// Removes this ground station's entry from the registry, unless another ground station has replaced
+// it.
 void Registration::leave() {
     if (!isEntered_)
         return;

@@ -21,8 +21,10 @@ public:
     // `publisher` is the publisher of the topic; null disables events.
     Events(std::string vehicle, std::shared_ptr<Ice::ObjectPrx> publisher)
         : vehicle_(std::move(vehicle)), publisher_(std::move(publisher)) {}
-    void tell(bool isHere) const; // publishes the vehicle's proxy, or a null proxy; no parameters
-    // Publishes a call of the vehicle. The proxy in a vehicleState leads clients to the vehicle.
+    // publishes the vehicle's proxy; a null proxy if the vehicle is not connected
+    void tell(bool isHere) const;
+    // Publishes a call of the vehicle. If the call contains a vehicleState, its proxy is replaced
+    // by one by which clients reach the vehicle.
     void pass(const Request& request, Response onResponse, Failure onError) const;
 
 private:
@@ -30,8 +32,8 @@ private:
     const std::shared_ptr<Ice::ObjectPrx> publisher_;
 };
 
-// Replaces the vehicle's proxy in a call of Station.vehicleState by `reached`, with which clients
-// reach the vehicle; a null proxy is kept.
+// In the parameters of a call of Station.vehicleState, replaces the vehicle's proxy by `reached`, a
+// proxy by which clients reach the vehicle. A null proxy stays null.
 void replaceVehicle(
     Request& call, const std::shared_ptr<Ice::Communicator>& ic,
     const std::function<std::shared_ptr<Ice::ObjectPrx>(const std::shared_ptr<Ice::ObjectPrx>&)>&
@@ -40,19 +42,20 @@ void replaceVehicle(
 class Registration {
 public:
     using Open = std::function<std::shared_ptr<Ice::ObjectAdapter>()>;
-    // `open` creates the adapter, not yet active. `locator`: null without a registry; then look()
-    // and leave() are never called.
+    // `open` creates the adapter and leaves it inactive. `locator` is null if no registry is
+    // configured; look() and leave() must then not be called.
     Registration(std::string name, Forwarder& forwarder, const Events& events, Open open,
                  const std::shared_ptr<Ice::LocatorPrx>& locator)
         : open(std::move(open)), name_(std::move(name)), forwarder_(forwarder), events_(events),
           locator_(locator ? locator->ice_invocationTimeout(patienceMs) : nullptr) {}
-    // Checks whether the vehicle is connected, and which ground station is registered. Must be
-    // called every `lookMs`. Throws Ice's exceptions if no registry answers.
+    // Checks whether the vehicle is connected, and which ground station the registry contains. Must
+    // be called every `lookMs`. Throws an Ice exception if no registry answers.
     void look();
     void leave(); // must be called before the program ends
 
     static constexpr int lookMs = 250, looksBetweenQuestions = 4;
-    static constexpr int patienceMs = 2000; // time-out of a registry or another ground station
+    // time-out for the registry and for other ground stations, ms
+    static constexpr int patienceMs = 2000;
     const Open open;
 
 private:
@@ -68,8 +71,10 @@ private:
     const std::shared_ptr<Ice::LocatorPrx> locator_;
     std::shared_ptr<Ice::ObjectAdapter> adapter_, closing_;
     std::shared_ptr<Ice::ObjectPrx> own_; // proxy with the endpoints of the adapter
-    unsigned entered_ = 0;                // value of session() when the registry was last written
-    bool isEntered_ = false;              // this ground station has registered itself
+    // value of session() when this ground station last wrote to the registry
+    unsigned entered_ = 0;
+    // true if this ground station has entered itself into the registry
+    bool isEntered_ = false;
     int looks_ = 0;
 };
 

@@ -15,7 +15,7 @@ void Request::sendTo(const std::shared_ptr<Ice::ObjectPrx>& target, Response onR
     object = isOneway() ? object->ice_oneway() : object->ice_twoway();
     const Parameters in{parameters.data(), parameters.data() + parameters.size()};
     std::function<void(bool)>
-        sent; // called when Ice has sent a one-way request, because such a request has no reply
+        sent; // function that Ice calls when it has sent a one-way request, which has no reply
     if (isOneway())
         sent = [onResponse](bool) { onResponse(true, {}); };
     object->ice_invokeAsync(current.operation, current.mode, in, std::move(onResponse),

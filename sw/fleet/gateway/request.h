@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// request: a request of a client, or of the vehicle, that the gateway forwards after its dispatch
-// has returned.
+// request: a copy of a request of a client or of the vehicle. Ice's dispatch returns before the
+// gateway forwards the copy.
 
 #pragma once
 
@@ -17,20 +17,20 @@ namespace gateway {
 
 using Connection = std::shared_ptr<Ice::Connection>;
 using Parameters =
-    // first byte of an encapsulation, and the byte after its end
+    // first byte of an encapsulation, and the byte after the last one
     std::pair<const Ice::Byte*, const Ice::Byte*>;
 using Response = std::function<void(bool, const Parameters&)>;
 using Failure = std::function<void(std::exception_ptr)>;
 
 struct Client;
 
-// A request of a client, kept after its dispatch has returned.
+// A request of a client or of the vehicle, which the gateway forwards later.
 struct Request {
     Request(const Parameters& in, Response onResponse, Failure onError, const Ice::Current& current)
         : parameters(in.first, in.second), response(std::move(onResponse)),
           failed(std::move(onError)), current(current) {}
-    // Sends the request to `target`, which may be an object of any identity. Rethrows the
-    // exceptions that Ice throws immediately.
+    // Sends the request to `target`, whose identity is replaced by that of the called object.
+    // Rethrows exceptions that Ice throws at once.
     void sendTo(const std::shared_ptr<Ice::ObjectPrx>& target, Response onResponse,
                 Failure onError) const;
     bool isOneway() const { return current.requestId == 0; }
@@ -50,11 +50,11 @@ struct Request {
 
 using Requests = std::vector<std::shared_ptr<Request>>;
 
-// Returns an Ice exception with this text, which also names the gateway.
+// Returns an Ice UnknownException whose text is "icesoc-gateway: " and `why`.
 std::exception_ptr unknown(const std::string& why);
 
-// Fails the requests with this exception. Logs the number of one-way requests among them, because
-// their clients receive no error.
+// Fails the requests with this exception. Logs how many of them are one-way, because the clients
+// that sent these receive no error.
 void fail(const Requests& requests, std::exception_ptr why);
 
 } // namespace gateway

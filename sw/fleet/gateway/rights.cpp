@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// rights: reads the file of rules, and matches its patterns.
+// rights: reads the file of rules, and matches clients and calls with the patterns in the rules.
 
 #include "rights.h"
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// rights: decides which clients of the gateway may call which operations, by a JSON file of rules:
+// rights: decides which clients of the gateway may call which operations, according to a JSON file
+// of rules:
 //
 //   [{"who": "CN=pilot*", "identities": ["*"], "operations": ["*"]},
 //    {"who": "",          "identities": ["uav", "hwengine*"], "operations": ["get*", "isAlive"]}]
 //
 // `who` is a shell pattern for the subject of the client's certificate; the subject of a client
 // without a certificate is "". A call is allowed if at least one rule allows it. A client that may
-// call one operation of an object may also ask for the object's type and ping it.
+// call at least one operation of an object may also ask for the object's type and ping the object.
 
 #pragma once
 
@@ -33,7 +34,8 @@ private:
     std::vector<Rule> rules_;
 };
 
-// Returns the subject of the certificate of a connection's peer; empty if it has no certificate.
+// Returns the subject of the client's certificate on a connection; empty if the client has no
+// certificate.
 std::string subjectOf(const std::shared_ptr<Ice::Connection>& connection);
 
 } // namespace gateway

@@ -2,10 +2,10 @@
 //
 // turns: shares bytes fairly among any number of flows (self-clocked fair queueing).
 //
-// Each flow has a tag. A flow that begins to wait gets the current clock value as its tag, and each
-// of its turns adds the bytes sent. The flow that would have the lowest tag after its turn is
-// served next. So a flow that sends little waits only a little longer than the bytes in flight
-// take.
+// Each flow has a tag, which is a value of a common clock. A flow that begins to wait gets the
+// current clock value as its tag. Each time the flow sends, the number of bytes sent is added to
+// its tag. The flow that would have the lowest tag after its next message sends next. A flow that
+// sends little therefore waits only a little longer than the bytes in flight take.
 
 #pragma once
 
@@ -19,7 +19,7 @@ namespace gateway {
 
 template <class Flow> class Turns {
 public:
-    // Records that a flow has something to send.
+    // Records that a flow has something to send. Its turn then comes.
     void wait(const Flow& flow) {
         Entry& entry = entries_[flow];
         if (!entry.isWaiting)
@@ -40,7 +40,8 @@ public:
         if (entry == entries_.end())
             return;
         entry->second.isWaiting = false;
-        // removes flows that would start like new flows
+        // removes the flows that no longer wait and whose tag is not above the clock; a new flow
+        // would get the same tag
         for (auto each = entries_.begin(); each != entries_.end();) {
             const bool isOver = !each->second.isWaiting && each->second.tag <= clock_;
             each = isOver ? entries_.erase(each) : std::next(each);

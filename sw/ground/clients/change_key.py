@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: MIT
 """change_key: gives a vehicle a new key over the link, and updates the key file.
 
-If this program is interrupted at any point, vehicle and key file still have one key in common, and
-the next run continues. First the new key is added to the file, then it is sent to the vehicle. The
-vehicle accepts both keys until a session with the new one is established; then the old key is
-removed from the file.
+If this program is interrupted at any point, the vehicle and the key file still have one key in
+common, and the next run continues. The program first adds the new key to the file, then sends it to
+the vehicle. The vehicle accepts both keys until a session with the new key is established; then the
+program removes the old key from the file.
 """
 
 import argparse
@@ -24,14 +24,14 @@ from reasons import reason_of
 
 
 def write(path, lines):
-    """Writes a file with these lines in the folder of `path`; only the owner of `path` can read it.
-    Returns its name."""
+    """Writes these lines to a new file in the folder of `path`. The new file has the owner of
+    `path`, and only this owner can read it. Returns its name."""
     temporary = path + ".new"
     with contextlib.suppress(FileNotFoundError):
         os.remove(temporary)
     with open(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w",
               encoding="utf-8", errors="surrogateescape", newline="") as f:
-        if os.geteuid() == 0:  # a file that belongs to the gateway's user keeps its owner
+        if os.geteuid() == 0:  # a key file that belongs to the gateway's user keeps this owner
             owner = os.stat(path)
             os.chown(f.fileno(), owner.st_uid, owner.st_gid)
         f.write("\n".join(lines) + "\n")
@@ -41,15 +41,15 @@ def write(path, lines):
 
 
 def lines_of(path):
-    """Returns the lines of a key file. Only a line feed ends a line, as in read_key, and bytes that
+    """Returns the lines of a key file. As in read_key, only a line feed ends a line, and bytes that
     are not UTF-8 are kept."""
     with open(path, encoding="utf-8-sig", errors="surrogateescape", newline="") as f:
         return f.read().removesuffix("\n").split("\n")
 
 
 def keys_of(lines, address):
-    """Returns the number of the vehicle's line and the words after its address, KEY [NEXT]; if the
-    vehicle has no line, those of the line for all vehicles."""
+    """Returns the number of the vehicle's line, and the words after its address: KEY [NEXT]. If the
+    vehicle has no line, returns the same for the line that applies to all vehicles."""
     found = None
     for number, line in enumerate(lines):
         words = line.split("#")[0].split()
@@ -62,7 +62,7 @@ def keys_of(lines, address):
 
 
 def talk(args, key_file, what):
-    """Calls `what` with a proxy of the vehicle's KeyRing, in a new session."""
+    """Opens a new session and calls `what` with a proxy of the vehicle's KeyRing."""
     communicator = plugged.initialize({"Ice.Default.InvocationTimeout": str(1000 * args.patience)},
                                       args.plugin, args.guard,
                                       key_file)
@@ -77,8 +77,8 @@ def talk(args, key_file, what):
 
 @contextlib.contextmanager
 def alone(path):
-    """Locks the key file against other runs of this program. Two runs would each give the vehicle a
-    key, and the file might keep the wrong one."""
+    """Locks the key file against other runs of this program. Two runs at the same time would both
+    give the vehicle a key, and the file might keep the wrong one."""
     folder = os.open(os.path.dirname(path) or ".", os.O_RDONLY | os.O_DIRECTORY)
     try:
         fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -91,7 +91,8 @@ def alone(path):
 
 
 def change(args):
-    args.key = os.path.realpath(args.key)  # if it is a link, its target is rewritten
+    # if the path is a symbolic link, the target of the link is rewritten
+    args.key = os.path.realpath(args.key)
     if not os.path.isfile(args.key):
         raise RuntimeError("'%s': expected a regular file, because change_key rewrites "
                            "it" % args.key)
@@ -100,7 +101,7 @@ def change(args):
 
 
 def change_alone(args):
-    provide_key.read_key(args.key, args.address)  # reports malformed lines
+    provide_key.read_key(args.key, args.address)  # rejects malformed lines
     lines = lines_of(args.key)
     number, keys = keys_of(lines, args.address)
     if len(keys) == 1:

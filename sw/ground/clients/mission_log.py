@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""mission_log: prints the steps of a mission, and stores them in the folder of its results."""
+"""mission_log: prints the steps of a mission, and stores them in the result folder."""
 
 import contextlib
 import glob
@@ -18,8 +18,8 @@ RESULTS = ("after.png", "report.md", "report.json", "calls.jsonl")
 
 
 class Air:
-    """The simulator's counters (testbench/status/sim_status.toml). On real hardware there are
-    none."""
+    """The simulator's counters (testbench/status/sim_status.toml). Real hardware has no such
+    counters."""
 
     COUNTERS = ("ns", "cycles", "bytesUp", "bytesDown", "packets", "lost", "wallNs")
 
@@ -35,8 +35,8 @@ class Air:
 
 
 class Patience:
-    """A time-out in simulated time; in real time if there is no simulator. It also expires if
-    simulated time has stood still for as many real seconds."""
+    """A time-out in simulated time, or in real time if there is no simulator. It also expires if
+    simulated time has not advanced for the same number of seconds of real time."""
 
     def __init__(self, air, seconds):
         self.air, self.seconds = air, seconds
@@ -69,18 +69,18 @@ class Log:
     """Prints one line for each call, and stores rows for the report."""
 
     def __init__(self, air, out, build):
-        # out: folder of the results; build: build folder
+        # out: folder for the results; build: build folder
         self.air, self.out, self.build = air, out, build
         # time-out of a call, s; function that ends the mission
         self.patience, self.give_up = math.inf, None
         self.rows = []
         followers = glob.glob(os.path.join(glob.escape(out), "after[0-9]*.png"))
-        # Removes the results of the previous mission. If a result is a symbolic link, only the link
-        # is removed.
+        # Removes the results of the previous mission. A result may be a symbolic link; then only
+        # the link is removed.
         for path in [*(os.path.join(out, name) for name in RESULTS), *followers]:
             with contextlib.suppress(FileNotFoundError):
                 os.remove(path)
-        # read continuously by the page of `make run`
+        # the page of `make run` reads this file continuously
         self.live = open(os.path.join(out, "calls.jsonl"), "x")
         self.lock = threading.Lock()
         self.start = time.monotonic()
@@ -101,7 +101,7 @@ class Log:
         self.follow({"who": "ground", "what": text})
 
     def remind(self, what, answered):
-        """Reports every 15 s that a call has no answer yet; ends the mission when the time-out
+        """Reports every 15 s that a call has no answer yet. Ends the mission when the time-out
         expires."""
         begin, reported = time.monotonic(), 15
         wait = Patience(self.air, self.patience)
@@ -114,8 +114,8 @@ class Log:
                 return self.give_up()
 
     def call(self, who, what, function):
-        """Runs `function`, which makes the call, and returns its result; records the bytes on the
-        air."""
+        """Calls `function`, which makes a call of the mission, and returns its result. Records the
+        bytes that the call has sent over the air."""
         before, wall = self.air.read(), time.monotonic()
         answered = threading.Event()
         threading.Thread(target=self.remind, args=(what, answered), daemon=True).start()

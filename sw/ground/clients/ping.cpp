@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ping: a short ground station in C++. It pings an object, and prints the object's type and the
-// duration of each ping. Usage: ping "hwengine1:xbee-at -d /dev/ttyUSB0 -a 1" [count]
+// ping: a short ground station in C++. It prints the type of an object, pings the object, and
+// prints the duration of each ping. Usage: ping "hwengine1:xbee-at -d /dev/ttyUSB0 -a 1" [count]
 
 #include <Ice/Ice.h>
 #include <chrono>
@@ -9,7 +9,8 @@
 #include <iostream>
 
 #ifndef PLUGIN
-#define PLUGIN "xbeeat" // an installed plugin is in the system's library folder
+// an installed plugin is in the system's library folder, so the name alone is enough
+#define PLUGIN "xbeeat"
 #endif
 
 int main(int argc, char** argv) {

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""places: finds the files that the ground programs need, in the source tree or installed.
+"""places: finds the files that the ground programs need, in the source tree or where they are
+installed.
 
 When installed, this module is part of the package `icesoc` in PREFIX/lib/python3/dist-packages.
 """
@@ -12,7 +13,7 @@ IS_INSTALLED = os.path.isfile(os.path.join(HERE, "__init__.py"))
 TOP = os.path.normpath(os.path.join(HERE, "../../../.." if IS_INSTALLED else "../../.."))
 SHARE = os.path.join(TOP, "share/icesoc")
 SLICE_FILES = {"Autopilot.ice": "sw/vehicle", "Registers.ice": "sw/hw/registers",
-               "Update.ice": "sw/update"}  # Slice files and their folders in the source tree
+               "Update.ice": "sw/update"}  # Slice files, each with its folder in the source tree
 # objects of the firmware (sw/vehicle): identity -> interface, declared in one of these Slice files
 OBJECTS = {"uav": "::Autopilot::Vehicle", "keys": "::Autopilot::KeyRing", "chip": "::Hw::Chip",
            "update": "::Update::Firmware", "fpga": "::Update::Firmware"}
@@ -33,12 +34,14 @@ def plugin():
 
 
 def core(name):
-    """Returns the folder with the core's Slice file and the core's part of a mission."""
+    """Returns the folder that contains a core's Slice file and its ground.py, the core's part of a
+    mission."""
     return os.path.join(SHARE if IS_INSTALLED else TOP, "ip", name)
 
 
 def record_of(description):
-    """Returns the record type that a TOML file of the tree describes (icesoc.util.record)."""
+    """Returns the record type that a TOML file of the source tree describes
+    (icesoc.util.record)."""
     module = os.path.join(HERE if IS_INSTALLED else os.path.join(TOP, "tools/icesoc/util"),
                           "record.py")
     spec = importlib.util.spec_from_file_location("record", module)

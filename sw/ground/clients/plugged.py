@@ -7,17 +7,18 @@ import Ice
 
 
 def use_second_clock():
-    """Uses the clock of the simulator's second ground station, if a simulator has started this
-    program. The file of its counters has the name of the first one, with a 2."""
+    """Selects the clock of the simulator's second ground station, if a simulator has started this
+    program. The file of this clock is named like that of the first ground station, with a 2
+    appended."""
     clock = os.environ.get("XBEEAT_CLOCK")
     if clock and not clock.endswith("2"):
         os.environ["XBEEAT_CLOCK"] = clock + "2"
 
 
 def initialize(settings, plugin, guard, key):
-    """Returns a communicator with these properties. plugin: folder with libxbeeat.so.37; empty or
-    None means no radio. guard: guard time of the modem, ms. key: file with the key of the link;
-    empty means no key."""
+    """Creates and returns a communicator with the properties `settings`. plugin: folder that
+    contains libxbeeat.so.37; empty or None means no radio. guard: guard time of the modem, ms. key:
+    file with the key of the link; empty means no key."""
     if plugin:
         settings = {"Ice.Plugin.XBeeAT": os.path.join(plugin, "xbeeat") + ":createXBeeAT",
                     "XBeeAT.Guard": str(guard),

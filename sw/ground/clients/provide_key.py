@@ -3,8 +3,8 @@
 """provide_key: gives a vehicle its address and its key over the serial port of its microcontroller,
 in the factory or after a key was lost.
 
-Wire the port to PA9 and PA10, start this program, then switch the vehicle on. The vehicle waits for
-a key if it finds a break (a line held low) on this port while it starts.
+Connect the port to PA9 and PA10, start this program, then switch the vehicle on. During its start,
+the vehicle looks for a break (a line held low) on this port. If it finds one, it waits for a key.
 """
 
 import argparse
@@ -18,11 +18,12 @@ import termios
 import time
 import tty
 
-# numbers from Linux' ioctl_tty(2); termios of Python 3.11 lacks both
+# numbers from Linux' ioctl_tty(2); the module termios of Python 3.11 does not define them
 TIOCSBRK, TIOCCBRK = 0x5427, 0x5428
 GROUP = 0xFFFF  # address that key files use for the group key
-PIPE_WAIT = 10  # time-out for the first bytes from a pipe, s
-# length of the break and of the pause after it, s; a vehicle without a key restarts every second
+PIPE_WAIT = 10  # time-out for the first bytes if the key file is a pipe, s
+# length of the break and of the pause after it, s; a vehicle without a key restarts every second,
+# so it starts during the break
 BREAK, PAUSE = 1.5, 0.5
 
 
@@ -39,9 +40,9 @@ def address(text):
 
 
 def open_secret(path):
-    """Opens a key file for reading. It must be a regular file, or a pipe with a writer; it must
-    belong to this user, and other users must have no access."""
-    # opening a pipe without a writer must not block
+    """Opens a key file for reading. Accepts a regular file, or a pipe that another process writes.
+    The file must belong to this user, and other users must have no access to it."""
+    # O_NONBLOCK, because opening a pipe that no process writes would wait
     fd = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     try:
         found = os.fstat(fd)
@@ -64,8 +65,9 @@ def open_secret(path):
 
 
 def read_key(path, vehicle):
-    """Returns a vehicle's key from a key file. As in the plugin (docs/security.md), the line with
-    the vehicle's address is used, or else the line without an address."""
+    """Returns a vehicle's key from a key file. As in the plugin (docs/security.md), uses the line
+    that begins with the vehicle's address, or the line without an address if there is no such
+    line."""
     keys = {}
     with open_secret(path) as f:
         for number, line in enumerate(f.read(65536).split("\n"), 1):
@@ -100,7 +102,7 @@ def call_number():
 
 
 def read_line(port, seconds):
-    """Returns the bytes that arrive until a line ends or the time-out expires."""
+    """Returns the bytes that arrive up to the end of a line or until the time-out expires."""
     text, end = b"", time.monotonic() + seconds
     while b"\n" not in text and select.select([port], [], [], max(0, end - time.monotonic()))[0]:
         text += os.read(port, 100)

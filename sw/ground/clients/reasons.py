@@ -8,8 +8,8 @@ import Ice
 
 
 def reason_of(error, connecting="cannot connect: "):
-    """Returns the reason of an error, without its number or class if there is a better text.
-    connecting: prefix of the reason why a connection was not made."""
+    """Returns the reason of an error. The number or class of the error is left out if there is a
+    better text. connecting: prefix of the reason if a connection could not be made."""
     if isinstance(error, OSError) and error.strerror:
         return ": ".join(str(part) for part in (error.filename, error.strerror) if part)
     if isinstance(error, termios.error):
@@ -24,6 +24,7 @@ def reason_of(error, connecting="cannot connect: "):
     if getattr(error, "error", 0):
         prefix = connecting if isinstance(error, Ice.ConnectFailedException) else ""
         return prefix + os.strerror(error.error)
-    # The other exceptions have no text: returns the words of their name, such as "Connection lost".
+    # Other exceptions have no text. Their reason is the name of the exception, split into words,
+    # such as "Connection lost".
     name = error.ice_id().rpartition(":")[2].replace("Exception", "")
     return re.sub("(?<=[a-z])(?=[A-Z])", " ", name).capitalize()

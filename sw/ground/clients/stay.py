@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """stay: keeps a vehicle reachable after its mission, until Ctrl-C (LIVE=1) or as long as a browser
-shows the page of the flight. Starts the gateway at the modem of the mission, and writes
-OUT/live.json, which `./icesoc call` reads to find the flight:
+shows the page of the flight. Starts the gateway on the modem of the mission, and writes
+OUT/live.json, by which `./icesoc call` finds the flight:
 
     {"pid": 4711, "build": "/.../build/main", "vehicles": {"uav1": "tcp -h 127.0.0.1 -p 40001"}}
 
@@ -46,7 +46,8 @@ def await_browser(folder):
 
 
 def gateway_program(args):
-    """Returns the gateway of the build, or the installed one; None if there is neither."""
+    """Returns the path of the gateway in the build folder, or of the installed gateway; None if
+    there is neither."""
     return shutil.which("icesoc-gateway", path=os.pathsep.join(
         [args.plugin, os.environ.get("PATH", os.defpath)]))
 
@@ -64,7 +65,7 @@ def is_wanted(args):
 
 
 def end_with_page(folder, process):
-    """Ends a process after no browser has shown the page for a while."""
+    """Ends a process when no browser has shown the page for GRACE seconds."""
     while process.poll() is None:
         time.sleep(0.5)
         if not is_viewed(folder):

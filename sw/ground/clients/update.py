@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """update: sends new firmware, a bitstream, or keys to a vehicle, waits until the new version runs,
-and confirms it. It uses stock ZeroC Ice.
+and confirms it. It uses unmodified ZeroC Ice.
 
-The package is a file made by pack_update, or several such files in one, which are sent in their
-order: lists of keys, firmware and bitstreams. After a loss of the link, or of the vehicle's power,
-the update continues where it was interrupted; it also continues if this program is started again. A
-refused package leaves the vehicle as it was.
+The package is a file made by pack_update, or several such files joined. It contains lists of keys,
+firmware or bitstreams, which are sent in their order in the package. After a loss of the link, or
+of the vehicle's power, the update continues where it was interrupted. It also continues if this
+program is started again. A refused package leaves the vehicle unchanged.
 """
 
 import argparse
@@ -24,7 +24,8 @@ from reasons import reason_of
 
 HEADER = places.record_of("sw/update/slots_header.toml")
 MAGIC, KEYS = HEADER.constants["SLOTS_MAGIC"], HEADER.constants["SLOTS_KEYS"]
-OBJECTS = {HEADER.constants["LOADER_PRODUCT"]: "update",  # names of objects by product number
+# name of the object that receives an image, by product number
+OBJECTS = {HEADER.constants["LOADER_PRODUCT"]: "update",
            HEADER.constants["FPGA_PRODUCT"]: "fpga", KEYS: "update"}
 PIECE, PIECES_ON_THE_WAY, DICTIONARY = 4096, 3, 65535
 TEXT = {
@@ -51,9 +52,9 @@ class Failed(Exception):
 
 
 def read_package(path):
-    """Returns the parts of a package in order, as pairs. A pair is "keys" and the lists; or
-    the name of the object that receives an image, and a dictionary with (header, image) for each
-    offset in flash."""
+    """Returns the parts of a package, in order. Each part is a pair: "keys" and the lists of keys,
+    or the name of the object that receives an image, and a dictionary that maps each flash offset
+    to (header, image)."""
     with open(path, "rb") as f:
         data = f.read()
     parts, at, last = [], 0, None
@@ -83,14 +84,14 @@ def read_package(path):
 
 
 def read_clock(air):
-    """Returns the time in s and the number of bytes sent to the vehicle over the air, as counted by
-    the simulator. Without a simulator, returns wall-clock time and no bytes."""
+    """Returns the time in s, and the number of bytes sent over the air to the vehicle, both counted
+    by the simulator. Without a simulator, returns a clock of this machine and 0 bytes."""
     counters = air.read()
     return (counters["ns"] / 1e9, counters["bytesUp"]) if counters else (time.monotonic(), 0)
 
 
 class Watch(threading.Thread):
-    """Calls the vehicle during an update, and records the longest time to a reply."""
+    """Calls the vehicle repeatedly during an update, and records the longest time until a reply."""
 
     def __init__(self, proxy, air):
         super().__init__(daemon=True)
@@ -106,7 +107,7 @@ class Watch(threading.Thread):
                 self.longest = max(self.longest, read_clock(self.air)[0] - begun)
                 self.answers += 1
             except Ice.Exception:
-                pass  # the sender reports the error
+                pass  # the thread that sends the update reports the error
 
     def stop(self):
         self.over.set()
@@ -119,7 +120,8 @@ class Vehicle:
         self.proxy, self.patience = proxy, patience
 
     def persist(self, function):
-        """Returns the function's result; retries while the vehicle does not reply."""
+        """Calls the function and returns its result. Tries again while the vehicle does not
+        reply."""
         end = time.monotonic() + self.patience
         while True:
             try:
@@ -142,8 +144,8 @@ class Vehicle:
             raise Failed(TEXT.get(str(reason), str(reason)))
 
     def wait_while(self, *phases):
-        """Waits until the vehicle is in none of these phases. Returns the status, with the reason
-        if the vehicle refused."""
+        """Waits until the vehicle is in none of these phases. Returns the status. Raises Failed,
+        with the reason, if the vehicle has refused the update."""
         while True:
             status = self.status()
             if str(status.phase) not in phases:
@@ -187,7 +189,7 @@ def send_keys(vehicle, lists, say):
 
 
 def transfer(vehicle, header, image, say, air):
-    """Sends an image until the vehicle has begun to check it, even over links that are lost."""
+    """Sends an image and starts its check by the vehicle. Continues after a loss of the link."""
     # The vehicle's processor cannot read the FPGA's flash as memory.
     dictionary = DICTIONARY if vehicle.proxy.ice_getIdentity().name == "update" else 0
 
@@ -222,8 +224,9 @@ def await_start(vehicle, version):
 
 
 def update(vehicle, images, say, air, rehearses):
-    """Updates the vehicle to the package's version and confirms it. A rehearsal does not confirm:
-    it observes the new version start, and the vehicle return to the old one."""
+    """Updates the vehicle to the version in the package and confirms this version. A rehearsal does
+    not confirm: it waits until the new version runs, and then until the vehicle has returned to the
+    old version."""
     version = HEADER.unpack(next(iter(images.values()))[0])["version"]
     status = vehicle.status()
     say("the vehicle runs version %d%s" % (status.running, ", on trial" if status.trial else ""))
@@ -297,15 +300,16 @@ def main():
         where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % (first, args.device)
         proxy = Update.FirmwarePrx.uncheckedCast(communicator.stringToProxy(where))
         for name, part in parts:
-            # With only one object, a given proxy refers to this object.
+            # --proxy names the object of the first part; for other objects, only the identity in it
+            # is replaced
             own = proxy if name == first else proxy.ice_identity(
                 Ice.stringToIdentity("update" if name == "keys" else name))
             vehicle = Vehicle(Update.FirmwarePrx.uncheckedCast(own), args.patience)
             if name != "keys":
                 update(vehicle, part, say, Air(args.status), args.rehearse)
             elif not args.rehearse or part is parts[0][1]:
-                # A rehearsal does not send keys that follow an image, because the vehicle drops
-                # that image.
+                # A rehearsal does not send keys that follow an image in the package, because the
+                # vehicle returns to its old image.
                 send_keys(vehicle, part, say)
         return 0
     except KeyboardInterrupt:

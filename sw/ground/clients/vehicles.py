@@ -8,7 +8,7 @@ The file is the argument `file` of find(), else $ICESOC_VEHICLES, else
     Vehicle.uav7=tcp -h gateway -p 10000
     XBeeAT.KeyFile=/etc/icesoc/uav1.key
 
-A vehicle without a line is looked up in IceGrid if the file sets Ice.Default.Locator.
+If the file sets Ice.Default.Locator, a vehicle that the file does not list is looked up in IceGrid.
 """
 import os
 
@@ -19,7 +19,7 @@ PREFIX = "Vehicle."
 
 
 class Unknown(LookupError):
-    """The vehicle, or the file that lists vehicles, was not found; the text gives the remedy."""
+    """The vehicle, or the file that lists vehicles, was not found. The text explains what to do."""
 
 
 def settings_file(file):
@@ -34,9 +34,9 @@ def settings_file(file):
 
 
 def find(name, file=None):
-    """Returns (place, properties) of the vehicle with this name; without a name, of the only
+    """Returns (place, properties) for the vehicle with this name; without a name, for the only
     vehicle in the file. place: the part of a proxy after the identity, such as ":tcp -h gateway -p
-    10000"."""
+    10000". properties: Ice properties from the file."""
     path = settings_file(file)
     found = Ice.createProperties()
     found.load(path)
@@ -58,5 +58,5 @@ def find(name, file=None):
 
 
 def has_radio(place):
-    """Returns whether a place needs the radio plugin."""
+    """Returns whether the radio plugin is needed to reach this place."""
     return place.startswith((":xbee-at", ":serial"))

@@ -6,7 +6,7 @@
         engine = vehicle.proxy("hwengine1", "Autopilot.HwProcessingEngine")
         print(engine.getResult())
 
-A file of Ice properties lists the vehicles (vehicles.py). It is the argument `file` of connect(),
+The vehicles are listed in a file of Ice properties (vehicles.py): the argument `file` of connect(),
 else $ICESOC_VEHICLES, else ~/.config/icesoc/vehicles.conf, else /etc/icesoc/vehicles.conf.
 """
 import importlib
@@ -34,9 +34,9 @@ class Vehicle:
         self.communicator, self.place = communicator, place
 
     def proxy(self, identity, interface=None, oneway=False):
-        """Returns a proxy of the vehicle's object `identity`. interface: name of its type, such as
-        "Autopilot.Vehicle", not checked with the vehicle; without it, an Ice.ObjectPrx. oneway:
-        calls do not wait for the vehicle."""
+        """Returns a proxy of the vehicle's object `identity`. interface: name of the object's type,
+        such as "Autopilot.Vehicle"; it is not checked with the vehicle. Without an interface, the
+        proxy is an Ice.ObjectPrx. oneway: calls do not wait for the vehicle."""
         text = self.communicator.identityToString(Ice.stringToIdentity(identity))
         proxy = self.communicator.stringToProxy(f"{text}{' -o' if oneway else ''}{self.place}")
         if interface is None:
@@ -56,7 +56,7 @@ class Vehicle:
 
 def connect(name, file=None, properties=None):
     """Returns the Vehicle with this name. file: the file that lists the vehicles. properties: Ice
-    properties in addition to those of the file. Calls fail after 10 s without a reply, unless
+    properties in addition to those in the file. A call fails after 10 s without a reply, unless
     Ice.Default.InvocationTimeout is set."""
     place, found = vehicles.find(name, file)
     found = {"Ice.Default.InvocationTimeout": "10000", **found, **(properties or {})}

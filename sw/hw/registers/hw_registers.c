@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * hw_registers: servant for registers by name. It looks names up in the table and accesses words
- * through the FSMC driver. The polling task answers calls of `wait`.
+ * hw_registers: the servant of Hw::Registers. It finds a register in the table by its name, and
+ * accesses its word through the FSMC driver. The polling task sends the replies to calls of `wait`.
  */
 #include "hw_registers.h"
 #include "fsmc.h"
@@ -12,8 +12,9 @@
 
 enum { ID, EVENT, MASK, PAGE };
 #define ALL 0xFFFFFFFFU
-#define WINDOW 8U        /* word 8 is the word at the core's byte address PAGE */
-#define WINDOW_BYTES 32U /* bytes of a core visible at once in words 8..15 */
+/* first word of the window: PAGE is the byte address in the core of this word */
+#define WINDOW 8U
+#define WINDOW_BYTES 32U /* size of the window, bytes: words 8..15 show this part of the core */
 #define WAIT_MAX 600000  /* ms */
 
 Hw_Status Hw_Registers_Core_init(Hw_Registers_Core* self, U32 slot, U32 id,
@@ -34,14 +35,15 @@ Hw_Status Hw_Registers_Core_init(Hw_Registers_Core* self, U32 slot, U32 id,
 }
 
 void Hw_Registers_Core_interrupt(Hw_Registers_Core* self) {
-    /* Events are masked until a call waits, because a line that stays high would interrupt for
-     * ever. */
+    /* Masks all events until `wait` is called. Otherwise an event line that stays high would cause
+     * interrupts without end. */
     FSMC_write(self->slot, MASK, 0);
     self->came = 1;
     self->port->post(self->context, 0);
 }
 
-/* Appends text to the reason of an exception; text that does not fit ends in dots. */
+/* Appends text to the reason of an exception; if the text does not fit, its end is replaced by
+ * three dots. */
 static void say(Hw_Registers_Core* self, Ice_String text) {
     static const char dots[] = "...";
     U32 used = (U32)strlen(self->reason), left = sizeof self->reason - sizeof dots - used;
@@ -100,8 +102,8 @@ static int number(Ice_String name, U32* value) {
     return 1;
 }
 
-/* Finds the register with a name or at a core's byte address; for an address fills `place`. Returns
- * 0 with the reason if it does not exist. */
+/* Finds a register by its name, or by its byte address in the core; in the second case fills
+ * `place`. Returns 0 and sets the reason if there is no such register. */
 static const Hw_Register* lookUp(Hw_Registers_Core* self, Ice_String name, Hw_Register* place) {
     const Hw_Register* r = find(self, name);
     const Hw_Register* page = find(self, Ice_String_from("PAGE.ADDRESS"));
@@ -135,7 +137,7 @@ static const Hw_Register* lookUp(Hw_Registers_Core* self, Ice_String name, Hw_Re
     return 0;
 }
 
-/* Makes one access to a word. Returns 0 with the reason if the core does not respond. */
+/* Reads or writes a word once. Returns 0 and sets the reason if the core does not respond. */
 static int transfer(Hw_Registers_Core* self, const Hw_Register* r, int isWrite, U32* value) {
     U32 before = self->port->busErrors(self->context);
     if (r->page >= 0)
@@ -144,7 +146,8 @@ static int transfer(Hw_Registers_Core* self, const Hw_Register* r, int isWrite, 
         FSMC_write(self->slot, r->word, *value);
     else
         *value = FSMC_read(self->slot, r->word);
-    /* A write may be posted. The read after it ends later, and bus errors are counted by then. */
+    /* A write may be posted, so a read follows. When this read has ended, an error of the write has
+     * been counted. */
     (void)FSMC_read(self->slot, ID);
     if (self->port->busErrors(self->context) == before)
         return 1;
@@ -153,7 +156,7 @@ static int transfer(Hw_Registers_Core* self, const Hw_Register* r, int isWrite, 
     return 0;
 }
 
-/* Returns the exception that all operations throw. */
+/* Returns the exception RegisterError, with the current reason. */
 static Hw_RegisterError thrown(const Hw_Registers_Core* self) {
     Hw_RegisterError e;
     e.reason = Ice_String_from(self->reason);
@@ -215,8 +218,8 @@ static int write(Hw_Registers_Core* self, Ice_String name, Ice_Long value) {
         sayNumber(self, bits);
         return 0;
     }
-    /* In a register that can be read and written, the other fields keep their values; in w1c, w1s
-     * and ws fields 0 has no effect. */
+    /* A write to a field of a register of access rw keeps the values of the other fields. In
+     * registers of access w1c, w1s and ws, 0 in the other fields has no effect. */
     if (r->access == Hw_rw && memchr(name.data, '.', (size_t)name.size)) {
         if (!transfer(self, r, 0, &others))
             return 0;
@@ -261,12 +264,13 @@ Ice_Status Hw_Registers_wait(Hw_RegistersPtr servant, Ice_Int ms, const Ice_Curr
     self->deadline = self->port->nowMs(self->context) + (U32)ms;
     self->waits = 1;
     FSMC_write(self->slot, MASK, ALL);
-    self->port->post(self->context, 0); /* informs the polling task about the deadline */
+    /* wakes the polling task, which must learn of the deadline */
+    self->port->post(self->context, 0);
     return ICE_LATER;
 }
 
-/* Reads and clears the slot's events. Returns their number, and their names: those of EVENT's
- * fields in the table. */
+/* Reads and clears the slot's events, and stores their names, which are the fields of EVENT in the
+ * table. Returns the number of events. */
 static Ice_Int takeEvents(Hw_Registers_Core* self) {
     static const char prefix[] = "EVENT.";
     const Ice_Int skipped = sizeof prefix - 1;
@@ -294,7 +298,8 @@ U32 Hw_Registers_Core_poll(Hw_Registers_Core* self, U32 nowMs) {
     FSMC_write(self->slot, MASK, 0);
     events.size = takeEvents(self);
     events.data = self->events;
-    self->waits = 0; /* the next call may start once this one is answered */
+    /* cleared before the reply is sent, because the caller may call again at once */
+    self->waits = 0;
     (void)Hw_Registers_wait_response(&reply, &events);
     return HW_NEVER;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * tcp_address: converts endpoints of the tcp transport between their encoding in proxies, strings,
- * and socket addresses.
+ * tcp_address: converts an endpoint of the tcp transport between three forms: its encoding in a
+ * proxy, its string, and a socket address.
  */
 #define _POSIX_C_SOURCE 200809L
 #include "ice_message.h"
@@ -45,7 +45,7 @@ void TcpEndpoint_encode(void* context, const char* options, Ice_OutputStreamPtr 
     if (!options)
         at.port = self->port;
     else if (Ice_String_is(&at.host, "*"))
-        /* "*" means all addresses, which only a server can use */
+        /* "*" means all addresses; only a server can use it, so it is not allowed in a proxy */
         os->failed = ICE_FAILED_MALFORMED;
     Ice_OutputStream_writeShort(os, TCP_ENDPOINT_TYPE);
     begin = icec_beginEncapsulation(os);
@@ -61,7 +61,8 @@ int TcpEndpoint_decode(const Ice_Byte* encoded, Ice_Int size, TcpEndpoint_Addres
     Ice_InputStream_init(&is, encoded, size);
     if (Ice_InputStream_readShort(&is) != TCP_ENDPOINT_TYPE)
         return 0;
-    (void)Ice_InputStream_readBlob(&is, 6); /* skips size and encoding */
+    /* skips the size and the encoding of the encapsulation */
+    (void)Ice_InputStream_readBlob(&is, 6);
     address->host = Ice_InputStream_readString(&is);
     address->port = Ice_InputStream_readInt(&is);
     address->timeoutMs = Ice_InputStream_readInt(&is);
@@ -116,7 +117,8 @@ void TcpEndpoint_tune(int fd) {
     (void)setsockopt(fd, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
     (void)setsockopt(fd, SOL_SOCKET, SO_KEEPALIVE, &on, sizeof on);
 #ifdef TCP_USER_TIMEOUT
-    /* Linux: time until the first probe and between probes, s; time-out of all probes, ms */
+    /* Values for Linux. Keepalive: time until the first probe, s; time between probes, s.
+     * TCP_USER_TIMEOUT: time-out for unacknowledged data, ms. */
     {
         int idle = 30, between = 10, all = 60000;
         (void)setsockopt(fd, IPPROTO_TCP, TCP_KEEPIDLE, &idle, sizeof idle);

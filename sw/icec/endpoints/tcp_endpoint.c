@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * tcp_endpoint: transports IceP messages over TCP sockets, and finds their ends by the size in
- * their heads.
+ * tcp_endpoint: transports IceP messages over TCP sockets. The size in a message's header shows
+ * where the message ends.
  */
 #define _POSIX_C_SOURCE 200809L
 #include "tcp_endpoint.h"
@@ -23,8 +23,8 @@ static void unlock(TcpEndpoint* self) {
     (void)pthread_mutex_unlock(&self->lock);
 }
 
-/* Closes a connection; the caller holds the lock. If a task is sending on it, the slot stays in use
- * until this task has noticed. */
+/* Closes a connection; the caller holds the lock. If another task is sending on this connection,
+ * only shuts the socket down; the slot becomes free when that task has noticed. */
 static void closeOne(TcpEndpoint_Connection* c) {
     if (c->fd >= 0 && c->sending) {
         (void)shutdown(c->fd, SHUT_RDWR);
@@ -58,9 +58,9 @@ static void use(TcpEndpoint_Connection* c, int fd, Ice_Byte accepted) {
     TcpEndpoint_tune(fd);
 }
 
-/* Returns the size of the message at the front of the buffer. Returns 0 if the message is
- * incomplete, or was refused and the connection continues. Returns -1 if it is malformed, or was
- * refused and the connection ends. */
+/* Returns the size of the first message in the buffer. Returns 0 if this message is incomplete, or
+ * if it was refused and the connection continues. Returns -1 if the message is malformed, or if it
+ * was refused and the connection must be closed. */
 static Ice_Int frontSize(TcpEndpoint_Connection* c) {
     Ice_Int size;
     int isCompressed;
@@ -71,12 +71,12 @@ static Ice_Int frontSize(TcpEndpoint_Connection* c) {
         return -1;
     if (size <= ICE_MESSAGE_MAX && !isCompressed)
         return size <= c->have ? size : 0;
-    if (c->have < ICEC_HEADER + 4) /* the refusal needs the id of the request */
+    if (c->have < ICEC_HEADER + 4) /* a refusal contains the request id, so it waits for the id */
         return 0;
     return TcpEndpoint_refuse(c, size) ? 0 : -1;
 }
 
-/* Takes an event that is already available. Returns 1 if there was one. */
+/* Takes one event that does not require waiting. Returns 1 if there was such an event. */
 static int ready(TcpEndpoint* self, Ice_Byte* buffer, Ice_Event* event) {
     int i;
     for (i = 0; i < ICE_CONNECTIONS; ++i) {
@@ -109,7 +109,7 @@ static int ready(TcpEndpoint* self, Ice_Byte* buffer, Ice_Event* event) {
     return 0;
 }
 
-/* Accepts a connection; if no slot is free, ends another connection first. */
+/* Accepts a connection; if no slot is free, closes another connection first. */
 static void acceptOne(TcpEndpoint* self, Ice_Event* event) {
     int slot = TcpEndpoint_freeSlot(self), fd;
     Ice_Int left;
@@ -206,12 +206,13 @@ static Ice_Status sendAll(void* context, int connection, const Ice_Byte* message
     if (c->over)
         closeOne(c);
     else if (ends)
-        (void)shutdown(fd, SHUT_RDWR); /* the receiving task detects the end and reports it */
+        /* the task that receives detects the end and reports the event */
+        (void)shutdown(fd, SHUT_RDWR);
     unlock(self);
     return ends ? ICE_CONNECTION_LOST : ICE_OK;
 }
 
-/* Returns the number of an open connection to this peer, or -1. */
+/* Returns the number of an open connection to this peer; -1 if there is none. */
 static int connectionTo(TcpEndpoint* self, const TcpEndpoint_Place* to) {
     int slot, found = -1;
     lock(self);
@@ -225,9 +226,9 @@ static int connectionTo(TcpEndpoint* self, const TcpEndpoint_Place* to) {
     return found;
 }
 
-/* Returns the open connection to this peer, or opens one. If a name has several addresses, they are
- * tried in order: the server may listen on only one of them, such as 127.0.0.1 if localhost also
- * means ::1. */
+/* Returns the open connection to this peer, or opens a connection. If a host name has several
+ * addresses, tries them in order: the server may listen on only one of them, such as 127.0.0.1 if
+ * localhost also means ::1. */
 static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size, int* connection) {
     TcpEndpoint* self = context;
     TcpEndpoint_Place places[TCP_PLACES];
@@ -253,7 +254,8 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
     if (fd < 0)
         return ICE_CONNECTION_LOST;
     lock(self);
-    slot = TcpEndpoint_freeSlot(self); /* another task may have connected in the meantime */
+    /* another task may have connected to this peer in the meantime */
+    slot = TcpEndpoint_freeSlot(self);
     if (slot >= 0) {
         use(&self->connections[slot], fd, 0);
         self->connections[slot].peer = places[turn - 1].at;
@@ -263,14 +265,15 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
     }
     unlock(self);
     *connection = slot;
-    wakeUp(self); /* a receiving task must add the new connection to those it waits for */
+    wakeUp(self); /* wakes the receiving task, which must also wait for the new connection */
     return slot >= 0 ? ICE_OK : ICE_LIMIT;
 }
 
 static void stopListening(TcpEndpoint* self) {
     lock(self);
     if (self->listener >= 0) {
-        (void)shutdown(self->listener, SHUT_RDWR); /* the receiving task may be waiting for it */
+        /* wakes the receiving task, which may be waiting for this socket */
+        (void)shutdown(self->listener, SHUT_RDWR);
         (void)close(self->listener);
     }
     self->listener = -1;
@@ -287,7 +290,7 @@ static Ice_Status listenTo(void* context, const char* options) {
         return ICE_OK;
     }
     if (self->listener >= 0)
-        return ICE_LIMIT; /* a communicator has one port */
+        return ICE_LIMIT; /* a communicator can listen on only one port */
     if (!TcpEndpoint_readOptions(options, &here))
         return ICE_PARSE;
     if (!here.host.data)
@@ -300,7 +303,7 @@ static Ice_Status listenTo(void* context, const char* options) {
     if (self->listener < 0)
         return ICE_NO_ENDPOINT;
     (void)setsockopt(self->listener, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    /* a peer may disconnect before its connection is accepted */
+    /* non-blocking, because a peer may disconnect before accept is called, which would then wait */
     (void)fcntl(self->listener, F_SETFL, O_NONBLOCK);
     if (bind(self->listener, (struct sockaddr*)&at->at, at->size) != 0 ||
         listen(self->listener, SOMAXCONN) != 0 ||

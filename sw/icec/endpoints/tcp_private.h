@@ -6,7 +6,7 @@
 
 #include "tcp_endpoint.h"
 
-/* ---- tcp_address: endpoints on the wire, names and sockets ---- */
+/* ---- tcp_address: endpoints in messages, host names and sockets ---- */
 
 typedef struct TcpEndpoint_Address {
     Ice_String host; /* host in the encoded endpoint: a numeric address or a name */
@@ -15,11 +15,11 @@ typedef struct TcpEndpoint_Address {
     Ice_Bool compresses; /* 1: the endpoint offers compression, which this side does not use */
 } TcpEndpoint_Address;
 
-/* Reads the options of an endpoint; `host` is empty without -h. Returns 0 if an option is unknown
+/* Reads the options of an endpoint; without -h, `host` is empty. Returns 0 if an option is unknown
  * or a value is out of range. */
 Ice_Bool TcpEndpoint_readOptions(const char* options, TcpEndpoint_Address* address);
 
-/* `encode` and `print` of Ice_Endpoint. */
+/* The functions `encode` and `print` of Ice_Endpoint. */
 void TcpEndpoint_encode(void* context, const char* options, Ice_OutputStreamPtr os);
 Ice_Bool TcpEndpoint_print(void* context, const Ice_Byte* encoded, Ice_Int size,
                            Ice_OutputStreamPtr text);
@@ -34,23 +34,24 @@ typedef struct TcpEndpoint_Place {
     socklen_t size;
 } TcpEndpoint_Place;
 int TcpEndpoint_resolve(const TcpEndpoint_Address* address, TcpEndpoint_Place* places);
-/* Connects with a time limit. Returns the socket, or -1 if the peer refuses or the time is over. */
+/* Connects within a time limit. Returns the socket; -1 if the peer refuses or the time-out
+ * expires. */
 int TcpEndpoint_open(const TcpEndpoint_Place* to, Ice_Int timeoutMs);
 
 /* Sets the options of a connection: no delay, and detection of a peer that has vanished. */
 void TcpEndpoint_tune(int fd);
 
-/* ---- tcp_traffic: traffic of a connection. The caller holds the lock, except for nowMs and
+/* ---- tcp_traffic: messages on a connection. The caller holds the lock, except for nowMs and
  * sendSome. ---- */
 
 U32 TcpEndpoint_nowMs(void* context);
 /* Returns a free slot; -1 if all slots are taken. */
 int TcpEndpoint_freeSlot(const TcpEndpoint* self);
 
-/* Records that a message was sent or received. A heartbeat does not count as use of its
- * connection. */
+/* Records that a message was sent or received on a connection. A heartbeat does not count as
+ * use. */
 void TcpEndpoint_note(TcpEndpoint_Connection* c, const Ice_Byte* message, Ice_Int size);
-/* Sends a message without a body, if the system accepts it at once. */
+/* Sends a message without a body, if the system accepts it without waiting. */
 void TcpEndpoint_sendHead(TcpEndpoint_Connection* c, Ice_Byte type);
 /* Sends the heartbeats that are due. Returns the time until the next heartbeat, at most
  * timeoutMs. */
@@ -58,13 +59,13 @@ Ice_Int TcpEndpoint_keepUp(TcpEndpoint* self, Ice_Int timeoutMs);
 /* Sends for at most `ms` milliseconds. Returns the number of bytes that the system accepted. */
 Ice_Int TcpEndpoint_sendSome(int fd, const Ice_Byte* message, Ice_Int size, Ice_Int ms);
 
-/* Refuses a message; c->data contains its first `have` bytes. If the caller waits for a reply,
- * sends an error, and skips the rest of the message. Otherwise returns 0, and the connection
- * must end. */
+/* Refuses the message that begins in c->data; `have` bytes of it have arrived. If the caller waits
+ * for a reply, sends an error, skips the rest of the message and returns 1. Otherwise returns 0;
+ * the connection must then be closed. */
 int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size);
-/* Returns the accepted connection that a new connection may displace first, and sets `left` to
- * the time until then. Returns -1 if there is no such connection. */
+/* Returns the connection that a new connection can displace first, and sets `left` to the time
+ * after which it can be displaced. Returns -1 if no connection can be displaced. */
 int TcpEndpoint_idlest(TcpEndpoint* self, Ice_Int* left);
 /* Returns the listening socket if a connection can be accepted now. Otherwise returns -1, and
- * shortens timeoutMs to the time when a connection can be accepted. */
+ * reduces timeoutMs to the time after which a connection can be accepted. */
 int TcpEndpoint_listenerFor(TcpEndpoint* self, Ice_Int* timeoutMs);

@@ -45,11 +45,12 @@ void TcpEndpoint_note(TcpEndpoint_Connection* c, const Ice_Byte* message, Ice_In
         --c->owed;
 }
 
-/* Sends a message if the system accepts it immediately. */
+/* Sends a message if the system accepts it without waiting. */
 static void sendNow(TcpEndpoint_Connection* c, const Ice_Byte* message, Ice_Int size) {
     if (c->fd >= 0 && !c->sending && !c->over &&
         send(c->fd, message, (size_t)size, MSG_NOSIGNAL | MSG_DONTWAIT) != size)
-        (void)shutdown(c->fd, SHUT_RDWR); /* a message sent in part makes the connection unusable */
+        /* only a part of the message was sent, so the connection is unusable */
+        (void)shutdown(c->fd, SHUT_RDWR);
     c->sentMs = TcpEndpoint_nowMs(0);
 }
 
@@ -82,14 +83,14 @@ int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size) {
     char reason[REASON_MAX];
     if (c->data[COMPRESSION_AT] == 2) {
         fprintf(stderr, "icec: refused a compressed %s: IceC has no bzip2\n", what);
-        /* CLOSE informs the caller that its request was not executed */
+        /* CLOSE informs the caller that the request was not executed */
         TcpEndpoint_sendHead(c, ICEC_CLOSE);
         return 0;
     }
     sprintf(reason, "::Ice::MemoryLimitException: over ICE_MESSAGE_MAX (%d)", ICE_MESSAGE_MAX);
     fprintf(stderr, "icec: refused a %s of %d bytes: %s\n", what, size, reason);
     if (type != ICEC_REQUEST || memcmp(c->data + ICEC_HEADER, noId, 4) == 0)
-        return 0; /* no reply can report the error, so the connection ends */
+        return 0; /* the error cannot be reported in a reply, so the connection is closed */
     sendReason(c, reason);
     c->served = 1;
     c->usedMs = TcpEndpoint_nowMs(0);
@@ -98,7 +99,7 @@ int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size) {
     return 1;
 }
 
-/* Returns whether a message has arrived in part or completely and has not been handled. */
+/* Returns whether a message, or a part of one, has arrived that was not handled yet. */
 static int isArriving(const TcpEndpoint_Connection* c) {
     Ice_Byte byte;
     return c->have > 0 || c->skip > 0 || recv(c->fd, &byte, 1, MSG_PEEK | MSG_DONTWAIT) > 0;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * xbee_endpoint: passes messages between IceC's tasks and the link of the radio task.
+ * xbee_endpoint: passes messages between IceC's tasks and the link, which runs in the radio task.
  */
 #include "xbee_endpoint.h"
 
@@ -12,22 +12,23 @@
 #define NOBODY 255
 #define HEAD 8
 #define BODY 7
-/* Number of tries to send while the link has no room, 20 ms apart: 20 s in total. After 27 s
- * without acknowledgement of a fragment, the session would end with all its connections. Two
- * answers of 8 KB take 4 s if three of ten packets are lost. */
+/* Number of attempts to send while the link has no room, 20 ms apart: 20 s in total. The limit is
+ * below 27 s: after that time without acknowledgement of a fragment, the session would end with all
+ * its connections. Two replies of 8 KB take 4 s if three of ten packets are lost. */
 #define RETRIES 1000
-/* number of tries for other peers, since the first ground has to wait meanwhile */
+/* number of attempts for all peers except the first ground station, which has to wait meanwhile */
 #define OTHER_RETRIES 100
 
 /* Beginning of an encoded endpoint: type, encapsulation of 13 bytes, encoding 1.1. */
 static const Ice_Byte head[HEAD] = {
     XBEE_ENDPOINT_TYPE & 0xFF, XBEE_ENDPOINT_TYPE >> 8, 6 + BODY, 0, 0, 0, 1, 1};
 
-/* Bit of a pending event. The lowest bit is delivered first; the event of a message is bit 0. */
+/* Bit that represents a pending event. The lowest bit is delivered first; bit 0 is the event of a
+ * message. */
 #define EVENT(kind, channel) \
     (2U << (((U32)(kind) - ICE_EVENT_CLOSED) * XBEE_CONNECTIONS + (U32)(channel)))
 
-/* Peer of a connection, and its channel there. */
+/* Peer of a connection, and channel of the connection on this peer's link. */
 #define PEER_OF(connection) ((int)((U32)(connection) / LINK_CHANNELS))
 #define CHANNEL_OF(connection) ((int)((U32)(connection) % LINK_CHANNELS))
 
@@ -43,8 +44,8 @@ static int isOwn(const XBeeATEndpoint* self, int connection) {
     return connection == self->own[PEER_OF(connection)];
 }
 
-/* Records whether the link keeps a message that could not be delivered. Returns the previous
- * record. */
+/* Sets whether the link keeps a message that could not be delivered. Returns the previous
+ * setting. */
 static int setHeld(XBeeATEndpoint* self, Ice_Byte held) {
     const int before = self->held;
     if (held != before)
@@ -65,7 +66,7 @@ static void report(XBeeATEndpoint* self, U32 events) {
     self->port->signal(self->context);
 }
 
-/* Cancels an event. Returns 1 if the event was not delivered yet. */
+/* Cancels a pending event. Returns 1 if the event was still pending. */
 static int cancel(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     if (!(self->events & EVENT(kind, channel)))
         return 0;
@@ -73,8 +74,8 @@ static int cancel(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     return 1;
 }
 
-/* Records the end of a connection: nothing more may be sent on its channel, because the channel may
- * soon belong to another connection. */
+/* Records the end of a connection. Nothing more may be sent on the connection, because its channel
+ * may soon belong to another connection. */
 static void end(XBeeATEndpoint* self, int channel) {
     if (isOwn(self, channel)) {
         setOwnOpen(self, PEER_OF(channel), 0);
@@ -86,8 +87,8 @@ static void end(XBeeATEndpoint* self, int channel) {
 
 int XBeeATEndpoint_onMessage(void* context, int channel, const U8* data, U32 size) {
     XBeeATEndpoint* self = context;
-    /* Openings and closings are delivered before messages, so a message is only accepted while
-     * no other event is pending. */
+    /* Events of opening and closing are delivered before messages. A message is therefore only
+     * accepted while no other event is pending. */
     if (!self->buffer || self->events) {
         (void)setHeld(self, 1);
         return 1;
@@ -112,14 +113,15 @@ void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
     }
     if (!isOpen)
         end(self, channel);
-    /* A closing cancels an opening that was not delivered. So at most one closing and one later
-     * opening are pending for a channel, even if the ground restarts often. */
+    /* If an opening is still pending when the channel closes, both cancel each other. At most one
+     * closing and one later opening are therefore pending for a channel, even if the ground station
+     * restarts often. */
     if (isOpen || !cancel(self, ICE_EVENT_OPENED, channel))
         report(self, EVENT(isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel));
 }
 
-/* Waits for one event. The link may write `buffer` only during this wait; at other times the link
- * keeps messages. */
+/* Waits for one event. The link may write to `buffer` only during this wait; at other times the
+ * link keeps messages. */
 static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ice_Event* event) {
     XBeeATEndpoint* self = context;
     U32 first = 0;
@@ -137,7 +139,7 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
     if (self->events) {
         while (!(self->events >> first & 1U))
             ++first;
-        self->events &= self->events - 1U; /* removes the lowest event from the set */
+        self->events &= self->events - 1U; /* removes the lowest pending event */
         first = first ? first + XBEE_CONNECTIONS - 1U : self->from;
         event->kind = (Ice_EventKind)(ICE_EVENT_MESSAGE + first / XBEE_CONNECTIONS);
         event->connection = (int)(first % XBEE_CONNECTIONS);
@@ -147,14 +149,16 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
     return ICE_OK;
 }
 
-/* Opens this side's channel to a peer. A vehicle without a session is dialed, and the channel is
- * opened later; the vehicle's first message then ends the caller's wait. */
+/* Opens this side's channel to a peer. If the peer is a vehicle without a session, dials the
+ * vehicle; the channel is then opened later, and the vehicle's first message ends the caller's
+ * wait. */
 static Link_Status openOwn(XBeeATEndpoint* self, int peer) {
     Link_Status status = LINK_OK;
     const int own = self->own[peer];
     if (!isOwnOpen(self, peer)) {
         status = Link_openChannel(self->links[peer], CHANNEL_OF(own));
-        if (status == LINK_OK) { /* a pending closing belongs to the previous connection */
+        /* a closing that is still pending belongs to the previous connection, so it is cancelled */
+        if (status == LINK_OK) {
             setOwnOpen(self, peer, 1);
             self->events &= ~EVENT(ICE_EVENT_CLOSED, own);
         }
@@ -179,13 +183,13 @@ void XBeeATEndpoint_dial(XBeeATEndpoint* self, int peer, U32 nowUs) {
     }
 }
 
-/* Returns whether the connection of the offered message has ended, even if this was not yet
- * reported to the receiver. The channel may already belong to another connection. */
+/* Returns whether the connection of the message to be sent has ended, even if the receiver has not
+ * been informed yet. The channel may already belong to another connection. */
 static int hasEnded(const XBeeATEndpoint* self, int connection) {
     return (self->events & EVENT(ICE_EVENT_CLOSED, connection)) || self->offered != connection;
 }
 
-/* Ends a connection because the link has no room for its message. */
+/* Ends a connection because the link has no room for a message on it. */
 static void giveUp(XBeeATEndpoint* self, int connection) {
     (void)Link_closeChannel(self->links[PEER_OF(connection)], CHANNEL_OF(connection));
     XBeeATEndpoint_onChannel(self, connection, 0);
@@ -195,15 +199,15 @@ static int mostTries(int connection) {
     return PEER_OF(connection) ? OTHER_RETRIES : RETRIES;
 }
 
-/* Sends a message or, without one, opens this side's channel. Tries again while the link has no
- * room. If the last try fails, the connection ends; the link then informs the peer. */
+/* Sends a message; without a message, opens this side's channel. Tries again while the link has no
+ * room. If the last attempt fails, ends the connection; the link then informs the peer. */
 static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* message,
                         Ice_Int size) {
     Link_Status status;
     int tries = 0;
     lock(self);
     if (message)
-        /* only one message is offered at a time, because the caller holds ICE_LOCK_SEND */
+        /* only one message at a time is being sent, because the caller holds ICE_LOCK_SEND */
         self->offered = (Ice_Byte)connection;
     for (;;) {
         if (!message)
@@ -222,8 +226,7 @@ static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* me
         (void)self->port->wait(self->context, 20);
         lock(self);
     }
-    /* The wait above may have consumed a signal for the receiver, so the receiver is signalled
-     * again. */
+    /* The wait above may have consumed the receiver's signal, so the signal is sent again. */
     if (tries)
         self->port->signal(self->context);
     return status == LINK_OK ? ICE_OK : status == LINK_TOO_LONG ? ICE_LIMIT : ICE_CONNECTION_LOST;
@@ -247,14 +250,16 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
     if (size < 2 || encoded[0] != head[0] || encoded[1] != head[1] || peer < 0)
         return ICE_NO_ENDPOINT;
     *connection = self->own[peer];
-    return offer(self, *connection, 0, 0); /* the last closing may not have been delivered yet */
+    /* a closing of the previous connection may still be pending, so the channel is opened by
+     * offer */
+    return offer(self, *connection, 0, 0);
 }
 
 static void closeChannel(void* context, int connection) {
     XBeeATEndpoint* self = context;
     lock(self);
-    /* The peer may have closed the connection already, and the channel may belong to a new
-     * connection. */
+    /* The peer may have closed the connection already. The channel may then belong to a new
+     * connection and must stay open. */
     if (!cancel(self, ICE_EVENT_CLOSED, connection)) {
         (void)Link_closeChannel(self->links[PEER_OF(connection)], CHANNEL_OF(connection));
         end(self, connection);
@@ -265,7 +270,7 @@ static void closeChannel(void* context, int connection) {
 
 static Ice_Status listenTo(void* context, const char* options) {
     (void)context;
-    (void)options; /* the radio is always open, so there is nothing to do */
+    (void)options; /* the radio always receives, so there is nothing to do */
     return ICE_OK;
 }
 
@@ -306,7 +311,8 @@ static Ice_Bool print(void* context, const Ice_Byte* encoded, Ice_Int size,
 Ice_Status XBeeATEndpoint_makeProxy(Ice_ObjectAdapterPtr adapter, const char* identity, U16 address,
                                     Ice_ObjectPrxPtr prx) {
     const Ice_Status status = Ice_ObjectAdapter_createProxy(adapter, identity, prx);
-    /* endpoints[0] is the number of endpoints, 1. The address follows the head. */
+    /* endpoints[0] is the number of endpoints: 1. The encoded endpoint follows; its address is
+     * after `head`. */
     prx->endpoints[1 + HEAD] = (Ice_Byte)address;
     prx->endpoints[2 + HEAD] = (Ice_Byte)(address >> 8);
     return status;

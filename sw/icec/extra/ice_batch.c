@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_batch: one-way requests that are sent together. A batch is a separate message: a head, the
- * number of requests, and the requests without ids.
+ * ice_batch: collects one-way requests and sends them in one message: a header, the number of
+ * requests, and the requests without ids.
  */
 #include "ice_private.h"
 
@@ -22,9 +22,9 @@ static Ice_Status flush(Ice_ObjectPrxPtr prx) {
     return status;
 }
 
-/* Adds a finished request to the batch. If the batch is full and already has a connection, it is
- * sent. Opening a connection here is not possible, because it would receive into the buffer that
- * the request uses. */
+/* Adds a complete request to the batch. If the batch has no room for the request and has an open
+ * connection, sends the batch first. A connection cannot be opened here, because the wait for it
+ * could receive a request, whose reply would use the buffer of this request. */
 static Ice_Status keep(Ice_ObjectPrxPtr prx) {
     Ice_Batch* batch = prx->batch;
     Ice_OutputStreamPtr request = &prx->communicator->request;
@@ -61,7 +61,7 @@ Ice_Status Ice_ObjectPrx_ice_flushBatchRequests(Ice_ObjectPrxPtr prx) {
     int connection;
     if (!batch || batch->count == 0)
         return ICE_OK;
-    prx->batch = 0; /* connect like any other call */
+    prx->batch = 0; /* without a batch, ice_getConnection connects as for any other call */
     status = Ice_ObjectPrx_ice_getConnection(prx, &connection);
     prx->batch = batch;
     if (status != ICE_OK)

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_locator: resolves an indirect proxy with a locator such as IceGrid's.
+ * ice_locator: resolves an indirect proxy by asking a locator, such as IceGrid's.
  */
 #include "ice_message.h"
 
@@ -8,10 +8,10 @@
 
 #define MODE (2 | ICE_RESULTS) /* idempotent */
 
-/* Asks the locator for the adapter that the proxy names, or for the object itself if it names
- * none. */
+/* Asks the locator for the adapter that the proxy names; if the proxy names no adapter, asks for
+ * the object. */
 static Ice_Status find(const Ice_ObjectPrx* prx, Ice_ObjectPrxPtr locator, Ice_ObjectPrxPtr found) {
-    int byAdapter = prx->endpoints[1] != 0; /* size of the adapter's id */
+    int byAdapter = prx->endpoints[1] != 0; /* length of the adapter's id */
     Ice_OutputStreamPtr os =
         Ice_ObjectPrx_begin(locator, byAdapter ? "findAdapterById" : "findObjectById", MODE);
     Ice_InputStreamPtr is;
@@ -36,13 +36,14 @@ static Ice_Status find(const Ice_ObjectPrx* prx, Ice_ObjectPrxPtr locator, Ice_O
 
 Ice_Status Ice_ObjectPrx_resolve(Ice_ObjectPrxPtr self, Ice_ObjectPrxPtr locator) {
     Ice_ObjectPrx asked = *self;
-    /* the locator may return an adapter for the object, and then endpoints for the adapter */
+    /* two steps: for an object, the locator may first return an adapter, and then the adapter's
+     * endpoints */
     int steps = 2;
     while (asked.endpoints[0] == 0 && steps-- > 0) {
         Ice_ObjectPrx found;
         Ice_Status status = find(&asked, locator, &found);
         if (status != ICE_OK)
-            return status; /* `found` is not valid in this case */
+            return status; /* `found` is not set after an error */
         if (Ice_ObjectPrx_isNull(&found))
             return ICE_NO_ENDPOINT;
         asked = found;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * ice_properties: reads properties from a table of strings, and creates object adapters and proxies
- * from them.
+ * from these properties.
  */
 #include "ice_message.h"
 
@@ -11,8 +11,8 @@ void Ice_Communicator_setProperties(Ice_CommunicatorPtr ic, const char* const* t
     ic->properties = table;
 }
 
-/* Returns the value of the property whose name is `key` followed by `suffix`; 0 if it is not
- * set. */
+/* Returns the value of the property whose name is `key` followed by `suffix`; 0 if this property is
+ * not set. */
 static const char* find(Ice_CommunicatorPtr ic, const char* key, const char* suffix) {
     const char* const* entry;
     size_t n = strlen(key), m = strlen(suffix);
@@ -41,7 +41,7 @@ Ice_Int Ice_Communicator_getPropertyAsInt(Ice_CommunicatorPtr ic, const char* ke
     for (; *text; ++text) {
         U32 digit = (U32)(U8)*text - (U32)'0';
         if (digit > 9 || value > (0x7FFFFFFFU - digit) / 10)
-            return otherwise; /* not a number: use the default, as Ice does */
+            return otherwise; /* the value is not a number: returns the default, as Ice does */
         value = value * 10 + digit;
     }
     return negative ? -(Ice_Int)value : (Ice_Int)value;

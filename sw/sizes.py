@@ -1,16 +1,18 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""sizes: measures the bytes of the firmware's layers, from maps of the linker and objects.
+"""sizes: measures the bytes of the firmware's layers, from linker maps and object files.
 
-    sizes.py layers SOURCE GENERATED BUILD OUT.json   each layer on a Cortex-M3 at -Os, with the
-                                                      paper's Table II; RAM and largest frames;
+    sizes.py layers SOURCE GENERATED BUILD OUT.json   each layer on a Cortex-M3 at -Os, compared
+    with
+                                                      the paper's Table II; RAM and largest frames;
                                                       fails if one exceeds sw/size_budget.json
     sizes.py firmware MAP OUT.json                    flash and RAM of a firmware by layer; its
                                                       stacks, by the call graph
 
-layers: `minimal` counts the bytes of each layer in the image of the program sw/minimal, which has
-the minimal run time and link (text and read-only data; the C library and generated code are not
-counted, as in the paper). `full` counts all files of the layer, linked or not.
+layers: `minimal` is the number of bytes of a layer in the image of the program sw/minimal, which
+has the minimal run time and link. It counts text and read-only data; as in the paper, it does not
+count the C library and generated code. `full` counts all files of the layer, including code that is
+not linked.
 """
 import json
 import os
@@ -20,9 +22,9 @@ import subprocess
 import sys
 import tempfile
 
-# bytes of layers in the paper's Table II, and two layers that only we have
+# bytes of the layers in the paper's Table II; 0 for two layers that only this project has
 PAPER = {"fsmc": 1116, "radio": 1795, "crypto": 0, "link": 1307, "icec": 2622, "endpoint": 0}
-# sources of layers that are not exactly the files of one folder
+# sources of those layers that are not all files of one folder
 FILES = {"icec": ["icec/*.c", "icec/values/*.c", "icec/extra/*.c"],
          "endpoint": ["icec/endpoints/xbee_endpoint.c", "icec/endpoints/xbee_peers.c"]}
 LAYER_FOLDERS = ("fsmc", "radio", "crypto", "link", "icec", "values", "extra", "endpoints")
@@ -35,12 +37,12 @@ ENTRIES = ("UAV_radioTask", "appMainTask", "clientTask", "watchTask", "idleTask"
 
 
 def sections(path, dropped=False):
-    """Returns (section, address, bytes, file) of the image's parts in a linker's map, or of the
-    parts that the linker has dropped (--gc-sections)."""
+    """Returns (section, address, bytes, file) for each part of the image in a linker map; with
+    `dropped`, for each part that the linker has removed (--gc-sections)."""
     head, _, text = open(path).read().partition("Linker script and memory map")
     if dropped:
         text = head.partition("Discarded input sections")[2]
-    # a long section name has a separate line
+    # after a long section name, the linker begins a new line
     text = re.sub(r"^( \.?[A-Za-z_]\S*)\n +(?=0x)", r"\1 ", text, flags=re.M)
     for name, address, size, file in re.findall(r"^ (\.?[A-Za-z_]\S*) +0x(\w+) +0x(\w+) (\S.*)$",
                                                 text, re.M):
@@ -60,7 +62,7 @@ def linked(image, layer, wanted):
 
 
 def whole(patterns, source, generated):
-    """Returns (text and read-only data, RAM) of all contents of the files matching these
+    """Returns (text and read-only data, RAM) of all contents of the files that match these
     patterns."""
     includes = [generated, f"{generated}/slice/Autopilot"] + [f"{source}/sw/{d}" for d in (
         "base", "os", "os/host", "fsmc", "radio", "crypto", "link", "icec", "icec/endpoints")]
@@ -76,7 +78,7 @@ def whole(patterns, source, generated):
 
 
 def deepest(build, layer):
-    """Returns (bytes, function) of the largest stack frame in the minimal program."""
+    """Returns (bytes, function) for the largest stack frame of a layer in the minimal program."""
     lines = [line.split("\t")
              for su in pathlib.Path(build, "sw/minimal").glob(f"minimal_{layer}.arm/**/*.su")
              for line in open(su)]
@@ -134,8 +136,8 @@ def layers(source, generated, build, output):
 
 
 def parts(path):
-    """Yields (flash, RAM, kind of section, folder) of the parts of a linked firmware. The folder is
-    empty for the C library."""
+    """Yields (flash, RAM, kind of section, folder) for each part of a linked firmware. The folder
+    is empty for parts of the C library."""
     for name, address, size, file in sections(path):
         kind = re.match(r"\.(text|rodata|data|bss|vectors|noinit)", name)
         if kind and address and size:
@@ -145,8 +147,8 @@ def parts(path):
 
 
 def image_bytes(build, name):
-    """Returns (flash, RAM, layers) of a linked firmware, in bytes. `layers` is the part of the
-    flash that belongs to the paper's layers (PAPER)."""
+    """Returns (flash, RAM, layers) of a linked firmware, in bytes. `layers` is the flash used by
+    the layers of the paper (PAPER)."""
     found = list(parts(f"{build}/firmware/{name}.map"))
     return (sum(flash for flash, _, _, _ in found), sum(ram for _, ram, _, _ in found),
             sum(flash for flash, _, kind, folder in found
@@ -154,8 +156,9 @@ def image_bytes(build, name):
 
 
 def packages(build):
-    """Prints flash and RAM of the vehicle by package: the core alone, what each package adds to
-    it in the whole vehicle, and the whole vehicle. Returns the entries of the report."""
+    """Prints flash and RAM of the vehicle's firmware by package: the core without packages, what
+    each package adds to the whole firmware, and the whole firmware. Returns the entries of the
+    report."""
     whole_image = image_bytes(build, "uav")
     rows = [("core", image_bytes(build, "uav_core"))]
     rows += [(name, tuple(a - b for a, b in zip(whole_image, image_bytes(build,
@@ -191,8 +194,8 @@ def firmware(path, output):
 
 
 def stacks(path):
-    """Prints the deepest stack below each task: frames (-fstack-usage) along the call graph
-    (-fcallgraph-info) of the objects in the linker's map."""
+    """Prints the deepest stack of each task. It adds stack frames (-fstack-usage) along the call
+    graph (-fcallgraph-info) of the objects in the linker map."""
     objects = sorted(set(re.findall(r"^LOAD (\S+)\.o$", open(path).read(), re.M)))
     graphs = [pathlib.Path(f"{name}.ci") for name in objects]
     text = "".join(graph.read_text() for graph in graphs if graph.is_file())
@@ -206,7 +209,8 @@ def stacks(path):
     known = {}
 
     def depth(function):
-        """Returns (bytes, call path) of the deepest stack; a recursion is counted once."""
+        """Returns (bytes, call path) of the deepest stack below a function; a recursive call is
+        counted once."""
         if function not in known:
             known[function] = (0, [])
             below, way = max((depth(called) for called in calls.get(function, ())

@@ -6,7 +6,8 @@
 
 #include <string.h>
 
-/* OF returns the transport of a connection, OWN its number within that transport. */
+/* OF(ic, connection) returns the transport of a connection; OWN returns the connection's number
+ * within this transport. */
 #define OF(ic, connection) ((ic)->transports + (ICE_TRANSPORTS == 1 ? 0 : NUMBER(connection, /)))
 #define OWN(connection) (ICE_TRANSPORTS == 1 ? (connection) : NUMBER(connection, %))
 #define NUMBER(connection, part) ((connection)part ICE_CONNECTIONS)

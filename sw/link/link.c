@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link: the functions that programs call. It connects the parts of the layer and passes calls on to
- * them.
+ * link: the functions that programs call. They connect the parts of the layer and pass each call on
+ * to a part.
  */
 #include "link.h"
 
@@ -47,7 +47,7 @@ void Link_setKey(Link* link, int slot, const U8* key, U32 side) {
         env->codec = &link_codecKeyed;
         link_limitPacket(&link->pacing, bytes);
         link_useRules(&link->session.handshake, &link_keyedHandshake);
-        /* a nonce of the length that a link with a key needs */
+        /* draws a new nonce, because a link with a key needs a longer one */
         link_drawNonce(&link->session.handshake);
     }
     if (Link_keyInUse(link) == slot)
@@ -86,8 +86,8 @@ Link_State Link_state(const Link* link) {
     return (Link_State)link->session.handshake.state;
 }
 
-/* Checks whether the channel can be used. Without `mustBeOpen`, a channel that can still be opened
- * is also accepted. */
+/* Checks whether a channel can be used: with `mustBeOpen`, only if it is open; otherwise also if it
+ * can still be opened. */
 static Link_Status check(const Link* link, int channel, int mustBeOpen) {
     if (channel < 0 || channel >= LINK_CHANNELS)
         return LINK_CLOSED;
@@ -161,16 +161,16 @@ void Link_poll(Link* link, U32 nowUs) {
     if (link_pollSession(session)) {
         if (!link_pollReceiver(&link->session.receiver) || !link_pollSender(&link->session.sender))
             link_abort(session);
-        /* otherwise the next fragment carries the acknowledgement */
+        /* if the sender has work, its next fragment carries the acknowledgement */
         else if (!link->session.sender.hasWork)
             link_pollAck(&link->session.receiver);
     }
-    /* also sends a frame of the handshake for which the radio had no room */
+    /* this also sends a frame of the handshake that the radio had no room for earlier */
     if (link->pacing.packed)
         (void)link_flush(&link->pacing);
 }
 
-/* Returns the earlier of two times; `at` is ignored unless `isDue`. */
+/* Returns the earlier of two times. If `isDue` is 0, `at` is ignored. */
 static U32 sooner(int isDue, U32 at, U32 first) {
     return isDue && LINK_BEFORE(at, first) ? at : first;
 }
@@ -193,7 +193,9 @@ U32 Link_deadline(const Link* link, U32 nowUs) {
     first = sooner(handshake->isAnswered, handshake->firstAnswer + LINK_NONCE_LIFE, first);
     if (handshake->state == LINK_STATE_UP) {
         first = sooner(1, link_livenessDeadline(&link->session.liveness), first);
-        if (!pacing->waiting) /* otherwise the next result from the radio triggers a repetition */
+        /* while packets wait for a result from the radio, the result triggers retransmissions, not
+         * the timer */
+        if (!pacing->waiting)
             first = sooner(sender->base != sender->next, sender->timerAt, first);
         if (!pacing->mostWaiting || pacing->radio->waiting < pacing->mostWaiting) {
             first = sooner(pacing->packed, soon, first);

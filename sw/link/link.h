@@ -13,19 +13,19 @@
  *         Link_poll(&link, nowUs());
  *         if (Link_openChannel(&link, 0) == LINK_OK)   (once; then any number of messages:)
  *             Link_send(&link, 0, message, 12, 0);
- *         sleep(Link_deadline(&link, nowUs()));        (or until the radio brings something)
+ *         sleep(Link_deadline(&link, nowUs()));        (or until bytes arrive from the radio)
  *     }
  *
- * The same source runs in the firmware and in the ground's plugin. Wire format: docs/link.md;
- * limits and times: link_config.h.
+ * The same source runs in the firmware and in the plugin of the ground station. Wire format:
+ * docs/link.md; limits and times: link_config.h.
  *
- * The layer owns no thread, no clock and no memory: the caller supplies the time in microseconds
- * (32 bits, it may wrap), calls Link_poll when Link_deadline is due, and keeps the Link and its
- * buffers. One Link is used by one thread at a time. A callback may call Link_send,
- * Link_openChannel and Link_closeChannel, and no other function of this layer.
+ * The layer has no thread, no clock and no memory of its own. The caller supplies the time in
+ * microseconds (32 bits, which may wrap around), calls Link_poll when Link_deadline is due, and
+ * keeps the Link and its buffers. One Link is used by one thread at a time. A callback may call
+ * Link_send, Link_openChannel and Link_closeChannel, but no other function of this layer.
  *
- * LINK_MINIMAL selects the functions of the minimal layer (link_minimal.h), which defines a Link of
- * its own with buffers inside.
+ * With LINK_MINIMAL, these are the functions of the minimal layer (link_minimal.h), whose Link
+ * contains its buffers.
  */
 #pragma once
 
@@ -38,10 +38,10 @@
 
 typedef struct Link Link; /* an opaque type: its fields are private */
 
-/* Configuration of a link. It is copied; `port` and the buffers must stay valid. */
+/* Configuration of a link. Link_init copies it; `port` and the buffers must stay valid. */
 typedef struct Link_Config {
     const Link_Port* port;
-    void* context; /* passed to the port unchanged */
+    void* context; /* value that is passed to the functions of the port */
     /* time that one byte takes on the slowest part of the path, in units of 1/16 us (1440 at
      * 111,111 baud); for pacing and timers */
     U32 byteTimeUs16;
@@ -84,76 +84,80 @@ typedef LINK_BUFFERS(LINK_SEND_BYTES, LINK_MAX_MESSAGE, LINK_WINDOW) Link_Buffer
 void Link_init(Link* link, const Link_Config* config);
 
 #ifndef LINK_MINIMAL
-/* Limits the size of later frames, in bytes, from 32 (with a key, 59) to LINK_MAX_FRAME. A modem
- * that encrypts splits packets longer than LINK_MAX_ENCRYPTED. The two sides may have different
- * limits. */
+/* Limits the size of later frames, bytes: from 32 (with a key, 59) to LINK_MAX_FRAME. A modem that
+ * encrypts splits packets longer than LINK_MAX_ENCRYPTED. The two sides of a link may have
+ * different limits. */
 void Link_limitFrame(Link* link, U32 bytes);
 
-/* Sets the vehicle's key for slot 0 or 1: LINK_KEY_BYTES bytes shared by both sides; they are
- * copied. `side` is the vehicle's address, plus LINK_GROUND on the ground: a session is only
+/* Sets the vehicle's key for slot 0 or 1: LINK_KEY_BYTES bytes that both sides share; the bytes are
+ * copied. `side` is the vehicle's address, plus LINK_GROUND on the ground. A session is only
  * possible between a ground station and the vehicle with that address, even if others have the key.
- * `key` 0 wipes the slot, and ends a session made with it. After the first key, sessions are
- * authenticated and encrypted, and a peer without the key is refused permanently: with both slots
- * wiped no session is possible. The layer sends HELLO frames with the keys of both slots in turn,
- * and answers a HELLO with either key. Call it after Link_init. */
+ * If `key` is 0, wipes the slot and ends a session that was made with its key. After the first key
+ * was set, sessions are authenticated and encrypted, and a peer without the key is always refused:
+ * when both slots have been wiped, no session is possible. The layer sends HELLO frames with the
+ * keys of both slots in turn, and answers a HELLO with either key. Call this after Link_init. */
 void Link_setKey(Link* link, int slot, const U8* key, U32 side);
 
-/* Returns the slot of the key with which the current session was made; -1 without a session or
- * without a key. */
+/* Returns the slot of the key with which the current session was made; -1 if there is no session or
+ * no key. */
 int Link_keyInUse(const Link* link);
 #endif
 
-/* Starts the handshake. Either side or both may start it; one HELLO is enough to make the
- * session. A side that never calls this function still answers a HELLO. If the peer disappears
- * later, the state is CONNECTING again. */
+/* Starts the handshake. Both sides or only one of them may start it; one HELLO is enough to make
+ * the session. A side that never calls this function still answers a HELLO. If the peer disappears
+ * later, the state returns to CONNECTING. */
 void Link_start(Link* link, U32 nowUs);
 
-/* Ends the session: informs the peer, reports messages in flight as LINK_UNKNOWN, goes to IDLE. */
+/* Ends the session: informs the peer, reports LINK_UNKNOWN for messages in flight, and sets the
+ * state to IDLE. */
 void Link_stop(Link* link, U32 nowUs);
 
 Link_State Link_state(const Link* link);
 
-/* Opens a channel for both directions; the peer's `channel` callback reports it. Returns LINK_OK,
- * LINK_DOWN, LINK_FULL or LINK_CLOSED. */
+/* Opens a channel for both directions; the peer's port reports this by its function `channel`.
+ * Returns LINK_OK, LINK_DOWN, LINK_FULL or LINK_CLOSED. */
 Link_Status Link_openChannel(Link* link, int channel);
 
-/* Closes a channel after the messages that were sent before; needs no room in the queue. Returns
- * LINK_OK, LINK_DOWN, or LINK_CLOSED if it was not open. */
+/* Closes a channel after the messages that were queued before; needs no room in the queue. Returns
+ * LINK_OK, LINK_DOWN, or LINK_CLOSED if the channel was not open. */
 Link_Status Link_closeChannel(Link* link, int channel);
 
 #ifndef LINK_MINIMAL
 /* Sets how many packets may wait for the radio's result (Link_answer); 0 means that the radio
- * reports no results. With results, packets are paced by them, and the contents of a lost packet
- * are sent again at once. Two packets fill the air if the line to the modem is faster: one is on
- * the air, one waits in the modem. With a line of 111,111 baud, three packets are needed. A call is
- * sent only after all packets before it. */
+ * reports no results. Results determine when the next packet is sent, and the contents of a lost
+ * packet are sent again at once. If the line to the modem is faster than the radio, two packets
+ * keep the radio busy: one is on the air, one waits in the modem. With a line of 111,111 baud,
+ * three packets are needed. A call is sent only after all packets before it. */
 void Link_expectAnswers(Link* link, U32 packets);
 
-/* Lets a link share the radio of another link. Packets of both then wait in one list for the
- * radio's answers: a call of Link_answer for either link answers the oldest packet of both. Call
- * this function after Link_init of both links, and give both the same Link_expectAnswers. */
+/* Lets a link share the radio of another link. The packets of both links then wait in one list for
+ * the radio's results: a call of Link_answer for either link reports the result of the oldest
+ * packet in this list. Call this function after Link_init of both links, and call
+ * Link_expectAnswers with the same number for both. */
 void Link_shareRadio(Link* link, Link* with);
 
-/* Returns the modem's RN for the current traffic: the smallest exponent of the random wait before
- * its first try.
- * - 0 for a lone sender: it need not wait.
- * - LINK_WAIT_SHARED for two streams, which would begin together otherwise. If many packets are
- *   lost without failed tries, the two seldom begin together: then 0, unless the modem encrypts.
+/* Returns the modem's RN for the current traffic. RN is the smallest exponent of the random wait
+ * before the modem's first try.
+ * - 0 for a lone sender, which need not wait.
+ * - LINK_WAIT_SHARED for two streams, which would otherwise begin packets at the same time. If many
+ *   packets are lost without failed tries, the two seldom begin together; then 0, unless the modem
+ *   encrypts.
  * - LINK_WAIT_SHARED for a stream during which the peer calls, so that calls get through; and for a
  *   side that sends little while packets are lost, so that an interferer does not meet all of them.
- * `transmit` may call it. */
+ * `transmit` may call this function. */
 U32 Link_randomWait(Link* link);
 
-/* Reports the radio's result for the oldest packet without a result: delivered or lost. If the
- * radio sends no result in LINK_ANSWER_LAST, the driver reports a loss. */
+/* Reports the radio's result for the oldest packet that has no result yet: delivered or lost. If
+ * the radio sends no result within LINK_ANSWER_LAST, the driver reports a loss. */
 void Link_answer(Link* link, int isDelivered, U32 nowUs);
 #endif
 
-/* Queues a copy of a message of 1..LINK_MAX_MESSAGE bytes. `tag` is for the `outcome` callback. */
+/* Queues a copy of a message of 1..LINK_MAX_MESSAGE bytes. `tag` is passed to the function
+ * `outcome` of the port. */
 Link_Status Link_send(Link* link, int channel, const U8* data, U32 size, U32 tag);
 
-/* Processes bytes from the radio, at least one. They may be split in any way; packet boundaries do
- * not matter. Reports each message that becomes complete. */
+/* Processes bytes from the radio, at least one. The bytes may be split at any place; packet
+ * boundaries do not matter. Delivers each message that becomes complete. */
 void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs);
 
 /* Sends the frames that are due: fragments, acknowledgements, retransmissions and HELLO. */
@@ -162,7 +166,7 @@ void Link_poll(Link* link, U32 nowUs);
 /* Returns the time until Link_poll must be called, us; 0xFFFFFFFF if no call is needed. */
 U32 Link_deadline(const Link* link, U32 nowUs);
 
-/* Returns the counters. The link continues to update them. */
+/* Returns the counters, which the link continues to update. */
 const Link_Statistics* Link_statistics(const Link* link);
 
 #ifndef LINK_MINIMAL

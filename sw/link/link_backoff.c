@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_backoff: measures traffic and losses, and chooses from them how long to wait before
- * sending.
+ * link_backoff: measures traffic and losses, and decides from them how long this side waits before
+ * it sends.
  */
 #include "link_backoff.h"
 
 #include "link_config.h"
 
-/* A loss is quick if it took the radio no longer than other packets, so that there were no retries.
- * This happens if two modems start at the same time. After a loss, a side that sends little must
- * rest: twice as long after each further loss, a quarter as long after each delivered packet, and
- * longest while the peer is silent. */
+/* A loss is called quick if the radio reported it as fast as it reports other packets, so there
+ * were no retries; this happens if two modems start at the same time. After a loss, a side that
+ * sends little must pause. The pause doubles after each further loss, and shrinks to a quarter
+ * after each delivered packet. Its limit is longest while the peer is silent. */
 U32 link_noteAnswer(Link_Backoff* c, U32 now, int isDelivered, U32 silence, int isBusy) {
     U32 took = now - c->answeredAt;
     U32 last = LINK_REST_LAST + 4U * silence;
@@ -34,8 +34,8 @@ U32 link_noteAnswer(Link_Backoff* c, U32 now, int isDelivered, U32 silence, int 
     return c->own.isStream || c->peers.isStream ? 0U : c->rest;
 }
 
-/* Decides whether a side sends much, from its total of bytes after `spans` whole spans. If `spans`
- * is 0, the current span has not ended yet. */
+/* Decides whether a side sends a stream. `bytes` is the side's total after `spans` complete spans
+ * of time; if `spans` is 0, the current span has not ended yet. */
 static void judge(Link_Traffic* traffic, U32 bytes, U32 spans) {
     U32 more = bytes - traffic->before;
     if (more >= LINK_SPAN_MANY * (spans ? spans : 1U))

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * link_backoff: back-off on a shared channel (congestion control). It measures how much both sides
- * send and what the radio loses, and decides from that how long a modem waits before it tries (RN)
- * and how long a side rests after a loss.
+ * send and which packets the radio loses. From this it decides how long a modem waits before it
+ * tries to send (RN), and how long a side pauses after a loss.
  */
 #pragma once
 
@@ -11,32 +11,33 @@
 
 /* Traffic of one side. */
 typedef struct Link_Traffic {
-    U32 before;  /* bytes before the current span */
+    U32 before;  /* total of bytes at the start of the current span of time */
     U8 isStream; /* 1: the side sends a stream */
 } Link_Traffic;
 
 typedef struct Link_Backoff {
     Link_Traffic own, peers;
-    U32 since, messages; /* start of the present span, and messages received before it */
-    U32 lostAt;          /* time of the last loss, us */
-    U8 hasLost;          /* 1: `lostAt` is recent */
-    U8 isCalled;         /* 1: the peer calls while this side sends a stream */
-    U8 isBusy;           /* 1: the radio has had a packet all the time since its last answer */
-    U32 answeredAt;      /* time of the last result of the radio, us */
-    U32 rest;            /* longest pause after the next loss, us */
-    U32 usualUs;         /* mean time of a packet that is delivered, us */
-    /* share of recent packets that were lost quickly, without retries by the modem; 65,536 means
-     * all */
+    /* start of the current span of time, us; number of messages received before it */
+    U32 since, messages;
+    U32 lostAt;     /* time of the last loss, us */
+    U8 hasLost;     /* 1: `lostAt` is recent */
+    U8 isCalled;    /* 1: the peer calls while this side sends a stream */
+    U8 isBusy;      /* 1: the radio has had a packet to send ever since its last result */
+    U32 answeredAt; /* time of the last result of the radio, us */
+    U32 rest;       /* longest pause after the next loss, us */
+    U32 usualUs;    /* mean time until a packet is delivered, us */
+    /* share of recent packets that were lost quickly, that is without retries by the modem; 65,536
+     * means all packets */
     U32 quick;
 } Link_Backoff;
 
-/* Returns whether the peer calls while this side sends a stream, and sends no stream itself. */
+/* Returns whether the peer makes calls while this side sends a stream and the peer does not. */
 #define LINK_IS_CALLED(c) ((c)->isCalled && !(c)->peers.isStream)
 
-/* Records the radio's result for a packet at time `now`. `silence`: time since the peer was heard,
- * us. `isBusy`: the radio has further packets. Returns the longest pause before the next packet,
- * us; 0: no pause. */
+/* Records the radio's result for a packet at time `now`. `silence` is the time since the peer was
+ * heard, us. `isBusy`: the radio has further packets. Returns the longest pause before the next
+ * packet, us; 0 means no pause. */
 U32 link_noteAnswer(Link_Backoff* c, U32 now, int isDelivered, U32 silence, int isBusy);
 
-/* Chooses RN, as Link_randomWait returns it. `isSlow`: the modem encrypts. */
+/* Returns the RN for Link_randomWait. `isSlow`: the modem encrypts. */
 U32 link_chooseWait(Link_Backoff* c, U32 now, const Link_Statistics* counts, U32 isSlow);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_broadcast: encrypts and authenticates a packet with Ascon-AEAD128; the packet's head is the
- * nonce.
+ * link_broadcast: encrypts and authenticates a packet with Ascon-AEAD128. The nonce is the header
+ * of the packet.
  */
 #include "link_broadcast.h"
 
@@ -11,7 +11,7 @@
 
 static void crypt(U8* packet, U32 size, const U8* key, int isDecryption, U8* tag) {
     U8 nonce[ASCON_NONCE_BYTES];
-    /* pads the nonce with 0xFF, which the nonces of a link never end with */
+    /* pads the nonce with 0xFF; no nonce of a link ends with this byte */
     memset(nonce, 0xFF, sizeof nonce);
     memcpy(nonce, packet, LINK_BROADCAST_HEAD);
     link_cipher(key, nonce, packet + LINK_BROADCAST_HEAD, size, isDecryption, tag);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_channels: records which channels are open. Both sides open and close them; a channel that
- * was closed here cannot be opened again until the peer has answered.
+ * link_channels: records which channels are open. Both sides can open and close channels. A channel
+ * that this side has closed cannot be opened again until the peer has answered.
  */
 #pragma once
 
@@ -9,8 +9,9 @@
 
 /* Sets of channels, one bit each. */
 typedef struct Link_Channels {
-    U8 open;     /* channels on which messages may be sent */
-    U8 closing;  /* channels that were closed here; the peer's closing has not arrived */
+    U8 open; /* channels on which messages may be sent */
+    /* channels that this side has closed and whose closing by the peer has not arrived yet */
+    U8 closing;
     U8 closeDue; /* closings of this side that are not queued yet */
 } Link_Channels;
 
@@ -20,19 +21,21 @@ typedef struct Link_Channels {
 #define LINK_RESET_CHANNELS(channels) \
     ((channels)->open = (channels)->closing = (channels)->closeDue = 0)
 
-/* Returns whether a channel may be opened here: no closing is pending. */
+/* Returns whether this side may open a channel: no closing of the channel is pending. */
 #define LINK_MAY_OPEN(channels, channel) \
     (!(((channels)->closing | (channels)->closeDue) >> (channel) & 1))
 
-/* Records that an opening has been queued here. */
+/* Records that this side has queued the opening of a channel. */
 #define LINK_OPEN(channels, channel) ((channels)->open = (U8)((channels)->open | 1U << (channel)))
 
-/* Records that an open channel is closed here. `isQueued` is 1 if its closing is in the queue. */
+/* Records that this side closes an open channel. `isQueued` is 1 if the closing is already in the
+ * queue. */
 void link_closeChannel(Link_Channels* channels, U32 channel, int isQueued);
 
-/* Records that a closing that was due has been queued. */
+/* Records that a closing which was due is now in the queue. */
 #define LINK_NOTE_CLOSING(channels, channel) \
     ((channels)->closeDue = (U8)((channels)->closeDue ^ 1U << (channel)))
 
-/* Records that the peer opened or closed a channel. Returns whether this changes anything here. */
+/* Records that the peer has opened or closed a channel. Returns whether the channel's state has
+ * changed on this side. */
 int link_onPeersChannel(Link_Channels* channels, U32 channel, U32 isOpen);

@@ -6,5 +6,5 @@
 
 #include "link_codec.h"
 
-/* Codec that ends each frame with a CRC; a value of the session is the CRC's seed. */
+/* Codec that ends each frame with a CRC. The seed of the CRC depends on the session. */
 extern const Link_Codec link_codecClear;

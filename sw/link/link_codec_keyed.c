@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_codec_keyed: encrypts and authenticates frames with Ascon-AEAD128. The parts of a frame that
- * are not encrypted are copied into its nonce, so the tag also covers them.
+ * link_codec_keyed: encrypts and authenticates frames with Ascon-AEAD128. The unencrypted parts of
+ * a frame are copied into the nonce, so that the tag also covers them.
  */
 #include "link_codec_keyed.h"
 
@@ -9,11 +9,11 @@
 
 #include <string.h>
 
-#define CLEAR_AT 11U  /* offset in the nonce of the unencrypted payload */
+#define CLEAR_AT 11U  /* offset in the nonce at which the unencrypted payload begins */
 #define CLEAR_MOST 5U /* largest size of an unencrypted payload, bytes */
 
-/* Returns the number of unencrypted bytes at the start of the payload: the whole payload of a
- * control frame, the acknowledgement in a PIGGYBACK, the nonces in HELLO-ACK and CONFIRM. */
+/* Returns how many bytes at the start of the payload are not encrypted: all bytes of a control
+ * frame, the acknowledgement in a PIGGYBACK, the nonces in HELLO-ACK and CONFIRM. */
 static U32 clearOf(const U8* frame) {
     U32 most = frame[2] >> 5 >= LINK_KIND_PIGGYBACK ? 1U : 2U * LINK_NONCE_BYTES;
     if (!(frame[0] & LINK_CONTROL))
@@ -28,7 +28,7 @@ static void makeNonce(U8* nonce, const U8* frame, U32 clear, U32 number, U32 ack
     link_put32(nonce + 4, acked);
     if ((frame[0] & LINK_CONTROL) && LINK_IS_HANDSHAKE(kind))
         memcpy(nonce, frame + LINK_HEADER, LINK_NONCE_BYTES);
-    /* an acknowledgement has at most 9 bytes; the last ones do not fit at CLEAR_AT */
+    /* an acknowledgement has up to 9 bytes; those beyond CLEAR_MOST do not fit at CLEAR_AT */
     else if (clear > CLEAR_MOST)
         memcpy(nonce + 4, frame + LINK_HEADER + CLEAR_MOST,
                clear < LINK_BITMAP + 1U ? clear - CLEAR_MOST : LINK_BITMAP + 1U - CLEAR_MOST);

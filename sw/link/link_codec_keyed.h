@@ -9,10 +9,10 @@
 /* Codec that encrypts and authenticates each frame with Ascon-AEAD128. */
 extern const Link_Codec link_codecKeyed;
 
-/* Completes a frame: writes the header with its epoch and the length of the payload, encrypts the
- * payload, which `frame` already holds, and appends the tag. `number` is a frame number whose
- * lowest byte is byte 1 of the frame; `acked` is the first byte of the payload of a PIGGYBACK.
- * Returns the size of the frame, bytes. */
+/* Completes a frame: writes the header with the epoch and the length of the payload, encrypts the
+ * payload, which is already in `frame`, and appends the tag. `number` is the number of the frame;
+ * its lowest byte is byte 1 of the frame. `acked` is the number whose lowest byte is the first
+ * payload byte of a PIGGYBACK. Returns the size of the frame, bytes. */
 U32 link_encryptFrame(U8* frame, U32 header, const U8* key, U32 number, U32 acked);
 
 /* Decrypts the payload of a complete frame in place and stores its length in the header. The frame

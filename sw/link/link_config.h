@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_config: numbers of the link layer that a project may change: in this file, or on the
- * compiler's command line if the number has an #ifndef. Two peers with different numbers are
- * compatible, except for numbers marked "both sides". Times are in us, sizes in bytes, limits in
- * parentheses.
+ * link_config: constants of the link layer that a project may change: in this file, or on the
+ * compiler's command line if the constant has an #ifndef. Two peers with different constants are
+ * compatible, except for constants marked "both sides". Times are in us, sizes in bytes.
+ * Parentheses contain the allowed range.
  */
 #pragma once
 
@@ -18,7 +18,7 @@
 #ifndef LINK_TAG
 #define LINK_TAG 8U
 #endif
-#ifndef LINK_OUTCOMES /* minimal layer: 1 to call `outcome` and `writable` */
+#ifndef LINK_OUTCOMES /* minimal layer: 1 if `outcome` and `writable` must be called */
 #define LINK_OUTCOMES 0
 #endif
 /* size of the largest message (1..32,000); a longer one ends the session */
@@ -33,7 +33,8 @@
 #ifndef LINK_SEND_BYTES
 #define LINK_SEND_BYTES 16384U
 #endif
-/* Bytes reserved for messages of one fragment, so that they do not wait behind long ones. */
+/* Part of the queue that is reserved for messages of one fragment, so that they need not wait for
+ * long messages. */
 #define LINK_RESERVE 256U
 
 #ifndef LINK_SEND_MESSAGES /* number of messages, openings and closings in that queue (1..128) */
@@ -44,45 +45,45 @@
 #define LINK_LONGEST 95U
 #endif
 
-/* Time-out of retransmission: before the first round trip is measured, and its smallest and
+/* Time-out of retransmission: value before the first round trip is measured, and its smallest and
  * largest value. */
 #define LINK_RTO_FIRST 600000U
 #define LINK_RTO_MIN 60000U /* smallest value (longer than a round trip) */
 #define LINK_RTO_MAX 2000000U
 
-/* Silence after data before an unrequested acknowledgement (less than LINK_RTO_MIN, otherwise
- * fragments are sent twice). In the middle of a message ACK_WITHIN applies, because the
- * remaining fragments will arrive. */
+/* Time without further data after which an acknowledgement is sent that was not requested (less
+ * than LINK_RTO_MIN, otherwise fragments are sent twice). In the middle of a message,
+ * LINK_ACK_WITHIN is used instead, because more fragments will arrive. */
 #define LINK_ACK_DELAY 30000U
 #define LINK_ACK_WITHIN 80000U
 
 /* first interval between HELLOs; each interval is twice the previous one */
 #define LINK_HELLO_FIRST 300000U
-/* the interval is doubled until it is at least this long: 2.4 s */
+/* the interval doubles until it is at least this long, which is at 2.4 s */
 #define LINK_HELLO_LAST 2000000U
 #define LINK_PING_AFTER 5000000U /* silence after which the peer is pinged */
 #define LINK_PING_EVERY 200000U  /* interval of pings */
 /* silence after which the peer is considered lost (more than LINK_PING_AFTER, below 2^31). In the
- * minimal layer, times are constants with few one bits, so that each fits into an instruction */
+ * minimal layer, times are constants with few 1 bits, each of which fits into an instruction. */
 #define LINK_DEAD_AFTER (LINK_IS_FULL ? 9000000U : 0x890000U)
 
-/* With a key: silence without an authenticated reply to a ping, after which the peer is
- * considered lost. Other frames do not count, because they may be an attacker's recording. */
+/* With a key: time without an authenticated reply to a PING, after which the peer is considered
+ * lost. Other frames do not count, because an attacker may have recorded them. */
 #define LINK_PROOF_AFTER 5000000U
 #define LINK_PROOF_EVERY 1000000U
 #define LINK_PROOF_LAST 27000000U
 
-/* Age of an unacknowledged fragment at which the session ends, so that the peer does not execute a
- * call that its caller has abandoned (more than LINK_PING_AFTER, below 2^31). */
+/* Age of an unacknowledged fragment at which the session ends (more than LINK_PING_AFTER, below
+ * 2^31). Otherwise the peer could execute a call that its caller has abandoned. */
 #define LINK_AGE_LAST 27000000U
 
-/* With a key: interval of replies to HELLO during a session, and time during which the nonce of
- * such a reply can make a new session. */
+/* With a key: shortest interval between answers to HELLO during a session; and time for which the
+ * nonce in such an answer can make a new session. */
 #define LINK_ANSWER_EVERY 100000U
 #define LINK_NONCE_LIFE 9000000U
 
-/* With a key: counts at which a session ends and a new one begins: fragments sent (below 2^32 -
- * 256), and frames with a wrong tag. */
+/* With a key: numbers at which a session ends and a new one begins: number of fragments sent (below
+ * 2^32 - 256), and number of frames with a wrong tag. */
 #ifndef LINK_LAST_NUMBER
 #define LINK_LAST_NUMBER 0xFFFF0000U
 #endif
@@ -93,8 +94,9 @@
 /* Silence after which an incomplete frame is dropped. */
 #define LINK_FRAME_GAP (LINK_IS_FULL ? 25000U : 0x6200U)
 
-/* Budget of the search for frames in garbage, with a key: one round of Ascon per LINK_ROUND_EVERY
- * us on average, and at most LINK_ROUNDS_AT_ONCE in a row (at least 168: one handshake frame). */
+/* Budget for trying to open frames in garbage, with a key: on average one round of Ascon per
+ * LINK_ROUND_EVERY us; at once, at most LINK_ROUNDS_AT_ONCE rounds (at least 168, the cost of one
+ * handshake frame). */
 #define LINK_ROUND_EVERY 30U
 #define LINK_ROUNDS_AT_ONCE 1000U
 
@@ -102,8 +104,8 @@
 #define LINK_POLL_EVERY 1000U  /* while the radio has no room */
 #define LINK_OFFER_EVERY 5000U /* while the program does not accept a message */
 
-/* Pacing (docs/simulation.md): time that the modem needs for a packet without its bytes; the
- * same time if the modem encrypts; and time per byte on the air. */
+/* Pacing (docs/simulation.md): time that the modem needs for a packet, not counting its bytes; the
+ * same if the modem encrypts; time per byte on the air. */
 #define LINK_PACKET_US 7250U
 #define LINK_PACKET_ENCRYPTED_US 13450U
 #define LINK_BYTE_US 32U
@@ -112,35 +114,37 @@
  * (docs/link.md). */
 #define LINK_HEARD_QUARTERS 7U
 
-/* Additional wait after a short packet. With less, a modem that still holds the short packet
- * joins it with the next one. */
+/* Additional wait after a short packet. If the wait is shorter, a modem that has not sent the short
+ * packet yet joins it with the next packet. */
 #define LINK_SHORT_MARGIN 1500U
 
-/* largest number of packets without an answer of the radio, for all its links together */
+/* largest number of packets that wait for a result of the radio, for all links of the radio
+ * together */
 #define LINK_MOST_WAITING 4U
 
-/* Interval before the radio's expected answer: then the next packet of a stream is handed over
- * while the peer calls. It is the packet's time on a line of 250,000 baud (4.3 ms) and a margin. */
+/* While the peer calls, the next packet of a stream is passed to the radio this long before the
+ * radio's next result is expected. The value is the packet's time on a line of 250,000 baud (4.3
+ * ms) and a margin. */
 #define LINK_HAND_OVER_US 5000U
 #define LINK_HAND_OVER_ENCRYPTED_US 6000U /* the same interval if the modem encrypts */
 
-/* Time after which a driver counts a packet without an answer as lost. */
+/* Time after which a driver counts a packet without a result as lost. */
 #define LINK_ANSWER_LAST 3000000U
 
-/* Choice of RN (Link_randomWait): the bytes in each span of time are counted (the air carries about
- * 5,000). A stream begins with at least the first number of bytes in a span, and ends with fewer
- * than the second number. A loss has an effect for a limited time. */
+/* Choice of RN (Link_randomWait). The bytes in each span of time are counted; the air carries about
+ * 5,000 bytes in a span. A side sends a stream when a span has at least LINK_SPAN_MANY bytes, until
+ * a span has fewer than LINK_SPAN_FEW bytes. A loss affects the choice for a limited time. */
 #define LINK_WAIT_SHARED 2U /* RN that the modem has after set-up */
-/* share of packets lost without retries above which such losses count as frequent; 65,536 means all
- * packets */
+/* limit for the share of packets lost without retries; above it, such losses count as frequent;
+ * 65,536 means all packets */
 #define LINK_QUICK_MANY 12288U
 #define LINK_SPAN 500000U
 #define LINK_SPAN_MANY 1000U
 #define LINK_SPAN_FEW 500U
 #define LINK_LOSS_COUNTS 10000000U
 
-/* Longest pause after a loss, for a side that sends little: first value, and largest value. Four
- * times the peer's silence is added to the largest value. */
+/* Longest pause after a loss for a side that sends little: value after the first loss, and limit.
+ * Four times the peer's silence is added to the limit. */
 #define LINK_REST_FIRST 8000U
 #define LINK_REST_LAST 200000U
 

@@ -16,8 +16,8 @@ void link_cipher(const U8* key, const U8* nonce, U8* bytes, U32 size, int isDecr
     Ascon_end(&ascon, key, tag);
 }
 
-/* Derives keys: they are the keystream that belongs to a nonce. This keystream is never sent, and
- * an attacker who learns one keystream learns nothing about another. */
+/* Derives keys: encrypts zeros under a nonce, and uses the keystream as keys. This keystream is
+ * never sent, and an attacker who learns one keystream learns nothing about another one. */
 static void derive(const U8* secret, const U8* nonce, U8* text, U32 size) {
     U8 tag[ASCON_TAG_BYTES];
     memset(text, 0, size);
@@ -39,8 +39,8 @@ void link_makePair(Link_KeyPair* pair, U32 (*random)(void* context), void* conte
     X25519(pair->publicKey, pair->privateKey, 0);
 }
 
-/* Combines both inputs: the keys of the handshake, which follow from the shared key, and the result
- * of X25519, which follows from the private keys. An attacker would need both. */
+/* Combines two inputs: the keys of the handshake, which follow from the shared key, and the result
+ * of X25519, which follows from the private keys. An attacker would need to know both. */
 void link_mixKeys(Link_Keys* keys, Link_KeyPair* pair, const U8* peersPublic) {
     U8 shared[X25519_BYTES], text[sizeof keys->bytes];
     U32 i;
@@ -53,7 +53,7 @@ void link_mixKeys(Link_Keys* keys, Link_KeyPair* pair, const U8* peersPublic) {
     Ascon_wipe(pair->privateKey, sizeof pair->privateKey);
 }
 
-/* The key of HELLO frames is derived with nonces of 0, which no session has. */
+/* The key of HELLO frames is derived with nonces of zeros, which no session uses. */
 void link_makeSecret(Link_Secret* secret, const U8* key, U32 address) {
     U8 nonce[ASCON_NONCE_BYTES];
     memset(nonce, 0, sizeof nonce);

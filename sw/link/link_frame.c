@@ -28,8 +28,8 @@ U32 link_seal(U8* frame, U32 header, U32 key) {
     return size;
 }
 
-/* Computes Fletcher's sums modulo 256. A second CRC would depend on the CRC of the fragments; these
- * sums do not. */
+/* Computes Fletcher's two sums modulo 256. Unlike a second CRC, they do not depend on the CRCs of
+ * the fragments. */
 U32 link_sum(U32 sums, const U8* bytes, U32 size) {
     U32 plain = sums & 0xFFU;
     U32 second = sums >> 8;
@@ -69,6 +69,7 @@ U32 link_epochBits(const U8* frame, U32 key) {
 
 int link_isOfEpoch(const U8* frame, U32 key) {
     U32 bits = link_epochBits(frame, key);
-    U32 whole = LINK_FIRST | LINK_LAST; /* kinds of PIGGYBACK also use these bits */
+    /* cleared for control frames, because kinds of PIGGYBACK also use these bits */
+    U32 whole = LINK_FIRST | LINK_LAST;
     return bits == 0 || (bits == LINK_READY && (frame[2] & whole) == whole);
 }

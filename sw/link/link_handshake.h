@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
  * link_handshake: agrees with the peer on the identity of a session: nonces, features, keys. It
- * holds the state of the link, the identity of the current session and the identity of the next
- * one. It processes and sends frames of the handshake, and returns their effects on the session
- * (Link_Verdict).
+ * holds the state of the link, the identity of the current session and that of the next one (the
+ * candidate). It sends and processes handshake frames, and returns the effects of each frame on the
+ * session (Link_Verdict).
  */
 #pragma once
 
 #include "link_pacing.h"
 
-/* Effects of a handshake frame on the session: a set of bits. */
+/* Effects of a handshake frame on the session, one bit each. */
 typedef enum Link_Verdict {
     LINK_VERDICT_NONE = 0,
-    LINK_VERDICT_BEGIN = 1,       /* the candidate's session begins */
+    LINK_VERDICT_BEGIN = 1,       /* the session of the candidate begins */
     LINK_VERDICT_UNCONFIRMED = 2, /* the peer may not know the new session yet */
     LINK_VERDICT_ACK = 4,         /* an acknowledgement should be sent */
     LINK_VERDICT_LOST = 8         /* the peer does not know the current session */
@@ -25,15 +25,15 @@ typedef struct Link_HandshakeRules {
     /* Returns the cost of trying to open a frame, in rounds of Ascon; 0 if this side does not
      * expect such a frame now. */
     U32 (*cost)(const struct Link_Handshake* handshake, const U8* frame);
-    /* Writes the seal that the frame must have to be genuine. `attempt` is 0 or 1, since two
-     * seals may be possible. Returns 0 if there is no such seal. Without a key, frames of the
-     * candidate's session other than handshake frames are also expected. */
+    /* Writes the seal with which a genuine frame must have been made. Two seals may be possible;
+     * `attempt` (0 or 1) selects one. Returns 0 if there is no such seal. Without a key, also
+     * returns a seal for data and other frames of the candidate's session. */
     int (*expect)(struct Link_Handshake* handshake, const U8* frame, U32 attempt, Link_Seal* seal);
     /* Processes a handshake frame that was opened with the seal of `attempt`. Returns a set of
      * Link_Verdict. */
     U32 (*onFrame)(struct Link_Handshake* handshake, const U8* frame, U32 attempt);
-    /* Sends HELLO. If `unknown` is not 0, answers this frame, which belongs to an unknown
-     * session. */
+    /* Sends HELLO. If `unknown` is not 0, it is a frame of an unknown session, which is answered.
+     */
     void (*sendHello)(struct Link_Handshake* handshake, const U8* unknown);
 } Link_HandshakeRules;
 
@@ -45,12 +45,12 @@ typedef struct Link_Handshake {
     U8 hasCandidate;
     U8 keys;          /* set of slots with a key */
     U8 slot;          /* slot of the key used in the newest HELLO */
-    U8 isGround;      /* 1, with a key: this side is the ground */
-    U8 isAnswered;    /* 1: a HELLO was answered with `nonce` */
+    U8 isGround;      /* with a key: 1 if this side is the ground station */
+    U8 isAnswered;    /* 1: an answer to a HELLO contained `nonce` */
     U8 isUnconfirmed; /* 1: the peer may not know of the session yet */
     U8 hasPair;       /* 1: `pair` has been generated */
     U32 firstAnswer;  /* time of the first answer that contains `nonce`, us */
-    U32 lastAnswer;   /* time of the newest answer, us */
+    U32 lastAnswer;   /* time of the newest answer to a HELLO, us */
     U32 helloAt;      /* time of the next HELLO or CONFIRM, us */
     /* interval between the next HELLO or CONFIRM and the one after it, us */
     U32 helloEvery;
@@ -65,7 +65,7 @@ typedef struct Link_Handshake {
 /* Sets the rules of the handshake. */
 void link_useRules(Link_Handshake* handshake, const Link_HandshakeRules* rules);
 
-/* Sets the key of a slot, and this side's role and vehicle. With `key` 0, wipes the slot. */
+/* Sets the key of a slot, this side's role, and the vehicle. If `key` is 0, wipes the slot. */
 void link_setSecret(Link_Handshake* handshake, int slot, const U8* key, U32 side);
 
 /* Draws a random nonce for the next session. */
@@ -74,8 +74,8 @@ void link_drawNonce(Link_Handshake* handshake);
 /* Prepares the candidate from the peer's nonce and the nonce of this side. */
 void link_makeCandidate(Link_Handshake* handshake, const U8* peerNonce, U32 features);
 
-/* Sends a frame with both nonces of the session `of`. With `of` 0, sends HELLO with the nonce
- * for the next session. */
+/* Sends a handshake frame with both nonces of the session `of`. If `of` is 0, sends HELLO with this
+ * side's nonce for the next session. */
 void link_sendHandshake(Link_Handshake* handshake, const Link_Identity* of, Link_Kind kind,
                         U32 version);
 
@@ -85,17 +85,17 @@ void link_adoptCandidate(Link_Handshake* handshake, int isUnconfirmed);
 /* Wipes the keys of the candidate. */
 void link_wipeCandidate(Link_Handshake* handshake);
 
-/* Leaves the current session, wipes its keys, and draws a new nonce. */
+/* Leaves the current session: wipes its keys, draws a new nonce, and sets the state to `next`. */
 void link_leave(Link_Handshake* handshake, Link_State next);
 
 /* Records that a frame of the current session arrived, which confirms the session. */
 #define LINK_NOTE_CONFIRMED(handshake) ((handshake)->isUnconfirmed = 0)
 
-/* Drops the candidate. Frames from the peer that are still on the way are not answered. */
+/* Drops the candidate. Frames that the peer has already sent are not answered. */
 void link_forgetPeer(Link_Handshake* handshake);
 
 /* Answers a frame of an unknown session, unless such a frame was answered a short time ago. */
 void link_onUnknown(Link_Handshake* handshake, const U8* frame);
 
-/* Sends HELLO or CONFIRM if due, and replaces an old nonce. */
+/* Sends HELLO or CONFIRM if it is due, and replaces a nonce that is too old. */
 void link_pollHandshake(Link_Handshake* handshake);

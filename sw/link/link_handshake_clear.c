@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_handshake_clear: makes sessions without a key. A HELLO is answered with HELLO-ACK; the first
- * frame of the new session confirms it.
+ * link_handshake_clear: makes sessions without a key. A HELLO is answered with HELLO-ACK; the peer
+ * confirms the session by its first frame in it.
  */
 #include "link_handshake_clear.h"
 
@@ -22,7 +22,7 @@ static int expect(Link_Handshake* handshake, const U8* frame, U32 attempt, Link_
 
 static void onHello(Link_Handshake* handshake, const U8* peerNonce, U32 features) {
     const Link_Identity* of = &handshake->present;
-    /* A repeated HELLO means that the answer was lost, so it gets the same answer. */
+    /* A repeated HELLO means that the answer was lost. It therefore gets the same answer again. */
     if (handshake->state != LINK_STATE_UP || link_get32(peerNonce) != link_get32(of->peerNonce)) {
         of = &handshake->candidate;
         link_makeCandidate(handshake, peerNonce, features);
@@ -36,7 +36,7 @@ static U32 onFrame(Link_Handshake* handshake, const U8* frame, U32 attempt) {
     Link_Kind kind = LINK_KIND_OF(frame);
     U32 epoch = LINK_KEY_EPOCH(handshake->present.key);
     (void)attempt;
-    /* an RST may refer to a frame with LINK_READY, which changes EPOCH */
+    /* an RST may answer a frame with LINK_READY, which inverts a bit of EPOCH */
     if (kind == LINK_KIND_RST)
         return handshake->state == LINK_STATE_UP && ((LINK_EPOCH(frame) ^ epoch) & 3U) == 0
                    ? LINK_VERDICT_LOST
@@ -51,7 +51,8 @@ static U32 onFrame(Link_Handshake* handshake, const U8* frame, U32 attempt) {
         link_get32(payload + 4) != link_get32(handshake->nonce))
         return LINK_VERDICT_NONE;
     link_makeCandidate(handshake, payload, frame[2]);
-    return LINK_VERDICT_BEGIN | LINK_VERDICT_ACK; /* the first frame confirms the session */
+    /* the first frame of the peer confirms the session */
+    return LINK_VERDICT_BEGIN | LINK_VERDICT_ACK;
 }
 
 static void sendHello(Link_Handshake* handshake, const U8* unknown) {
@@ -61,7 +62,7 @@ static void sendHello(Link_Handshake* handshake, const U8* unknown) {
         link_sendHandshake(handshake, 0, LINK_KIND_HELLO, LINK_VERSION);
         return;
     }
-    /* later HELLOs also have this epoch */
+    /* the HELLO frames sent from now on also have this epoch */
     handshake->present.key = LINK_EPOCH_KEY(LINK_EPOCH(unknown));
     seal.session = handshake->present.key | LINK_NO_SEED;
     (void)link_sendNow(

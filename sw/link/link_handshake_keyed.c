@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_handshake_keyed: makes sessions with a peer that has the key. A HELLO may be a recording: it
- * changes nothing here, and costs only an answer (docs/link.md).
+ * link_handshake_keyed: makes sessions with a peer that has the key. A HELLO may be a recording by
+ * an attacker, so it does not change the state; it only causes an answer (docs/link.md).
  */
 #include "link_handshake_keyed.h"
 
@@ -22,7 +22,7 @@ static int isOfSession(const Link_Handshake* handshake, const U8* nonces) {
            isSameNonce(nonces + LINK_NONCE_BYTES, present->nonce);
 }
 
-/* Prepares the session with the nonce of the peer and the key of a slot. */
+/* Prepares the candidate's keys with the peer's nonce and the key of a slot. */
 static void makeKeyed(Link_Handshake* handshake, U32 slot, const U8* frame) {
     Link_Identity* candidate = &handshake->candidate;
     int isGround = handshake->isGround;
@@ -34,12 +34,13 @@ static void makeKeyed(Link_Handshake* handshake, U32 slot, const U8* frame) {
                     &candidate->secrets.handshake);
 }
 
-/* Accepts only frames that are fresh and relevant. This check costs no round of Ascon. */
+/* Returns a cost only for frames that are fresh and expected. This check itself costs no round of
+ * Ascon. */
 static U32 cost(const Link_Handshake* handshake, const U8* frame) {
     const U8* nonces = frame + LINK_HEADER;
     Link_Kind kind = LINK_KIND_OF(frame);
     if (isSameNonce(nonces, handshake->nonce))
-        return 0; /* this is a reflected frame of this side */
+        return 0; /* a frame of this side that was sent back to it */
     if (kind == LINK_KIND_HELLO)
         return (frame[1] & ~LINK_VERSION_UP) == LINK_VERSION ? ROUNDS_HELLO : 0U;
     if (frame[1] != LINK_VERSION)
@@ -61,7 +62,7 @@ static int expect(Link_Handshake* handshake, const U8* frame, U32 attempt, Link_
         seal->key = LINK_PEERS_KEY(&handshake->present, handshake);
         return attempt == 0;
     }
-    if (!((U32)handshake->keys >> attempt & 1U)) /* there is one attempt for each slot */
+    if (!((U32)handshake->keys >> attempt & 1U)) /* attempt n uses the key of slot n */
         return 0;
     seal->key = handshake->secrets[attempt].hello;
     if (kind != LINK_KIND_HELLO) {
@@ -71,7 +72,7 @@ static int expect(Link_Handshake* handshake, const U8* frame, U32 attempt, Link_
     return 1;
 }
 
-/* Puts the public key of this side's pair into the candidate. */
+/* Copies the public key of this side's key pair into the candidate. */
 static void offerPair(Link_Handshake* handshake) {
     const Link_Env* env = &handshake->pacing->env;
     if (!handshake->hasPair)
@@ -88,14 +89,16 @@ static void onHello(Link_Handshake* handshake, const U8* frame, U32 slot) {
                  (isPresent && !handshake->isUnconfirmed)))
         return;
     handshake->lastAnswer = now;
-    if (isPresent) { /* the peer has not received the CONFIRM */
+    if (isPresent) { /* the session exists already: the peer has not received this side's CONFIRM */
         link_sendHandshake(handshake, &handshake->present, LINK_KIND_CONFIRM, LINK_VERSION);
         return;
     }
     if (isUp && !handshake->isUnconfirmed) {
         handshake->slot = (U8)slot;
         link_sendHandshake(handshake, 0, LINK_KIND_HELLO, LINK_VERSION | LINK_VERSION_UP);
-    } else { /* an unconfirmed peer may still answer an earlier HELLO, and begin its session */
+        /* a peer that has not confirmed its session may still answer an earlier HELLO and begin the
+         * session of that HELLO */
+    } else {
         makeKeyed(handshake, slot, frame);
         offerPair(handshake);
         link_sendHandshake(handshake, &handshake->candidate, LINK_KIND_HELLO_ACK, LINK_VERSION);
@@ -114,7 +117,8 @@ static U32 onFrame(Link_Handshake* handshake, const U8* frame, U32 attempt) {
         return LINK_VERDICT_NONE;
     }
     if (kind == LINK_KIND_CONFIRM && isOfSession(handshake, frame + LINK_HEADER))
-        return LINK_VERDICT_ACK; /* informs the peer of the session */
+        /* the acknowledgement informs the peer that the session has begun */
+        return LINK_VERDICT_ACK;
     offerPair(handshake);
     secrets->keys = secrets->handshake;
     link_mixKeys(&secrets->keys, &handshake->pair, frame + LINK_PUBLIC_AT);
@@ -123,8 +127,8 @@ static U32 onFrame(Link_Handshake* handshake, const U8* frame, U32 attempt) {
                                      : LINK_VERDICT_BEGIN | LINK_VERDICT_UNCONFIRMED;
 }
 
-/* Sends HELLO; if both slots have a key, uses the keys in turn. A peer in an unknown session also
- * gets a HELLO, because its answer makes a new session. */
+/* Sends HELLO; if both slots have a key, uses the keys in turn. Also answers a frame of an unknown
+ * session with HELLO: the peer's answer then makes a new session. */
 static void sendHello(Link_Handshake* handshake, const U8* unknown) {
     U32 keys = handshake->keys;
     (void)unknown;

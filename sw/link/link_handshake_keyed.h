@@ -6,5 +6,6 @@
 
 #include "link_handshake.h"
 
-/* Rules of the handshake: only a peer that has the key, and answers now, can start a session. */
+/* Rules of the handshake with a key: only a peer that has the key, and that answers now, can start
+ * a session. */
 extern const Link_HandshakeRules link_keyedHandshake;

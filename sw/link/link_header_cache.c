@@ -1,34 +1,37 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_header_cache: recognises Ice's messages, and writes and reads their tokens.
+ * link_header_cache: recognises Ice's messages, and converts their headers to tokens and back.
  */
 #include "link_header_cache.h"
 
 #include <string.h>
 
-/* bytes of an Ice message's header: magic, versions, type, compression, size */
+/* size of an Ice message's header, bytes: magic, versions, type, compression, size */
 #define HEADER 14U
-/* bytes before the parameters: their size and the version of the encoding */
+/* bytes before the parameters: size and encoding of the encapsulation */
 #define ENCAPSULATION 6U
 #define MOST_HEAD (LINK_HEAD_BYTES - 2U)
 
-/* bit 4: 1 if the id is the next one of the channel, 0 for oneway; bits 3..0: index in the cache */
+/* request with a cached header. Bit 4: 1 if the request id is the next one of the channel, 0 if the
+ * request is oneway. Bits 3..0: index of the header in the cache. */
 #define TOKEN_REQUEST 0x80U
-/* bits 1..0: 0 oneway, 1 next id, 2 the id follows; then length and header */
+/* request with a new header. Bits 1..0: 0 if it is oneway, 1 if the request id is the next one, 2
+ * if the id follows. After that: length of the header, and the header. */
 #define TOKEN_LITERAL 0xA0U
-/* bit 1: 1 if the id follows, 0 if it is the next one; bit 0: 1 if status and body follow
- * unchanged */
+/* reply. Bit 1: 1 if the request id follows, 0 if it is the next one. Bit 0: 1 if status and body
+ * follow unchanged. */
 #define TOKEN_REPLY 0xB0U
 #define TOKEN_VALIDATE 0xC0U
-#define TOKEN_CLOSE 0xC1U /* close message; 0xC2 if its compression byte is set */
+/* message that closes the connection; 0xC2 if its compression byte is set */
+#define TOKEN_CLOSE 0xC1U
 #define TOKEN_AS_IT_IS 0xFFU
 
 #define MAGIC 0x50656349U    /* "IceP" */
-#define VERSIONS 0x00010001U /* versions of protocol and encoding: 1.0 */
+#define VERSIONS 0x00010001U /* version of the protocol and version of the encoding, both 1.0 */
 
 enum { REQUEST = 0, REPLY = 2, VALIDATE = 3, CLOSE = 4 };
 
-#define IS_REPLY 1U /* result for a reply; the size of a header is larger */
+#define IS_REPLY 1U /* value that stands for a reply; every header is larger */
 
 /* Returns the type of a complete message; -1 if it is not an Ice message. */
 static int typeOf(const U8* m, U32 size) {
@@ -38,8 +41,9 @@ static int typeOf(const U8* m, U32 size) {
                : -1;
 }
 
-/* Returns the size of the header that the peer learns from a request: identity to context.
- * Returns IS_REPLY for a reply, from which only the id is learned, and 0 if nothing is learned. */
+/* Returns the size of the header (identity to context) that the peer's cache learns from a request.
+ * Returns IS_REPLY for a reply, from which only the request id is learned. Returns 0 for any other
+ * message. */
 static U32 headOf(const U8* m, U32 size, int type) {
     U32 at = LINK_HEAD_AT;
     int strings;
@@ -47,7 +51,7 @@ static U32 headOf(const U8* m, U32 size, int type) {
         return size > LINK_HEAD_AT ? IS_REPLY : 0;
     if (type != REQUEST || size < LINK_HEAD_AT || m[9] != 0)
         return 0;
-    /* the strings are name, category, facet and operation */
+    /* the four strings are name, category, facet and operation */
     for (strings = 0; strings < 4; ++strings) {
         if (strings == 2) {
             if (at >= size || m[at] > 1)
@@ -61,13 +65,14 @@ static U32 headOf(const U8* m, U32 size, int type) {
     }
     ++at; /* mode */
     if (at >= size || m[at++] != 0)
-        return 0; /* contexts seldom repeat, so they are not cached */
+        return 0; /* a request with a context is not cached, because contexts seldom repeat */
     if (at + ENCAPSULATION > size || link_get32(m + at) != size - at)
         return 0;
     return at - LINK_HEAD_AT <= MOST_HEAD ? at - LINK_HEAD_AT : 0;
 }
 
-/* Returns the index of this header and encoding in the cache; LINK_HEADS if it is missing. */
+/* Returns the index of this header and encoding in the cache; LINK_HEADS if the cache does not
+ * contain them. */
 static U32 find(const Link_HeaderCache* cache, const U8* head, U32 size, const U8* version) {
     U32 slot;
     for (slot = 0; slot < LINK_HEADS; ++slot)
@@ -95,7 +100,7 @@ void link_cacheHeader(Link_HeaderCache* cache, int channel, const U8* m, U32 hea
     }
 }
 
-/* Begins the compressed message with a token; the id follows if `hasId`. */
+/* Begins a compressed message with a token; if `hasId`, appends the id. */
 static void setToken(Link_Compressed* to, U32 token, int hasId, U32 id) {
     to->bytes[0] = (U8)token;
     to->prefix = hasId ? 5U : 1U;
@@ -115,7 +120,7 @@ static void packRequest(const Link_HeaderCache* cache, int channel, const U8* m,
     setToken(to, TOKEN_LITERAL | mode, mode == 2U, id);
     to->bytes[to->prefix++] = (U8)head;
     to->middle = head;
-    to->tailAt -= 2U; /* the version of the encoding follows */
+    to->tailAt -= 2U; /* the rest of the message begins with the version of the encoding */
 }
 
 static void packReply(const Link_HeaderCache* cache, int channel, const U8* m, U32 size,
@@ -145,10 +150,10 @@ void link_compress(const Link_HeaderCache* cache, int channel, const U8* m, U32 
     }
 }
 
-/* Expands a request's token and prefix at `p` to the fields before the body. Returns the start
- * of these fields; 0 if the request is malformed. */
+/* Replaces a request's token at `p`, and the bytes that belong to it, by the fields before the
+ * body. Returns the start of these fields; 0 if the request is malformed. */
 static U8* unpackRequest(Link_HeaderCache* cache, U32 channel, U8* p, const U8* end) {
-    U8 head[LINK_HEAD_BYTES]; /* a copy, because the output may overwrite it */
+    U8 head[LINK_HEAD_BYTES]; /* copied, because the output may overwrite it */
     U32 token = *p++;
     U32 mode = token < TOKEN_LITERAL ? token >> 4 & 1U : token & 3U;
     U32 id = mode == 1U ? ++cache->lastRequest[channel] : 0;
@@ -182,7 +187,7 @@ static U8* unpackRequest(Link_HeaderCache* cache, U32 channel, U8* p, const U8* 
     return p;
 }
 
-/* Expands a reply's token and prefix at `p` in the same way. */
+/* Replaces a reply's token at `p`, and the bytes that belong to it, in the same way. */
 static U8* unpackReply(const Link_HeaderCache* cache, U32 channel, U8* p, const U8* end) {
     U32 token = *p++;
     U32 id = cache->lastReply[channel] + 1U;
@@ -205,7 +210,8 @@ static U8* unpackReply(const Link_HeaderCache* cache, U32 channel, U8* p, const 
     return p;
 }
 
-/* Restores the message at `p`. Returns its start; 0 if the message is malformed. */
+/* Restores the compressed message at `p`. Returns the start of the message; 0 if it is
+ * malformed. */
 static U8* unpack(Link_HeaderCache* cache, U32 channel, U8* p, U8* end) {
     U32 token = *p;
     U32 type = REQUEST;

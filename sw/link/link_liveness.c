@@ -20,8 +20,8 @@ void link_noteFrame(Link_Liveness* liveness) {
     if (!liveness->pacing->env.codec->isAuthenticated)
         liveness->heardAt = liveness->provenAt = now;
     if (!LINK_BEFORE(now, liveness->pingAt))
-        /* keeps the time recent; after half the range of the clock, an old time would look like a
-         * future time */
+        /* keeps pingAt recent: if it were older than half the range of the clock, it would look
+         * like a future time */
         liveness->pingAt = now;
 }
 
@@ -33,7 +33,8 @@ void link_onPing(Link_Liveness* liveness, const U8* frame) {
         if (LINK_BEFORE(liveness->pingsAnswered, number) &&
             !LINK_BEFORE(liveness->pingsSent, number)) {
             liveness->pingsAnswered = liveness->pingsSent;
-            /* not the current time, because the reply may have been delayed */
+            /* the time of the question is used, not the current time, because the reply may have
+             * been delayed */
             liveness->provenAt = liveness->askedAt;
             LINK_NOTE_ALIVE(liveness);
         }

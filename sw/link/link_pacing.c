@@ -1,17 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_pacing: fills packets and paces them.
+ * link_pacing: fills packets with frames, and decides when each packet is sent.
  */
 #include "link_pacing.h"
 
 #include <string.h>
 
-/* Smallest room that a packet must have for another fragment followed by an acknowledgement, which
- * has a payload of 9 bytes. */
+/* Smallest room for which a packet waits for another fragment: an acknowledgement with a payload of
+ * 9 bytes must also fit. */
 #define LEAST(pacing) (pacing->env.codec->overhead + 10U)
 
-/* Number of packets for which the modem is assumed to be slow after the radio had no room for a
- * packet. */
+/* After the radio had no room, the modem is assumed to be slow for this number of packets. */
 #define SLOW 64U
 
 void link_initPacing(Link_Pacing* pacing, const Link_Identity* session, struct Link* owner,
@@ -38,13 +37,13 @@ void link_noteRoundTrip(Link_Pacing* pacing, U32 us) {
         pacing->fastest = us;
 }
 
-/* Returns the time on the line of a packet and the silence after it, us. */
+/* Returns the time that a packet takes on the line, including the silence after it, us. */
 static U32 lineOf(const Link_Pacing* pacing, U32 size) {
     return (size + LINK_SILENCE) * pacing->byteTimeUs16 >> 4;
 }
 
-/* Returns the time of a packet on the line or in the modem, whichever is longer, us. `full`: size
- * of the largest packet. */
+/* Returns the time that a packet takes on the line or in the modem, whichever is longer, us. `full`
+ * is the size of the largest packet. */
 static U32 timeOf(U32 line, U32 size, U32 full) {
     U32 modem = size * LINK_BYTE_US +
                 (full > LINK_MAX_ENCRYPTED ? LINK_PACKET_US : LINK_PACKET_ENCRYPTED_US);
@@ -55,7 +54,7 @@ U32 link_room(const Link_Pacing* pacing) {
     return (U32)pacing->longest - pacing->packed;
 }
 
-/* Hands the packet to a radio that answers. */
+/* Passes the packet to a radio that reports results. */
 static int handOverAnswered(Link_Pacing* pacing) {
     Link_Unanswered* radio = pacing->radio;
     if (radio->waiting >= pacing->mostWaiting ||
@@ -68,9 +67,9 @@ static int handOverAnswered(Link_Pacing* pacing) {
     return 1;
 }
 
-/* Hands the packet, which contains a frame, to the radio. If another packet may follow while the
- * modem holds this packet, this packet is padded to its full size. Otherwise the modem would join
- * both packets, and all later packets would begin inside a frame. */
+/* Passes the packet, which contains at least one frame, to the radio. If another packet may follow
+ * while the modem still holds this one, pads this packet to the full size. Otherwise the modem
+ * would join both packets, and all later packets would begin in the middle of a frame. */
 static int handOver(Link_Pacing* pacing, int isFollowed) {
     U32 size = pacing->packed;
     U32 full = (U32)pacing->longest + pacing->env.codec->overhead;
@@ -82,7 +81,7 @@ static int handOver(Link_Pacing* pacing, int isFollowed) {
         size = full;
     }
     if ((pacing->quietUntil - pacing->env.now - 1U) >> 21 ==
-        0) /* a larger difference is a time long ago */
+        0) /* the time is in the past if the difference is larger */
         return 0;
     if (pacing->env.port->transmit(pacing->env.context, pacing->packet, size) != 0) {
         pacing->slow = SLOW;
@@ -102,7 +101,7 @@ static int handOver(Link_Pacing* pacing, int isFollowed) {
     }
     pacing->slack = slack;
     pacing->early = 0;
-    /* on a radio channel only one side can send at a time; over a cable both can */
+    /* on a radio channel, only one side can send at a time; on a cable, both can */
     if (pacing->heard && pacing->fastest > LINK_PACKET_US) {
         U32 heard = pacing->heard;
         U32 wait = timeOf(lineOf(pacing, heard), heard, full) * LINK_HEARD_QUARTERS >> 2;
@@ -139,9 +138,9 @@ U32 link_paceByAnswer(Link_Pacing* pacing, int isDelivered, U32 silence) {
     U32 rest =
         link_noteAnswer(&pacing->backoff, env->now, isDelivered, silence, pacing->waiting != 0);
     pacing->paceUntil = env->now;
-    /* While the peer calls, only one packet of a stream may be ahead of a reply. The next packet is
-     * handed over shortly before the radio needs it. This is not possible on a slow line (more than
-     * two packets wait). */
+    /* While the peer calls, a reply must wait for at most one packet of a stream. The next packet
+     * of the stream is therefore passed to the radio only shortly before the radio needs it. This
+     * is not possible on a slow line, for which more than two packets may wait. */
     pacing->isHeld = 0;
     if (pacing->waiting && pacing->mostWaiting == 2U && LINK_IS_CALLED(&pacing->backoff)) {
         U32 full = (U32)pacing->longest + env->codec->overhead;
@@ -153,7 +152,7 @@ U32 link_paceByAnswer(Link_Pacing* pacing, int isDelivered, U32 silence) {
     }
     if (rest) {
         pacing->paceUntil += env->port->random(env->context) % rest;
-        pacing->early = 0xFFFFFFFFU; /* a frame from the peer ends the pause */
+        pacing->early = 0xFFFFFFFFU; /* a frame from the peer ends the pause at once */
     }
     return packet;
 }
@@ -166,7 +165,8 @@ int link_isOpen(Link_Pacing* pacing) {
     return pacing->packed || !LINK_BEFORE(pacing->env.now + pacing->slack, pacing->paceUntil);
 }
 
-/* Seals a frame with its payload in place, and adds it to the packet. Returns 1 if it was added.
+/* Seals a frame whose payload is in place, and adds the frame to the packet. Returns 1 if the frame
+ * was added.
  */
 static int sendSealed(Link_Pacing* pacing, U8* frame, U32 header, const Link_Seal* seal) {
     Link_Env* env = &pacing->env;
@@ -183,7 +183,7 @@ static int sendSealed(Link_Pacing* pacing, U8* frame, U32 header, const Link_Sea
 int link_sendNow(Link_Pacing* pacing, U8* frame, U32 header, const Link_Seal* seal) {
     if (!sendSealed(pacing, frame, header, seal))
         return 0;
-    /* the frame waits for the packet, which is sent when the radio has room */
+    /* if the radio has no room now, the packet with the frame is sent later */
     (void)link_flush(pacing);
     return 1;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_queue: a ring of entries, and a ring with the bytes of these entries.
+ * link_queue: implements the queue as a ring of entries and a ring with the bytes of these entries.
  */
 #include "link_queue.h"
 
@@ -64,10 +64,11 @@ void link_rewind(Link_Queue* queue, int isWiped) {
         memset(queue->bytes, 0, queue->mask + 1U);
 }
 
-/* Finds an entry that may overtake the current long message. The entry has at most `most` bytes.
- * Its channel differs from the channels of all entries that it overtakes. It does not overtake a
- * header that the peer must learn first. It does not follow another entry that has overtaken. Sets
- * `start` to the offset of its bytes. Returns 0 if no entry qualifies. */
+/* Finds an entry that may overtake the current long message, and sets `start` to the offset of the
+ * entry's bytes. The entry must satisfy four conditions. It has at most `most` bytes. Its channel
+ * differs from those of all entries that it overtakes. It does not overtake a header that the peer
+ * must learn first. No other entry has overtaken directly before it. Returns 0 if there is no such
+ * entry. */
 static Link_Entry* findAhead(Link_Queue* queue, U32 most, U32* start) {
     Link_Entry* entry = entryAt(queue, queue->cutEntry);
     U32 channels = 0;

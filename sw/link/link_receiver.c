@@ -23,8 +23,8 @@ static void onChannel(Link_Receiver* receiver, U32 channel, U32 isOpen) {
         env->port->channel(env->context, (int)channel, (int)isOpen);
 }
 
-/* Offers a complete message to the program. A message on a channel that was closed here is
- * dropped. If the program does not accept the message, its last fragment counts as not received. */
+/* Offers a complete message to the program. Drops a message on a channel that this side has closed.
+ * If the program does not accept the message, its last fragment counts as not received. */
 static void deliver(Link_Receiver* receiver) {
     Link_Env* env = &receiver->pacing->env;
     receiver->isHeld = 0;
@@ -38,8 +38,8 @@ static void deliver(Link_Receiver* receiver) {
     }
 }
 
-/* Adds a fragment to its message; a message of one fragment may arrive between the fragments of a
- * long one. Returns 0 if the fragment violates the protocol. */
+/* Adds a fragment to the message to which it belongs. A message of one fragment may arrive between
+ * the fragments of a long message. Returns 0 if the fragment violates the protocol. */
 static int append(Link_Receiver* receiver, U32 flags, const U8* data, U32 size) {
     U8* to = receiver->brief + LINK_HEAD_ROOM;
     receiver->start = to;
@@ -73,7 +73,7 @@ static int uncheck(Link_Receiver* receiver) {
     return link_sum(0, receiver->start, size) == LINK_CHECK_AT(receiver->start + size);
 }
 
-/* Restores the header of the complete message. Returns 0 if the message is malformed. */
+/* Restores the compressed header of the complete message. Returns 0 if the message is malformed. */
 static int expand(Link_Receiver* receiver) {
     U8* end = receiver->start + receiver->size;
     U8* start =
@@ -106,10 +106,9 @@ static int accept(Link_Receiver* receiver, U32 flags, const U8* data, U32 size) 
     return 1;
 }
 
-/* Delivers a complete message from its slot before earlier fragments, because the missing
- * fragments belong to other channels. The message stays in its slot if an earlier message of its
- * channel waits, or if the program does not accept it now. Returns 0 if the peer violated the
- * protocol. */
+/* Delivers a complete message from its slot although earlier fragments are missing, because these
+ * belong to other channels. The message stays in its slot if an earlier message of the same channel
+ * waits, or if the program does not accept it now. Returns 0 if the peer violated the protocol. */
 static int takeEarly(Link_Receiver* receiver, U32 seq) {
     Link_HeaderCache* heads = &receiver->heads;
     Link_ReorderSlot* slot = SLOT(receiver, seq);
@@ -123,7 +122,8 @@ static int takeEarly(Link_Receiver* receiver, U32 seq) {
         if (other->flags && other->size != LINK_TAKEN && LINK_CHANNEL(other->flags) == channel)
             return 1;
     }
-    /* undoes the increment by accept: the next expected fragment does not change */
+    /* compensates for the increment in accept, because the number of the expected fragment must not
+     * change here */
     --receiver->expected;
     if (!accept(receiver, slot->flags, slot->bytes, slot->size))
         return 0;
@@ -163,7 +163,8 @@ int link_onData(Link_Receiver* receiver, U32 seq, U32 flags, const U8* data, U32
         receiver->pacing->env.now + (flags & LINK_LAST ? LINK_ACK_DELAY : LINK_ACK_WITHIN);
     if (flags & LINK_ACK_NOW)
         receiver->ackNow = 1;
-    /* the usual case: the fragment is in order and is appended directly to the message */
+    /* the usual case: the fragment is the expected one and is appended to its message without a
+     * copy in a slot */
     if (ahead == 0 && !receiver->isHeld)
         return accept(receiver, flags, data, size) && drain(receiver);
     if (ahead != 0 && ahead <= receiver->mask && !slot->flags) {
@@ -172,20 +173,21 @@ int link_onData(Link_Receiver* receiver, U32 seq, U32 flags, const U8* data, U32
         slot->size = (U8)size;
         memcpy(slot->bytes, data, size);
         if ((flags & LINK_FIRST) && (flags & LINK_LAST)) {
-            receiver->ackNow = 1; /* a short message waits for a missing fragment */
+            /* acknowledges at once, because a short message waits for a missing fragment */
+            receiver->ackNow = 1;
             if ((flags & LINK_EARLY) && size && !receiver->isHeld)
                 return takeEarly(receiver, seq);
         }
     } else {
         ++receiver->pacing->env.statistics
-              .duplicates; /* the earlier acknowledgement was lost or is late */
+              .duplicates; /* a duplicate: the earlier acknowledgement was lost or is late */
         receiver->ackNow = 1;
     }
     return 1;
 }
 
-/* Writes the bitmap of fragments that arrived after the next expected one: bit n is fragment SEQ
- * + 1 + n. Returns the size of the bitmap in bytes, up to its last set bit. */
+/* Writes the bitmap of the fragments that arrived after a missing one: bit n stands for fragment
+ * SEQ + 1 + n. Returns the size of the bitmap in bytes, up to its last set bit. */
 static U32 gaps(const Link_Receiver* receiver, U8* bitmap) {
     U32 size = 0;
     U32 i;
@@ -220,7 +222,7 @@ int link_pollReceiver(Link_Receiver* receiver) {
     deliver(receiver);
     if (receiver->isHeld)
         return 1;
-    link_scheduleAck(receiver); /* the peer must learn the new credit */
+    link_scheduleAck(receiver); /* informs the peer of the new credit */
     return drain(receiver);
 }
 
@@ -232,7 +234,7 @@ void link_pollAck(Link_Receiver* receiver) {
         (!receiver->ackNow && LINK_BEFORE(receiver->pacing->env.now, receiver->ackAt)))
         return;
     size = gaps(receiver, payload + 1);
-    /* A message that the program does not accept closes the window. */
+    /* The credit: no further fragments while the program does not accept a message. */
     payload[0] = (U8)((receiver->isHeld ? receiver->waiting : receiver->mask) + 1U);
     if (link_sendControl(receiver->pacing, frame, LINK_KIND_BITS(LINK_KIND_ACK), receiver->expected,
                          size + 1U))

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_search: finds frames in the bytes that the radio delivers.
+ * link_search: finds frames among the bytes that the radio delivers.
  */
 #include "link_search.h"
 
 #include <string.h>
 
-/* Returns whether a header is plausible: most garbage fails here, before a checksum is computed. */
+/* Returns whether a header is plausible. Most garbage is rejected here, before a checksum is
+ * computed. */
 static int isPlausible(const Link_Codec* codec, const U8* frame) {
     U32 size = LINK_LENGTH(frame) + LINK_OVERHEAD;
     U32 payload = size - codec->overhead;
@@ -22,13 +23,13 @@ static int isPlausible(const Link_Codec* codec, const U8* frame) {
     return payload == codec->sizes[kind];
 }
 
-/* Takes the cost of one frame, in rounds of Ascon, from the search budget. Returns whether the
- * budget was sufficient. The budget prevents hostile bytes with many headers from keeping the CPU
+/* Charges the cost of one frame, in rounds of Ascon, to the search budget. Returns whether the
+ * budget was sufficient. Without the budget, hostile bytes with many headers could keep the CPU
  * busy. */
 static int mayTry(Link_Search* search, U32 rounds) {
     U32 now = search->session->handshake.pacing->env.now;
     U32 debt = search->paidAt - now;
-    /* an older debt has already been paid by the time that has passed */
+    /* a larger difference means that paidAt is in the past, so nothing is owed */
     if (debt > LINK_ROUNDS_AT_ONCE * LINK_ROUND_EVERY)
         debt = 0;
     debt += rounds * LINK_ROUND_EVERY;
@@ -38,9 +39,9 @@ static int mayTry(Link_Search* search, U32 rounds) {
     return 1;
 }
 
-/* Opens a plausible frame with the seal that it should have. Returns the opened frame, which is
- * either in place or in `copy`, and sets the attempt that opened it. Returns 0 if no seal
- * matches. */
+/* Opens a plausible frame with the seal with which it should have been made. Returns the opened
+ * frame, which is in place or in `copy`, and sets `attempt` to the attempt that has opened it.
+ * Returns 0 if no seal matches. */
 static const U8* unseal(const Link_Search* search, const U8* frame, U8* copy, U32* attempt) {
     const Link_Codec* codec = search->session->handshake.pacing->env.codec;
     const U8* opened;
@@ -52,9 +53,9 @@ static const U8* unseal(const Link_Search* search, const U8* frame, U8* copy, U3
     return 0;
 }
 
-/* Returns whether a frame without a tag, found by the search, can be trusted; its checksum might
- * match by coincidence. It is trusted if the bytes end after it, or if a valid frame follows. 1:
- * yes, 0: no, -1: not known yet. */
+/* Returns whether a frame without a tag can be trusted if the search has found it; its checksum
+ * might match by coincidence. The frame is trusted if the bytes end after it, or if a valid frame
+ * follows. Returns 1 if so, 0 if not, and -1 if this is not known yet. */
 static int isConfirmed(const Link_Search* search, const U8* next, U32 left, int isEnd) {
     const Link_Codec* codec = search->session->handshake.pacing->env.codec;
     U32 size, attempt;
@@ -70,9 +71,9 @@ static int isConfirmed(const Link_Search* search, const U8* next, U32 left, int 
     return isPlausible(codec, next) && unseal(search, next, 0, &attempt);
 }
 
-/* Processes a complete frame with `left` bytes after it. `isSearch` is 1 if no frame ends
- * directly before it. Returns 1 if the frame was processed, 0 if it is not a frame for this
- * side, -1 if this is not known yet. */
+/* Processes a complete frame that is followed by `left` bytes. `isSearch` is 1 if no frame ends
+ * directly before it. Returns 1 if the frame was processed, 0 if it is not a frame for this side,
+ * and -1 if this is not known yet. */
 static int take(Link_Search* search, const U8* frame, U32 left, int isSearch, int isEnd) {
     Link_Session* session = search->session;
     Link_Env* env = &session->handshake.pacing->env;
@@ -90,7 +91,8 @@ static int take(Link_Search* search, const U8* frame, U32 left, int isSearch, in
         if (isHandshake && left)
             return 0;
         if (!mayTry(search, rounds))
-            return isHandshake ? -1 : 0; /* the budget is refilled during a silence */
+            /* a handshake frame is tried again after a silence, in which the budget grows */
+            return isHandshake ? -1 : 0;
     }
     opened = unseal(search, frame, copy, &attempt);
     if (!opened && env->codec->isAuthenticated)
@@ -107,8 +109,8 @@ static int take(Link_Search* search, const U8* frame, U32 left, int isSearch, in
     return 1;
 }
 
-/* Counts a byte at which no frame begins. The first such byte after a frame may begin a frame of an
- * unknown session, which is then answered. There is no answer if the length is impossible for a
+/* Counts a byte at which no frame begins. Directly after a frame, this byte may begin a frame of an
+ * unknown session, which is then answered. It is not answered if its length is impossible for a
  * frame, as in a broadcast. */
 static void skip(Link_Search* search, const U8* frame, U32 left) {
     Link_Env* env = &search->session->handshake.pacing->env;
@@ -119,18 +121,19 @@ static void skip(Link_Search* search, const U8* frame, U32 left) {
     ++env->statistics.bytesSkipped;
 }
 
-/* Processes all complete frames in the bytes. `isEnd` is 1 if a silence follows: an incomplete
- * frame then stays incomplete. Returns the number of bytes used.
+/* Processes all complete frames in the bytes. `isEnd` is 1 if a silence has followed: an incomplete
+ * frame then remains incomplete. Returns the number of bytes used.
  *
- * Without a key, the bytes after an incomplete frame must wait. With a key, a frame has a tag and
- * needs no confirmation. It is processed when its last byte arrives, even if its bytes follow the
- * beginning of another frame: that beginning may come from an attacker who wants to delay the
- * genuine frame. Frames that end within the kept bytes were checked before.
+ * Without a key, the bytes after an incomplete frame must wait until it is complete. With a key, a
+ * frame has a tag and needs no confirmation. It is processed when its last byte arrives, even if
+ * its bytes follow the beginning of another frame: that beginning may come from an attacker who
+ * wants to delay the genuine frame. Frames that end within bytes kept from earlier calls were
+ * already checked.
  *
- * Hostile bytes can pretend that a frame of the handshake ends with each portion that the caller
- * reads, and use up the search budget before the genuine frame arrives. Therefore, if the budget
- * does not suffice for a frame of the handshake at the end of the bytes, the frame is kept, and
- * tried after a silence. */
+ * An attacker can send bytes in which a handshake frame seems to end with each portion that the
+ * caller reads, and so use up the search budget before the genuine frame arrives. If the budget
+ * does not suffice for a handshake frame at the end of the bytes, this frame is therefore kept, and
+ * tried again after a silence. */
 static U32 parse(Link_Search* search, const U8* bytes, U32 count, int isEnd) {
     int isSure = search->session->handshake.pacing->env.codec->isAuthenticated;
     U32 used = 0;
@@ -160,7 +163,7 @@ static U32 parse(Link_Search* search, const U8* bytes, U32 count, int isEnd) {
     return used;
 }
 
-/* Parses the kept bytes, `count` of them, and keeps an incomplete frame. */
+/* Parses the `count` bytes that are kept, and continues to keep an incomplete frame. */
 static void parseKept(Link_Search* search, U32 count, int isEnd) {
     U32 used = parse(search, search->bytes, count, isEnd);
     search->count = (U8)(count - used);
@@ -180,9 +183,12 @@ void link_pollSearch(Link_Search* search) {
 void link_takeBytes(Link_Search* search, const U8* bytes, U32 size) {
     link_pollSearch(search);
     if (size == 0)
-        return; /* an empty portion would hide a silence; `bytes` may be null */
+        /* returns without recording the time: an empty portion must not hide a silence; `bytes` may
+         * be null */
+        return;
     search->at = search->session->handshake.pacing->env.now;
-    if (search->count == 0) { /* the usual case: a complete frame is read in place */
+    /* the usual case: no bytes are kept, and a complete frame is read in place */
+    if (search->count == 0) {
         U32 used = parse(search, bytes, size, 0);
         search->count = (U8)(size - used);
         memcpy(search->bytes, bytes + used, search->count);

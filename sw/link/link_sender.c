@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_sender: sends fragments and repeats lost ones.
+ * link_sender: sends fragments, and sends lost ones again.
  */
 #include "link_sender.h"
 
@@ -59,8 +59,8 @@ Link_Status link_queueMessage(Link_Sender* sender, int channel, const U8* data, 
     return LINK_OK;
 }
 
-/* Queues the closings for which the queue had no room before. A channel can be opened again
- * after the peer has acknowledged its closing. */
+/* Queues closings for which the queue had no room before. When the peer has acknowledged the
+ * closing of a channel, the channel can be opened again. */
 static void queueClosings(Link_Sender* sender) {
     Link_Channels* channels = &sender->receiver->channels;
     U32 channel;
@@ -69,7 +69,8 @@ static void queueClosings(Link_Sender* sender) {
             LINK_NOTE_CLOSING(channels, channel);
 }
 
-/* Removes an entry from the queue. Reports the message's outcome, and that the queue has room. */
+/* Removes an entry from the queue. Reports the outcome of its message, and that the queue has room
+ * again. */
 static void endEntry(Link_Sender* sender, U32 index, Link_Outcome outcome) {
     Link_Env* env = &sender->pacing->env;
     Link_Queue* queue = &sender->queue;
@@ -97,16 +98,16 @@ void link_resetSender(Link_Sender* sender, int isWiped) {
     LINK_FORGET_ROUND_TRIPS(sender->pacing);
 }
 
-/* Cuts the next fragment from the queue into the window. With `onlyAhead`, only a message that
- * overtakes is cut. Returns 0 if nothing can be cut or the window has no room. */
+/* Cuts the next fragment from the queue and adds it to the window. With `onlyAhead`, only cuts a
+ * message that overtakes others. Returns 0 if there is nothing to cut or the window has no room. */
 static int cut(Link_Sender* sender, int onlyAhead) {
     Link_Fragment* f = FRAGMENT(sender, sender->next);
     const Link_Pacing* pacing = sender->pacing;
     U32 inFlight = IN_FLIGHT(sender);
     U32 room = link_room(pacing);
-    /* An acknowledgement that is due is sent in the same packet. */
+    /* If an acknowledgement is due, the fragment leaves room for it in the same packet. */
     U32 reduced = sender->receiver->ackNow ? room - ACK_ROOM(sender) : room;
-    /* One fragment may be sent even without credit, because its acknowledgement brings new
+    /* Without credit, one fragment in flight is allowed, because its acknowledgement brings new
      * credit. */
     if ((inFlight && inFlight >= sender->credit) ||
         !link_cut(&sender->queue, &f->chunk, room, onlyAhead ? 0 : reduced,
@@ -120,9 +121,10 @@ static int cut(Link_Sender* sender, int onlyAhead) {
     return 1;
 }
 
-/* Returns n: one of n transmissions requests an acknowledgement, which costs time on the air. n
- * is smaller in three cases: losses stop the window; a message that has overtaken is not
- * acknowledged yet; or short messages fill the queue before they fill the window. */
+/* Returns n: one of n transmissions requests an acknowledgement. Each acknowledgement takes
+ * time on the air. n is smaller in three cases: losses block the window; a message that has
+ * overtaken others is not acknowledged yet; or the queue is full of short messages before the
+ * window is full. */
 static U32 askEvery(const Link_Sender* sender) {
     U32 ahead = sender->ahead;
     if (!sender->pacing->mostWaiting &&
@@ -134,8 +136,8 @@ static U32 askEvery(const Link_Sender* sender) {
     return sender->fullCredit / 4U * 3U;
 }
 
-/* Returns whether the peer should acknowledge a fragment at once: one of every n fragments, the
- * last one within the credit, and the last one that is retransmitted. */
+/* Returns whether a fragment should request an immediate acknowledgement: one of every n fragments
+ * does (askEvery), the last one that the credit allows, and the last one of a retransmission. */
 static int mustAsk(const Link_Sender* sender, U32 seq) {
     if (sender->unasked + 1U >= askEvery(sender) || seq - sender->base + 1U >= sender->credit)
         return 1;
@@ -147,9 +149,9 @@ static int mustAsk(const Link_Sender* sender, U32 seq) {
     return 1;
 }
 
-/* Returns whether the peer may accept a message of one fragment before earlier fragments arrive.
- * This is the case if the peer has all earlier fragments of the channel, and if the peer's
- * header cache learns only from fragments that are in order. */
+/* Returns whether the peer may deliver a message of one fragment before earlier fragments have
+ * arrived. The peer must have all earlier fragments of the channel, and must learn no header from
+ * this fragment. */
 static int isReady(const Link_Sender* sender, U32 seq, U32 flags) {
     const Link_Entry* entries = sender->queue.entries;
     const Link_Fragment* f = FRAGMENT(sender, seq);
@@ -163,8 +165,8 @@ static int isReady(const Link_Sender* sender, U32 seq, U32 flags) {
     return 0;
 }
 
-/* Puts a fragment's payload into a frame. Returns the header of a data frame. For a complete
- * short message, while an acknowledgement is due, returns the header of a PIGGYBACK. */
+/* Writes a fragment's payload into a frame. Returns the header of a data frame. If the fragment is
+ * a complete short message and an acknowledgement is due, returns the header of a PIGGYBACK. */
 static U32 build(const Link_Sender* sender, U32 seq, int isAsked, U8* frame) {
     const Link_Pacing* pacing = sender->pacing;
     const Link_Chunk* chunk = &FRAGMENT(sender, seq)->chunk;
@@ -211,7 +213,8 @@ static int transmit(Link_Sender* sender, U32 seq) {
     f->packet = sender->pacing->handed;
     sender->unasked = (U8)(isAsked ? 0U : sender->unasked + 1U);
     if (IN_FLIGHT(sender) >= sender->fullCredit &&
-        wait > sender->srtt) /* the sender cannot continue without an acknowledgement */
+        /* the window is full, so the sender needs an acknowledgement before it can continue */
+        wait > sender->srtt)
         wait = sender->srtt < LINK_RTO_MIN ? LINK_RTO_MIN : sender->srtt;
     sender->timerAt = env->now + wait;
     return 1;
@@ -245,8 +248,8 @@ static void setTimer(Link_Sender* sender) {
     sender->timerAt = sender->pacing->env.now + rto;
 }
 
-/* Marks unacknowledged fragments that were sent before `order` as lost, so that they are
- * retransmitted. */
+/* Marks the fragments that were sent before transmission number `order` and are not acknowledged as
+ * lost, so that they are sent again. */
 static void sendAgain(Link_Sender* sender, U32 order) {
     U32 seq;
     for (seq = sender->base; seq != sender->next; ++seq) {
@@ -258,9 +261,9 @@ static void sendAgain(Link_Sender* sender, U32 order) {
     }
 }
 
-/* Marks acknowledged fragments: the first `advance`, and those in the bitmap, where bit n is the
- * fragment at advance + 1 + n. Fragments that were sent before the newest acknowledged one, and
- * that are not acknowledged, count as lost. */
+/* Marks fragments as acknowledged: the first `advance` ones, and those in the bitmap, in which bit
+ * n stands for the fragment at advance + 1 + n. A fragment without acknowledgement counts as lost
+ * if it was sent before the newest acknowledged one. */
 static int markAcked(Link_Sender* sender, U32 advance, const U8* bitmap, U32 size) {
     const Link_Fragment* newest = 0;
     int isNew = 0;
@@ -275,9 +278,9 @@ static int markAcked(Link_Sender* sender, U32 advance, const U8* bitmap, U32 siz
         f->state = LINK_ACKED;
         isNew = 1;
         if (f->tries != 1U && elapsed < sender->srtt - sender->srtt / 4U) {
-            /* The time is too short for a round trip, so this acknowledges an earlier
-             * transmission of the fragment. If the radio reports losses, that is the first
-             * transmission, and the peer has become slower. */
+            /* The time is too short for a round trip, so an earlier transmission of the fragment is
+             * acknowledged. If the radio reports losses, this was the first transmission, and the
+             * peer has become slower. */
             elapsed = sender->pacing->env.now - f->firstAt;
             if (sender->pacing->mostWaiting && !sender->pacing->backoff.own.isStream &&
                 elapsed < LINK_RTO_FIRST)
@@ -333,8 +336,8 @@ void link_onAnswer(Link_Sender* sender, U32 packet, int isDelivered) {
         link_scheduleAck(sender->receiver);
 }
 
-/* Finds the next fragment to send: a short message that overtakes, a lost fragment, or a new
- * one. Returns 0 if there is no such fragment. */
+/* Finds the next fragment to send: a short message that overtakes others, else a lost fragment,
+ * else a new one. Returns 0 if there is no such fragment. */
 static int nextFragment(Link_Sender* sender, U32* seq) {
     int isRepeated = 0;
     for (*seq = sender->base; *seq != sender->next; ++*seq)
@@ -350,9 +353,9 @@ static int nextFragment(Link_Sender* sender, U32* seq) {
     return 1;
 }
 
-/* Retransmits the oldest fragment in flight when the timer has expired. Returns 0 if this
- * fragment was first sent so long ago that the session must end; otherwise the peer could
- * execute an abandoned message. */
+/* Sends the oldest fragment in flight again if the timer has expired. Returns 0 if this fragment
+ * was first sent so long ago that the session must end: the peer could otherwise execute a message
+ * that its sender has abandoned. */
 static int pollWindow(Link_Sender* sender, U32 now) {
     Link_Fragment* oldest = FRAGMENT(sender, sender->base);
     U32 age = oldest->tries ? now - oldest->firstAt : 0;
@@ -362,13 +365,15 @@ static int pollWindow(Link_Sender* sender, U32 now) {
         return 1;
     sender->timerAt = now + sender->rto;
     if (sender->pacing->mostWaiting && sender->pacing->packed)
-        return 1;                 /* the oldest fragment was not sent yet */
-    oldest->state = LINK_TO_SEND; /* the acknowledgement of this fragment also reports the others */
+        return 1; /* the packet with the oldest fragment was not sent yet */
+    /* one fragment is enough, because its acknowledgement reports the other fragments as well */
+    oldest->state = LINK_TO_SEND;
     sender->hasWork = sender->isLate = 1;
     sender->rto += sender->rto / 4U;
     if (sender->rto > LINK_RTO_MAX)
         sender->rto = LINK_RTO_MAX;
-    if (age >= LINK_PING_AFTER) /* the session would end soon */
+    /* retransmissions become frequent, because otherwise the session would soon end */
+    if (age >= LINK_PING_AFTER)
         sender->rto = LINK_PING_EVERY;
     sender->timerAt = now + sender->rto;
     return 1;

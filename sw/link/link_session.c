@@ -4,7 +4,7 @@
  */
 #include "link_session.h"
 
-/* Number of Ascon rounds for a frame of the session. */
+/* Cost of opening a frame of the session, in rounds of Ascon. */
 #define ROUNDS_OF(payload) (24U + (payload) / 2U)
 
 void link_endSession(Link_Session* session, Link_State next) {
@@ -36,7 +36,7 @@ void link_abort(Link_Session* session) {
     link_lose(session);
 }
 
-/* Starts the session that the candidate keys belong to. */
+/* Starts the session of the candidate. */
 static void begin(Link_Session* session, int isUnconfirmed) {
     Link_Env* env = &session->handshake.pacing->env;
     if (session->handshake.state == LINK_STATE_UP)
@@ -75,7 +75,8 @@ int link_expect(Link_Session* session, const U8* frame, U32 attempt, Link_Seal* 
     Link_Handshake* handshake = &session->handshake;
     const Link_Identity* present = &handshake->present;
     Link_Kind kind = LINK_KIND_OF(frame);
-    U32 expected = session->sender.base; /* frame number that an ACK must have */
+    /* number that an ACK is expected to have; ACKs are numbered like the sender's fragments */
+    U32 expected = session->sender.base;
     if (attempt || LINK_IS_HANDSHAKE(kind))
         return handshake->rules->expect(handshake, frame, attempt, seal);
     if (handshake->state != LINK_STATE_UP || !link_isOfEpoch(frame, present->key))
@@ -117,7 +118,8 @@ static int onPiggyback(Link_Session* session, const U8* frame, U32 early) {
     U32 flags = early | LINK_FIRST | LINK_LAST | LINK_CHANNEL(frame[2]);
     if (LINK_KIND_OF(frame) == LINK_KIND_PIGGYBACK_ASK)
         flags |= LINK_ACK_NOW;
-    /* A peer only sends a PIGGYBACK if it holds no message, so it has room for the whole window. */
+    /* A peer that holds a message sends no PIGGYBACK. The sender of a PIGGYBACK therefore has room
+     * for the whole window. */
     if (link_onAck(sender, payload[0], sender->fullCredit, 0, 0))
         LINK_NOTE_ALIVE(&session->liveness);
     return link_onData(&session->receiver, frame[1], flags, payload + 1, LINK_LENGTH(frame) - 1U);
@@ -152,8 +154,8 @@ void link_onFrame(Link_Session* session, const U8* frame, U32 attempt) {
         link_onPing(&session->liveness, frame);
     else
         link_scheduleAck(&session->receiver);
-    /* A duplicate frame may be an attacker's recording, so it is not a sign of life. link_onAck and
-     * link_onPing check this themselves. */
+    /* A duplicate frame is not a sign of life, because an attacker may have recorded it. link_onAck
+     * and link_onPing check this themselves. */
     if (kind >= LINK_KIND_PIGGYBACK && duplicates == env->statistics.duplicates)
         LINK_NOTE_ALIVE(&session->liveness);
     if (!isFair)

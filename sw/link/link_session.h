@@ -24,27 +24,28 @@ typedef struct Link_Session {
 /* Ends the session, if there is one: clears its state and reports its end. */
 void link_endSession(Link_Session* session, Link_State next);
 
-/* Ends the session because the peer wants this or has been silent for too long. */
+/* Ends the session because the peer has ended it, or because the peer has been silent for too
+ * long. */
 void link_lose(Link_Session* session);
 
-/* Ends the session, if there is one, on request of this side, and sends BYE. */
+/* Ends the session, if there is one, by decision of this side, and sends BYE. */
 void link_abort(Link_Session* session);
 
 /* Returns the cost of trying to open a plausible frame, in rounds of Ascon; 0 if the frame is
  * not for this side. */
 U32 link_costOf(const Link_Session* session, const U8* frame);
 
-/* Writes the seal that the frame must have to be genuine. `attempt` is 0 or 1. Returns 0 if no
- * genuine frame of this kind can exist now. */
+/* Writes the seal with which a genuine frame must have been made. Two seals may be possible;
+ * `attempt` (0 or 1) selects one. Returns 0 if no genuine frame of this kind can exist now. */
 int link_expect(Link_Session* session, const U8* frame, U32 attempt, Link_Seal* seal);
 
 /* Processes a frame that was opened with the seal of `attempt`. */
 void link_onFrame(Link_Session* session, const U8* frame, U32 attempt);
 
-/* Counts an expected frame that no key of the session could authenticate. A frame of the handshake
+/* Counts a frame that could not be opened with any key of the session. If it is a handshake frame,
  * wipes the candidate instead. */
 void link_onForgery(Link_Session* session, const U8* frame);
 
-/* Polls handshake and liveness; ends a session that is silent or has lasted too long. Returns 1 if
- * there is a session. */
+/* Polls the handshake and the liveness. Ends a session whose peer is silent, or that has lasted too
+ * long. Returns 1 if there is a session. */
 int link_pollSession(Link_Session* session);

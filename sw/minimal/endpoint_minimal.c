@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * endpoint_minimal: passes messages between the run time and the link, in one task.
+ * endpoint_minimal: passes messages between IceC and the link, in one task.
  */
 #include "endpoint_minimal.h"
 
@@ -10,17 +10,18 @@
 
 #define HEAD 8
 #define BODY 7
-#define RETRIES 1000 /* tries to send while the link has no room, 20 ms apart */
+#define RETRIES 1000 /* number of attempts to send while the link has no room, 20 ms apart */
 
 /* Beginning of an encoded endpoint: type, encapsulation of 13 bytes, encoding 1.1. */
 static const Ice_Byte head[HEAD] = {
     XBEE_ENDPOINT_TYPE & 0xFF, XBEE_ENDPOINT_TYPE >> 8, 6 + BODY, 0, 0, 0, 1, 1};
 
-/* Bit of a pending event. The lowest bit is delivered first; the event of a message is bit 0. */
+/* Bit that represents a pending event. The lowest bit is delivered first; bit 0 is the event of a
+ * message. */
 #define EVENT(kind, channel) \
     (2U << (((U32)(kind) - ICE_EVENT_CLOSED) * LINK_CHANNELS + (U32)(channel)))
 
-/* Cancels an event. Returns 1 if the event was not delivered yet. */
+/* Cancels a pending event. Returns 1 if the event was still pending. */
 static int cancel(XBeeATEndpoint* self, Ice_EventKind kind, int channel) {
     if (!(self->events & EVENT(kind, channel)))
         return 0;
@@ -36,8 +37,8 @@ static void end(XBeeATEndpoint* self, int channel) {
 
 int XBeeATEndpoint_onMessage(void* context, int channel, const U8* data, U32 size) {
     XBeeATEndpoint* self = context;
-    /* Openings and closings are delivered before messages, so a message is only accepted while
-     * no other event is pending. */
+    /* Events of opening and closing are delivered before messages. A message is therefore only
+     * accepted while no other event is pending. */
     if (!self->buffer || self->events)
         return 1;
     memcpy(self->buffer, data, size);
@@ -54,14 +55,15 @@ void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
         return;
     if (!isOpen)
         end(self, channel);
-    /* A closing cancels an opening that was not delivered. So at most one closing and one later
-     * opening are pending for a channel, even if the ground restarts often. */
+    /* If an opening is still pending when the channel closes, both cancel each other. At most one
+     * closing and one later opening are therefore pending for a channel, even if the ground station
+     * restarts often. */
     if (isOpen || !cancel(self, ICE_EVENT_OPENED, channel))
         self->events |= EVENT(isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel);
 }
 
-/* Waits for one event. The link may write `buffer` only meanwhile; at other times the link keeps
- * messages. */
+/* Waits for one event. The link may write to `buffer` only during this wait; at other times the
+ * link keeps messages. */
 static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ice_Event* event) {
     XBeeATEndpoint* self = context;
     U32 first = 0;
@@ -73,7 +75,7 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
     if (self->events) {
         while (!(self->events >> first & 1U))
             ++first;
-        self->events &= self->events - 1U; /* removes the lowest event from the set */
+        self->events &= self->events - 1U; /* removes the lowest pending event */
         first = first ? first + LINK_CHANNELS - 1U : self->from;
         event->kind = (Ice_EventKind)(ICE_EVENT_MESSAGE + first / LINK_CHANNELS);
         event->connection = (int)(first % LINK_CHANNELS);
@@ -87,7 +89,8 @@ static Link_Status openOwn(XBeeATEndpoint* self) {
     Link_Status status = LINK_OK;
     if (!self->ownOpen) {
         status = Link_openChannel(self->link, XBEE_OWN_CHANNEL);
-        if (status == LINK_OK) { /* a pending closing belongs to the previous connection */
+        /* a closing that is still pending belongs to the previous connection, so it is cancelled */
+        if (status == LINK_OK) {
             self->ownOpen = 1;
             self->events &= ~EVENT(ICE_EVENT_CLOSED, XBEE_OWN_CHANNEL);
         }
@@ -95,7 +98,7 @@ static Link_Status openOwn(XBeeATEndpoint* self) {
     return status;
 }
 
-/* Sends a message or, without one, opens this side's channel. Tries again while the link has no
+/* Sends a message; without a message, opens this side's channel. Tries again while the link has no
  * room. */
 static Ice_Status offer(XBeeATEndpoint* self, int channel, const Ice_Byte* message, Ice_Int size) {
     Link_Status status;
@@ -127,8 +130,8 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
 
 static void closeChannel(void* context, int channel) {
     XBeeATEndpoint* self = context;
-    /* The ground may already have closed the channel, and the channel may belong to a new
-     * connection. */
+    /* The ground station may have closed the channel already. The channel may then belong to a new
+     * connection and must stay open. */
     if (!cancel(self, ICE_EVENT_CLOSED, channel)) {
         (void)Link_closeChannel(self->link, channel);
         end(self, channel);
@@ -137,7 +140,7 @@ static void closeChannel(void* context, int channel) {
 
 static Ice_Status listenTo(void* context, const char* options) {
     (void)context;
-    (void)options; /* the radio is always open, so there is nothing to do */
+    (void)options; /* the radio always receives, so there is nothing to do */
     return ICE_OK;
 }
 
@@ -156,7 +159,7 @@ static U32 nowMs(void* context) {
 }
 
 static void wakeUp(void* context) {
-    (void)context; /* with one task, no task waits */
+    (void)context; /* there is only one task, so no task waits */
 }
 
 void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoint* self, Link* link,

@@ -4,9 +4,9 @@
 
 Usage: ground.py DEVICE [--reference PROGRAM --frame PICTURE] [Ice options]
 
-Serves the object Station, which the vehicle calls, and calls the vehicle on the proxy that it
-receives. It then calls the vehicle's engine with both encodings and with one-way calls, and checks
-which calls the minimal run time refuses.
+Serves the object Station. The vehicle calls Station and passes a proxy, which this program uses to
+call the vehicle. The program then calls the vehicle's engine with both encodings and by one-way
+calls, and checks that the minimal run time refuses the calls that it does not support.
 """
 
 import argparse

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_minimal: the run time of the minimal configuration: one task, one active adapter, one message
- * at a time.
+ * ice_minimal: the minimal run time: one task, one active adapter, one message at a time.
  *
- * `in` holds received messages, `out` messages to send. A connection and the current call each have
- * an Ice_Status, which is ICE_LATER while the peer's message is awaited. The functions are declared
- * in icec.h; streams, proxies and tables of operations are shared with the full run time.
+ * `in` holds received messages, `out` holds messages to send. The connection and the current call
+ * each have an Ice_Status, which is ICE_LATER while a message of the peer is expected. The
+ * functions are declared in icec.h. Streams, proxies and tables of operations are the same as in
+ * the full run time.
  */
 #include "ice_message.h"
 
@@ -63,7 +63,7 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
     target.data = is->data + target.size;
     Ice_InputStream_takeString(is, &current.name);
     Ice_InputStream_takeString(is, &current.category);
-    /* number of facets; requests with a facet are not supported */
+    /* number of strings of the facet; requests with a facet are not supported */
     current.facet.size = Ice_InputStream_readByte(is);
     icec_skipStrings(is, (U32)current.facet.size);
     Ice_InputStream_takeString(is, &current.operation);
@@ -90,8 +90,8 @@ static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStre
     return ICE_OK;
 }
 
-/* Handles a message. Returns ICE_OK, or the status with which the connection must be closed.
- * After a malformed message the connection is lost. */
+/* Handles a message. Returns ICE_OK, or the reason why the connection must be closed. A malformed
+ * message ends its connection. */
 static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, Ice_Int size) {
     Ice_InputStreamPtr is = &ic->is;
     Ice_InputStream_init(is, ic->in, size);
@@ -122,7 +122,8 @@ Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     (void)ic->endpoint->receive(ic->endpointContext, ic->in, timeoutMs, &event);
     if (event.kind == ICE_EVENT_NONE)
         return ICE_TIMEOUT;
-    if (event.kind == ICE_EVENT_OPENED) { /* the side that accepts a connection sends first */
+    /* the side that has accepted the connection sends the first message */
+    if (event.kind == ICE_EVENT_OPENED) {
         ic->connections[event.connection] = ICE_OK;
         icec_beginMessage(&ic->os, ICEC_VALIDATE);
         (void)send(ic, event.connection);
@@ -140,7 +141,7 @@ Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     return ICE_OK;
 }
 
-/* Receives until `status` is no longer ICE_LATER. */
+/* Receives messages until `status` is no longer ICE_LATER. */
 static Ice_Status await(Ice_ObjectPrxPtr self, const volatile Ice_Byte* status) {
     U32 begun = nowMs(self->communicator);
     while (*status == ICE_LATER) {
@@ -161,7 +162,8 @@ static Ice_Status connect(Ice_ObjectPrxPtr self) {
         return status;
     connection = ic->connections + self->connection;
     if (*connection != ICE_OK)
-        *connection = ICE_LATER; /* until the first message of the peer */
+        /* the connection is open when the first message of the peer has arrived */
+        *connection = ICE_LATER;
     return await(self, connection);
 }
 
@@ -182,7 +184,7 @@ Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char* opera
     Ice_OutputStream_writeInt(os, self->mode == ICE_TWOWAY ? ic->id : 0);
     Ice_OutputStream_writeBlob(os, self->identity, self->identitySize);
     Ice_OutputStream_writeText(os, operation);
-    Ice_OutputStream_writeShort(os, mode & ~ICE_RESULTS); /* the mode; the context is empty */
+    Ice_OutputStream_writeShort(os, mode & ~ICE_RESULTS); /* the mode, and an empty context */
     ic->body = icec_beginEncapsulation(os);
     return os;
 }
@@ -191,7 +193,8 @@ Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr* is) {
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_Status status = (Ice_Status)self->status;
     *is = &ic->is;
-    ic->is.failed = 0; /* a oneway call reads nothing */
+    /* cleared, because the caller checks this stream, and a oneway call reads nothing */
+    ic->is.failed = 0;
     if (ic->os.failed)
         status = ICE_MARSHAL;
     if (status != ICE_OK)
@@ -209,14 +212,14 @@ Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status) {
 
 U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
     for (; options && *options; ++options)
-        if (options[0] == '-' && options[1] == letter) { /* quotes are not supported here */
+        if (options[0] == '-' && options[1] == letter) { /* quoted values are not supported here */
             options += 3;
             return (U32)strtoul(options, 0, options[0] == '0' && options[1] == 'x' ? 16 : 10);
         }
     return otherwise;
 }
 
-/* Returns the options after the name of the transport; 0 if the text names another transport. */
+/* Returns the options that follow the transport's name; 0 if the text names another transport. */
 static const char* optionsOf(Ice_CommunicatorPtr ic, const char* text) {
     size_t size = strlen(ic->endpoint->name);
     return strncmp(text, ic->endpoint->name, size) == 0 && text[size] <= ' ' ? text + size : 0;

@@ -21,14 +21,14 @@ struct Ice_Communicator {
     Ice_ObjectAdapterPtr adapter; /* the active adapter */
     Ice_Byte stopping;
     Ice_Byte busy; /* 1 while an operation runs */
-    /* Ice_Status of the call: ICE_OK if the connection is open or the reply has arrived, ICE_LATER
-     * while it is awaited. */
+    /* status of the current call: ICE_LATER while its reply is expected. ICE_OK if the connection
+     * is open or the reply has arrived. */
     Ice_Byte call;
     Ice_Byte connections[ICE_CONNECTIONS];
     int connection;      /* connection of the current call */
     Ice_Int id;          /* id of the current call; always odd */
     Ice_Int body;        /* start of the encapsulation in `os` */
-    Ice_OutputStream os; /* writes to `out`: a request or a reply */
+    Ice_OutputStream os; /* stream that writes to `out`: a request or a reply */
     Ice_InputStream is;  /* in `in` */
     U32 arena[ICE_ARENA_BYTES / 4];
     Ice_Byte in[ICE_MESSAGE_MAX], out[ICE_RESULT_MAX];

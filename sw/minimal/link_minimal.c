@@ -8,14 +8,14 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Bits of a channel's state; LINK_FIRST or LINK_LAST is also set while an opening or closing
- * fragment is due. */
+/* Bits of a channel's state. LINK_FIRST or LINK_LAST is also set while a fragment that opens or
+ * closes the channel must be sent. */
 #define OPEN 1U
-#define CLOSING 2U /* channel was closed here; the peer's closing has not arrived yet */
+#define CLOSING 2U /* this side has closed the channel; the peer's closing has not arrived yet */
 #define DUE (LINK_FIRST | LINK_LAST)
 
-/* Sends link->frame, which contains its payload (link_seal). A frame for which the radio has no
- * room is lost, as on the air. */
+/* Sends link->frame, whose payload is already in place (link_seal). If the radio has no room, the
+ * frame is lost, as a frame can be lost on the air. */
 static void transmit(Link* link, U32 header) {
     (void)link->port->transmit(link->context, link->frame,
                                link_seal(link->frame, header, link->key));
@@ -48,7 +48,8 @@ static void lose(Link* link) {
 
 static void onHello(Link* link, const U8* frame) {
     U32 peerNonce = link_get32(frame + LINK_HEADER);
-    if (peerNonce != link->peerNonce) { /* equal nonces mean that our answer was lost */
+    /* the nonces are equal if the peer repeats its HELLO because the answer was lost */
+    if (peerNonce != link->peerNonce) {
         lose(link);
         link->peerNonce = peerNonce;
         link->nonce = link->port->random(link->context);
@@ -67,14 +68,14 @@ static void onChannel(Link* link, U32 channel, U32 isOpen) {
     U8* c = link->channels + channel;
     if (*c & CLOSING) {
         if (!isOpen)
-            *c ^= CLOSING; /* this is the answer to our closing */
+            *c ^= CLOSING; /* this is the peer's answer to the closing by this side */
     } else if (isOpen != (*c & OPEN)) {
         *c = isOpen ? OPEN : LINK_LAST;
         link->port->channel(link->context, (int)channel, (int)isOpen);
     }
 }
 
-/* Processes the expected fragment. A message on a channel that was closed here is dropped. */
+/* Processes the expected fragment. Drops a message on a channel that this side has closed. */
 static void onData(Link* link, const U8* frame, U32 size) {
     U32 flags = frame[2];
     U32 channel = LINK_CHANNEL(flags);
@@ -130,7 +131,7 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
             lose(link);
         return;
     } else if (link->state != LINK_STATE_UP) {
-        /* the frame belongs to an earlier session of the peer */
+        /* the peer still has an earlier session, to which the frame belongs */
         link->key = LINK_EPOCH_KEY(epoch) | LINK_NO_SEED;
         transmit(link, LINK_CONTROL_HEADER(LINK_KIND_RST, 0, 0U));
         return;
@@ -150,7 +151,8 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
 }
 
 void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
-    /* A frame begins after a silence, or directly if its length fills the packet. */
+    /* A frame begins after a silence. It also begins here if its length is the size of the whole
+     * portion. */
     if (nowUs - link->inputAt > LINK_FRAME_GAP || LINK_LENGTH(bytes) + LINK_OVERHEAD == size)
         link->inputCount = 0;
     link->inputAt = nowUs;
@@ -166,8 +168,8 @@ void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
 
 /* ---- sending ---- */
 
-/* Returns the flags of the next fragment; 0 if there is nothing to send. Openings are sent
- * before the message, closings after it. */
+/* Returns the flags of the next fragment; 0 if there is nothing to send. Openings are sent before
+ * the queued message, closings after it. */
 static U32 cut(Link* link) {
     U32 size, channel, flags;
     link->size = 0;
@@ -230,14 +232,14 @@ U32 Link_deadline(const Link* link, U32 nowUs) {
     return LINK_BEFORE(at, nowUs) ? 0 : at - nowUs;
 }
 
-/* ---- the program's side ---- */
+/* ---- functions for the program ---- */
 
 void Link_init(Link* link, const Link_Config* config) {
     memset(link, 0, sizeof *link);
     link->port = config->port;
     link->context = config->context;
     link->retryUs =
-        config->byteTimeUs16 * LINK_MAX_FRAME; /* duration of 16 frames of maximum size */
+        config->byteTimeUs16 * LINK_MAX_FRAME; /* time of 16 frames of maximum size, us */
 }
 
 void Link_start(Link* link, U32 nowUs) {
@@ -283,7 +285,7 @@ Link_Status Link_closeChannel(Link* link, int channel) {
     if (!c || !(*c & OPEN))
         return LINK_CLOSED;
     if (*c & LINK_FIRST)
-        return LINK_FULL; /* the opening is still to be sent */
+        return LINK_FULL; /* the opening was not sent yet */
     *c = CLOSING | LINK_LAST;
     return LINK_OK;
 }

@@ -1,31 +1,31 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_minimal: a small link layer for a side that only answers. It has the wire format and the
- * functions of the full layer (link.h). It sends one fragment at a time, waits for its
+ * link_minimal: a small link layer for a side that only answers. It has the same wire format and
+ * functions as the full layer (link.h). It sends one fragment at a time, waits for its
  * acknowledgement, and queues one message (docs/link.md).
  */
 #pragma once
 
 #include "link.h"
 
-/* Largest length in the header of a frame. */
+/* Size of the longest frame that a header can describe, bytes. */
 #define LINK_INPUT_BYTES (0x7FU + LINK_OVERHEAD)
 
 /* Small and often used fields come first, in reach of short Cortex-M3 instructions. */
 struct Link {
     U8 state; /* Link_State */
     /* The following fields are 0 when a session begins. */
-    U8 channels[LINK_CHANNELS]; /* OPEN, CLOSING, and due fragments */
+    U8 channels[LINK_CHANNELS]; /* state of each channel: OPEN, CLOSING, and fragments to be sent */
     U8 ackDue;
-    U8 flags;           /* byte 2 of the fragment in flight; 0 without one */
+    U8 flags;           /* byte 2 of the fragment in flight; 0 if no fragment is in flight */
     U8 channel;         /* channel of the message that is being sent */
     U32 sendNext;       /* number (extended SEQ) of the fragment in flight, or of the next one */
     U32 receiveNext;    /* number of the fragment that is expected from the peer */
-    U32 outSize, outAt; /* size of the message being sent, and its acknowledged bytes */
+    U32 outSize, outAt; /* size of the message being sent, and number of its acknowledged bytes */
     U32 size;           /* bytes of the fragment in flight */
     U32 messageSize;    /* number of bytes received of the current incoming message */
     U32 peerNonce;      /* nonce of the peer; 0 without a session */
-    /* End of the fields that begin at 0. */
+    /* End of the fields that are 0 when a session begins. */
     U32 nonce, key;
     U32 timerAt; /* time at which the fragment in flight is sent again */
     U32 retryUs; /* interval of retransmissions, us */

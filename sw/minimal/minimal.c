@@ -3,10 +3,11 @@
  * minimal: the smallest program that uses all layers: a server and a client in one loop, without
  * tasks.
  *
- * `make size` measures this program (docs/icec.md), and `make run CPU=m3 APP=minimal` flies it. It
- * implements the Slice interfaces of the paper's Figure 3, with the engine's servant of Figure 5.
- * It calls the ground station, two-way and one-way, over the xbee-at endpoint, the link, the modem
- * and the FSMC. The only interrupt is a tick of 1 kHz; everything else is polled.
+ * `make size` measures this program (docs/icec.md), and `make run CPU=m3 APP=minimal` runs it in a
+ * simulated flight. It implements the Slice interfaces of the paper's Figure 3, with the engine's
+ * servant of Figure 5. It calls the ground station, two-way and one-way, over the xbee-at endpoint,
+ * the link, the modem and the FSMC. Its only interrupt is a tick of 1 kHz; everything else is
+ * polled.
  */
 #include "Autopilot.h"
 #include "board.h"
@@ -80,7 +81,8 @@ static U32 randomWord(void* context) {
 
 static void onState(void* context, Link_State state) {
     (void)context;
-    (void)state; /* the link has already reported each channel to the endpoint */
+    /* not needed, because the link has already reported each channel to the endpoint */
+    (void)state;
 }
 
 static const Link_Port linkPort = {
@@ -97,7 +99,7 @@ Ice_Status Autopilot_HwProcessingEngine_setParameterA(Autopilot_HwProcessingEngi
 
 Ice_Status Autopilot_HwProcessingEngine_startProcessing(Autopilot_HwProcessingEnginePtr self,
                                                         const Ice_Current* current) {
-    U8 size[8]; /* width and height, which the camera has written to the memory */
+    U8 size[8]; /* width and height of the frame, which the camera has written to memory */
     (void)self;
     (void)current;
     FSMC_readMemory(UAV_FRAME_HEADER, size, 8);
@@ -110,7 +112,7 @@ Ice_Status Autopilot_HwProcessingEngine_startProcessing(Autopilot_HwProcessingEn
     return ICE_OK;
 }
 
-/* Returns the result of the last frame; `cycles` is 0 while the core is working. */
+/* Returns the result of the last frame; `cycles` is 0 while the core is still working. */
 Ice_Status Autopilot_HwProcessingEngine_getResult(Autopilot_HwProcessingEnginePtr self,
                                                   Autopilot_ResultType* res,
                                                   const Ice_Current* current) {
@@ -125,7 +127,7 @@ Ice_Status Autopilot_HwProcessingEngine_getResult(Autopilot_HwProcessingEnginePt
     return ICE_OK;
 }
 
-/* Returns only if the FPGA or the modem does not respond. */
+/* Runs the program; returns only if the FPGA or the modem does not respond. */
 int main(void) {
     static const XBeeInitTypeDef xbeeConf = {XBEE_BD_115200, 0x0001, 0x0000, 0, 0, 0, 0, 0};
     static const Radio_Memory rings = {0x00000000U, 0x00001000U};
@@ -147,7 +149,7 @@ int main(void) {
     (void)Ice_Communicator_stringToProxy(&ic, "station:xbee-at -a 0x0000", &station);
     (void)Ice_Communicator_stringToProxy(&ic, "station -o:xbee-at -a 0x0000", &stationOneway);
     (void)Ice_ObjectAdapter_createProxy(&adapter, "hwengine1", &self);
-    /* Serves calls until the link is up and the station listens. */
+    /* Serves calls until the link is up and the ground station's object Station replies. */
     while (Autopilot_StationPrx_vehicleState(&station, &self, &params) != ICE_OK)
         (void)Ice_Communicator_poll(&ic, 1000);
     (void)Autopilot_StationPrx_vehicleState(&stationOneway, &self, &params);

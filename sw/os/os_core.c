@@ -24,8 +24,8 @@ int OS_PriorityTaken(U8 priority) {
 }
 
 U8 OS_Set_first(const OS_Set* set) {
-    /* Finds the lowest set bit with a de Bruijn sequence: the product's five upper bits differ for
-     * each of the 32 bits. */
+    /* Returns the number of the lowest set bit. A de Bruijn sequence is used: the upper five bits
+     * of the product are different for each of the 32 bits. */
     static const U8 place[32] = {0,  1,  28, 2,  29, 14, 24, 3, 30, 22, 20, 15, 25, 17, 4,  8,
                                  31, 27, 13, 23, 21, 19, 16, 7, 26, 12, 18, 6,  11, 5,  10, 9};
     U32 n = set->word[0] ? 0U : 32U, bits = set->word[n >> 5];
@@ -34,7 +34,7 @@ U8 OS_Set_first(const OS_Set* set) {
     return (U8)(n + place[((bits & (0U - bits)) * 0x077CB531U) >> 27]);
 }
 
-/* Switches to the ready task with the highest priority; interrupts are disabled. */
+/* Switches to the ready task with the highest priority. Interrupts must be disabled. */
 static void switchToFirst(void) {
     OS_Task* from = os_kernel.current;
     OS_Task* to = os_kernel.byPriority[OS_Set_first(&os_kernel.ready)];
@@ -101,7 +101,8 @@ INT32U OSTimeGet(void) {
     return ticks;
 }
 
-/* Makes a task ready whose delay or time-out has expired, and ends its wait for an event. */
+/* Makes a task ready when its delay or time-out has expired. If it waits for an event, ends this
+ * wait. */
 static void expire(OS_Task* task) {
     if (task->event) {
         OS_Set_remove(&task->event->waiting, task->priority);

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_core: declarations shared by the files of the kernel and the processor port (os_cpu). Not for
- * applications.
+ * os_core: declarations that the files of the kernel and of the processor port (os_cpu) share.
+ * Applications must not use them.
  */
 #pragma once
 
 #include "ucos_ii.h"
 
-/* A set of priorities: bit p of word p / 32. */
+/* A set of priorities: priority p is bit p % 32 of word p / 32. */
 typedef struct OS_Set {
     U32 word[2];
 } OS_Set;
@@ -16,13 +16,15 @@ typedef enum OS_EventType { OS_EVENT_FREE, OS_EVENT_SEM, OS_EVENT_MUTEX, OS_EVEN
 
 typedef struct OS_Task {
     OS_STK* stack; /* stack pointer of the saved context, for the port */
-    U8 priority;   /* current priority; raised while the task owns a contended mutex */
-    U8 base;       /* priority at creation */
+    /* current priority; raised while the task owns a mutex for which a task of higher priority
+     * waits */
+    U8 priority;
+    U8 base; /* priority at creation */
     U8 used;
     U8 timedOut;
     U32 delay;       /* remaining ticks; 0 means no delay */
     OS_EVENT* event; /* event for which the task waits */
-    void* message;   /* message passed by OSQPost */
+    void* message;   /* message from OSQPost */
     OS_STK* bottom;  /* lowest address of the stack; 0 if unknown */
     U32 words;       /* size of the stack, words */
     U16 options;     /* OS_TASK_OPT_... */
@@ -30,7 +32,7 @@ typedef struct OS_Task {
 
 struct os_event {
     OS_EventType type;
-    U16 count;      /* number of units of a semaphore, or of entries of a queue */
+    U16 count;      /* semaphore: number of units; queue: number of entries */
     U16 size, head; /* queue */
     void** slots;   /* queue */
     OS_Task* owner; /* mutex */
@@ -59,13 +61,14 @@ U8 OS_Set_first(const OS_Set* set);
 
 /* Returns 1 if a task or a mutex has this priority. */
 int OS_PriorityTaken(U8 priority);
-/* Creates a task with the entry, stack bounds and options given; interrupts must be disabled.
+/* Creates a task with the given entry, stack bounds and options. Interrupts must be disabled.
  * Returns OS_ERR_NONE or OS_ERR_TASK_NO_MORE_TCB. */
 U8 OS_TaskMake(void (*task)(void*), void* argument, OS_STK* ptos, U8 priority,
                const OS_Task* stack);
-/* Switches to the highest-priority ready task, unless in an interrupt or locked. */
+/* Switches to the ready task with the highest priority; in an interrupt, or if the scheduler is
+ * locked, does nothing. */
 void OS_Sched(void);
-/* Changes the priority of a task in all lists. */
+/* Changes the priority of a task in all sets and lists. */
 void OS_ChangePriority(OS_Task* task, U8 priority);
 
 /* Functions that the processor port defines. */

@@ -4,7 +4,7 @@
  */
 #include "os_core.h"
 
-/* Allocates an event. Returns 0 if none is free, or if called in an interrupt. */
+/* Allocates an event. Returns 0 if there is no free event, or in an interrupt. */
 static OS_EVENT* create(OS_EventType type) {
     OS_CPU_SR cpu_sr;
     OS_EVENT* found = 0;
@@ -21,8 +21,8 @@ static OS_EVENT* create(OS_EventType type) {
     return found;
 }
 
-/* Checks whether a pend call on an event of this type is allowed. Returns OS_ERR_NONE or the error
- * of the call. */
+/* Checks whether a task may wait for an event of this type. Returns OS_ERR_NONE, or the error for
+ * the caller. */
 static U8 pendError(const OS_EVENT* event, OS_EventType type) {
     if (!event)
         return OS_ERR_PEVENT_NULL;
@@ -34,8 +34,8 @@ static U8 pendError(const OS_EVENT* event, OS_EventType type) {
 }
 
 /* Suspends the current task until the event is signalled or `timeout` ticks have passed. Returns 1
- * on time-out. Interrupts must be disabled at the call, and are disabled at the return; they are
- * enabled in between. */
+ * after a time-out. Interrupts must be disabled before the call and are disabled after it; they are
+ * enabled while the task waits. */
 static U8 waitFor(OS_EVENT* event, U32 timeout, OS_CPU_SR* cpu_sr) {
     OS_Task* task = os_kernel.current;
     task->event = event;
@@ -49,7 +49,8 @@ static U8 waitFor(OS_EVENT* event, U32 timeout, OS_CPU_SR* cpu_sr) {
     return task->timedOut;
 }
 
-/* Makes the first task that waits for the event ready and returns it; returns 0 if none waits. */
+/* Makes the first task ready that waits for the event, and returns it. Returns 0 if no task
+ * waits. */
 static OS_Task* wake(OS_EVENT* event) {
     U8 priority;
     OS_Task* task;
@@ -148,7 +149,7 @@ void OSMutexPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr) {
     if (!pevent->owner) {
         pevent->owner = self;
         if (self->priority <= pevent->ceiling)
-            /* the task owns the mutex in spite of the error, as in uC/OS-II */
+            /* as in uC/OS-II, the task owns the mutex although this is an error */
             *perr = OS_ERR_PIP_LOWER;
     } else {
         OS_Task* owner = pevent->owner;
@@ -164,8 +165,8 @@ INT8U OSMutexPost(OS_EVENT* pevent) {
     OS_CPU_SR cpu_sr;
     OS_Task* self = os_kernel.current;
     U8 priority = self->priority;
-    /* 1 if another task may have to run: one that waited for the mutex, or one that the raised
-     * priority has delayed */
+    /* 1 if another task may have to run: a task that has waited for the mutex, or a task that could
+     * not run while the priority was raised */
     int mayRun;
     if (os_kernel.interruptNesting)
         return OS_ERR_POST_ISR;

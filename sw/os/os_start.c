@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_start: starts the kernel, with its idle task. Uses os_task and os_core.
+ * os_start: starts the kernel and its idle task. Separate from os_core, which must not depend on
+ * os_task.
  */
 #include "os_core.h"
 

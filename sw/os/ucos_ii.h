@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * ucos_ii: the part of uC/OS-II's API (2.9x) that the firmware uses, with its names, argument
- * orders, error codes and blocking rules, so that the real kernel can replace this one. Manual:
- * "MicroC/OS-II, The Real-Time Kernel", chapter 16. Time-outs and delays count ticks of
+ * ucos_ii: the part of uC/OS-II's API (2.9x) that the firmware uses. Names, argument orders, error
+ * codes and blocking rules are those of uC/OS-II, so that the original kernel can replace this one.
+ * Manual: "MicroC/OS-II, The Real-Time Kernel", chapter 16. Time-outs and delays count ticks of
  * 1/OS_TICKS_PER_SEC s.
  */
 #pragma once
@@ -21,7 +21,7 @@ typedef U32 INT32U;
 
 #define OS_ERR_NONE 0U
 #define OS_ERR_EVENT_TYPE 1U /* the event has another type */
-#define OS_ERR_PEND_ISR 2U   /* a task-only call was made from an interrupt */
+#define OS_ERR_PEND_ISR 2U   /* a call that only tasks may make was made from an interrupt */
 #define OS_ERR_POST_NULL_PTR 3U
 #define OS_ERR_PEVENT_NULL 4U
 #define OS_ERR_POST_ISR 5U /* an interrupt cannot own a mutex */
@@ -37,7 +37,7 @@ typedef U32 INT32U;
 #define OS_ERR_TASK_CREATE_ISR 60U
 #define OS_ERR_TASK_NO_MORE_TCB 66U
 #define OS_ERR_TASK_NOT_EXIST 67U
-#define OS_ERR_TASK_OPT 69U /* created without OS_TASK_OPT_STK_CHK */
+#define OS_ERR_TASK_OPT 69U /* the task was created without OS_TASK_OPT_STK_CHK */
 #define OS_ERR_NOT_MUTEX_OWNER 100U
 #define OS_ERR_PIP_LOWER 120U /* the owner's priority is higher than the ceiling of the mutex */
 
@@ -47,43 +47,47 @@ void OSInit(void);
 /* Runs the tasks. On the target it does not return. */
 void OSStart(void);
 
-/* Creates a task. `prio` is 0 (highest) .. OS_LOWEST_PRIO - 1, one task each; `ptos` is the highest
- * address of its stack. */
+/* Creates a task. `prio` is 0 (highest) to OS_LOWEST_PRIO - 1; each task needs a different
+ * priority. `ptos` is the highest address of the task's stack. */
 INT8U OSTaskCreate(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT8U prio);
 
 #define OS_TASK_OPT_NONE 0U
 #define OS_TASK_OPT_STK_CHK 1U /* allows OSTaskStkChk for this task */
-#define OS_TASK_OPT_STK_CLR 2U /* fills the stack with zeros, which OSTaskStkChk counts */
+/* fills the stack with zeros, so that OSTaskStkChk can count the unused words */
+#define OS_TASK_OPT_STK_CLR 2U
 
 /* Creates a task like OSTaskCreate, with the bounds of its stack: `pbos` is its lowest address,
- * `stk_size` its size in OS_STK. `id` and `pext` are accepted as in uC/OS-II, and not used. */
+ * `stk_size` its size in units of OS_STK. `id` and `pext` have no effect; they are parameters of
+ * uC/OS-II. */
 INT8U OSTaskCreateExt(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT8U prio, INT16U id,
                       OS_STK* pbos, INT32U stk_size, void* pext, INT16U opt);
 
 typedef struct os_stk_data {
-    INT32U OSFree, OSUsed; /* sizes of the free and the used part of the stack, in OS_STK */
+    /* sizes of the free and the used part of the stack, in units of OS_STK */
+    INT32U OSFree, OSUsed;
 } OS_STK_DATA;
 
-/* Reports the largest use of a task's stack until now. */
+/* Reports how much of a task's stack was used at most so far. */
 INT8U OSTaskStkChk(INT8U prio, OS_STK_DATA* p_stk_data);
 
 /* Returns the priority of the running task. In uC/OS-II this is the variable OSPrioCur. */
 INT8U OSTaskPrio(void);
 
-extern INT8U OSPrioCur; /* priority with which the current task is running; read only */
+extern INT8U OSPrioCur; /* priority with which the current task is running; must not be written */
 
 void OSTimeDly(INT32U ticks);
 INT32U OSTimeGet(void);
-void OSTimeTick(void); /* called by the tick interrupt, between OSIntEnter and OSIntExit */
+void OSTimeTick(void); /* to be called by the tick interrupt, between OSIntEnter and OSIntExit */
 
-/* A timeout of 0 waits for ever. *perr is set to OS_ERR_NONE, OS_ERR_TIMEOUT, or the error of
- * the call. */
+/* Functions for semaphores. A time-out of 0 means no limit. *perr is set to OS_ERR_NONE,
+ * OS_ERR_TIMEOUT, or the error of the call. */
 OS_EVENT* OSSemCreate(INT16U cnt);
 void OSSemPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr);
 INT8U OSSemPost(OS_EVENT* pevent);
 INT16U OSSemAccept(OS_EVENT* pevent);
 
-/* `prio` is the ceiling that an owner inherits while a higher-priority task waits; it must be free.
+/* Functions for mutexes. `prio` is the ceiling: the priority that an owner inherits while a task of
+ * higher priority waits. No task may have this priority.
  */
 OS_EVENT* OSMutexCreate(INT8U prio, INT8U* perr);
 void OSMutexPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr);

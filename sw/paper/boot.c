@@ -15,7 +15,7 @@
 static OS_STK stack[STACK_WORDS], radioStack[STACK_WORDS];
 static U8 irqEnabled;
 
-/* The servant of the program polls the core, so no interrupt is needed. */
+/* Does nothing: the servant of this program polls the core, so it needs no interrupt. */
 void UAV_coresInterrupt(const U32 lines[2]) {
     (void)lines;
 }

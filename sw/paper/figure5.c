@@ -1,23 +1,26 @@
 /* SPDX-License-Identifier: MIT
  *
- * Figure 5 of the paper, upper half: the server on the UAV. It is as printed, except for the marked
- * lines:
+ * Figure 5 of the paper, upper half: the server on the UAV. The text is that of the figure, except
+ * for the marked lines:
  *
- *   [1] A servant's function gets `self`, so that it can distinguish two cores of one kind, and
- *       `current`; it returns a status. The operation is setParameterA, as in Figure 3.
- *   [2] The figure leaves FSMC_write(...) open. Here it writes word 1 of the vision core's slot,
- *       the threshold.
+ *   [1] A servant's function gets two more parameters: `self`, so that it can distinguish two cores
+ *       of one kind, and `current`. It returns a status. The operation is setParameterA, as in
+ *       Figure 3.
+ *   [2] The figure leaves the arguments of FSMC_write(...) open. Here it writes word 1 of the
+ *       vision
+ *       core's slot, the threshold.
  *   [3] xbeeInit is called by the radio task (uav_modem.c, with the same xbeeConf), which repeats
  *       the call when the modem has lost its settings.
  *   [4] XBeeATEndpoint_init(&ic, "xbee-at") also starts the link below the endpoint, and its task.
  *   [5] The Vehicle of Figure 3 is served as well.
  *
- * The figure omits getResult ("[...]"); it is written in the same way. Figure 3 is Figure3.ice, and
- * its client is figure5.py; `make test NAME=paper_figures` runs them all over the simulated radio.
- * Figure 4 calls an operation of Station by the name Autopilot_Vehicle_vehicleState. Here it is
- * Autopilot_StationPrx_vehicleState (build/main/gen/slice/Figure3/Figure3_client.c), because the
- * name without Prx belongs to the servant's function. It returns a status. The run time contains
- * the code that the figure repeats in every function.
+ * The figure omits getResult ("[...]"); here it is written in the same way as the other functions.
+ * Figure 3 is Figure3.ice, and its client is figure5.py; `make test NAME=paper_figures` runs them
+ * all over the simulated radio. Figure 4 calls an operation of Station by the name
+ * Autopilot_Vehicle_vehicleState. Here its name is Autopilot_StationPrx_vehicleState
+ * (build/main/gen/slice/Figure3/Figure3_client.c), because the name without Prx belongs to the
+ * servant's function. It returns a status. The code that Figure 4 repeats in every function is part
+ * of the run time here.
  */
 #include "Figure3.h"
 #include "fsmc.h"

@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Figure 5 of the paper, lower half: the client on the ground. It is as printed, except for the
-marked lines:
+"""Figure 5 of the paper, lower half: the client on the ground. The text is that of the figure,
+except for the marked lines:
 
 [1] The figure has HwProcessEnginePrx and uncheckCast.
-[2] The proxy names the serial port of the ground's modem, the UAV's address, and the time-out,
-    which includes the set-up of the modem.
-[3] Results need a two-way proxy: "-o" makes a proxy one-way.
+[2] The proxy names the serial port of the ground station's modem, the UAV's address, and a
+    time-out, which includes the set-up of the modem.
+[3] The call has results, so the proxy must be two-way: "-o" would make it one-way.
 """
 
 import os

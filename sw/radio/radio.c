@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * radio: sets up controller and modem, and manages the output ring and the receive ring.
+ * radio: sets up the controller and the modem, and manages the output ring and the receive ring.
  */
 #include "radio.h"
 #include "fsmc.h"
@@ -9,19 +9,19 @@
 #include "ucos_ii.h"
 
 #define BUFFERS MODEM_RING_BUFFERS
-/* Number of used buffers in the output ring. */
+/* Number of buffers of the output ring that are in use. */
 #define BUSY (BUFFERS - (get(MODEM_TX_STATE) & MODEM_TX_STATE_FREE_MASK))
 #define DEFAULT_CHANNEL 0x0CU
 #define DEFAULT_PAN 0x3332U
 #define DEFAULT_GUARD_MS 1000U
 #define ANSWERS (RADIO_API && radio.onAnswer)
 #define POLL_TICKS (OS_TICKS_PER_SEC / 100U)
-#define MODE_STEP 13U /* step ATAP of the set-up */
+#define MODE_STEP 13U /* number of the set-up step that sends ATAP */
 
-/* API mode: each buffer holds the contents of a frame. Its first byte is the type. In a sent
- * packet, the type and four more bytes precede the data.
+/* API mode: each buffer holds the contents of a frame, whose first byte is its type. In a packet to
+ * send, five bytes, including the type, precede the data.
  *     01 ID TARGET TARGET 00 DATA...          packet to send
- *     89 ID STATUS                            its result; 0: received by the target's modem
+ *     89 ID STATUS                            result; 0: received by the target's modem
  *     08 00 'R' 'N' VALUE                     a setting, without a reply
  *     81 SOURCE SOURCE RSSI OPTIONS DATA...   received packet */
 #define TRANSMIT 0x01U
@@ -29,22 +29,25 @@
 #define STATUS 0x89U
 #define PACKET 0x81U
 #define HEAD 5U
-#define ID_BASE 0x80U /* offset of ids, so that an id is never 0, which would request no report */
+#define ID_BASE                                                                       \
+    0x80U /* bit that all ids have, so that no id is 0, which would request no result \
+           */
 #define ID_MASK 0x7FU
-#define SILENT_TICKS (3U * OS_TICKS_PER_SEC) /* time-out for the modem's answer */
+#define SILENT_TICKS (3U * OS_TICKS_PER_SEC) /* time-out for the modem's result of a packet */
 
 typedef enum BufferState { BUFFER_FREE, BUFFER_SENDING } BufferState;
 
 static struct {
-    /* control vector of the paper: one entry for each buffer in DDR3 */
+    /* control vector of the paper: state of each buffer in DDR3 */
     BufferState output[BUFFERS];
-    U32 head, used; /* oldest buffer that is being sent; number of such buffers */
+    /* index of the oldest buffer that is being sent; number of buffers that are being sent */
+    U32 head, used;
     Radio_Memory memory;
     Radio_Counters counters;
     U32 failedStep;
     Radio_OnAnswer onAnswer; /* callback for results; 0 in transparent mode */
-    U16 target, source;      /* target of the next packet; source of the last received one */
-    U8 handed, answered;     /* packets queued, and packets answered, modulo 256 */
+    U16 target, source;      /* target of the next packet; source of the last packet received */
+    U8 handed, answered;     /* packets queued and packets with a result, both modulo 256 */
     U8 wait;                 /* RN */
     U32 handedAt;            /* time at which the last packet was handed to the controller */
 } radio;
@@ -57,7 +60,7 @@ static void set(U32 word, U32 value) {
     FSMC_write(MAP_SLOT_MODEM, word, value);
 }
 
-/* Writes the words of the key, the highest word first. */
+/* Writes the words of the AES key to the controller, the highest word first. */
 static void setKey(const U8* key) {
     U32 i;
     for (i = 0; i < 16U; i += 4U)
@@ -70,7 +73,7 @@ static void setUpController(const XBeeInitTypeDef* conf) {
     U32 encrypt = conf->key ? 1U << MODEM_NET_ENCRYPT_LSB : 0U;
     U32 api = ANSWERS ? 1U << MODEM_NET_API_LSB : 0U;
     set(MODEM_CONTROL, MODEM_CONTROL_RESET_MODEM_MASK);
-    OSTimeDly(OS_TICKS_PER_SEC / 2U); /* the modem boots in 50 to 500 ms */
+    OSTimeDly(OS_TICKS_PER_SEC / 2U); /* waits for the modem, which needs 50 to 500 ms to start */
     set(MODEM_BAUD, guard << MODEM_BAUD_GUARD_MS_LSB |
                         (RADIO_API && !api && conf->baud == RADIO_250000 ? (U32)XBEE_BD_115200
                                                                          : (U32)conf->baud));
@@ -95,15 +98,15 @@ Radio_Status xbeeInit(const XBeeInitTypeDef* conf, const Radio_Memory* memory) {
     if (RADIO_API) {
         radio.onAnswer = get(MODEM_STATUS) & MODEM_STATUS_API_MASK ? conf->onAnswer : 0;
         radio.target = conf->target;
-        radio.handed = radio.answered = 0; /* the reset modem also drops its packets */
+        radio.handed = radio.answered = 0; /* the modem was reset, so its packets are lost */
         radio.wait = RADIO_WAIT;
     }
     radio.head = radio.used = 0;
     for (i = 0; i < BUFFERS; ++i)
         radio.output[i] = BUFFER_FREE;
     setUpController(conf);
-    /* The controller always ends the configuration: after about 40 s at the latest, when all
-     * rates have been tried. */
+    /* The configuration always ends: after about 40 s at the latest, when all rates have been
+     * tried. */
     while (!(events & (MODEM_EVENT_CONFIGURED_MASK | MODEM_EVENT_CONFIGURE_FAILED_MASK))) {
         OSTimeDly(POLL_TICKS);
         events = get(MODEM_EVENT);
@@ -144,7 +147,7 @@ static void reclaim(void) {
     }
 }
 
-/* Writes the bytes of a frame's contents before the packet. Returns their size. */
+/* Writes the bytes that precede the data of a packet to send. Returns their number. */
 static U32 writeHead(U32 address) {
     U8 head[HEAD];
     head[0] = TRANSMIT;
@@ -157,7 +160,7 @@ static U32 writeHead(U32 address) {
     return HEAD;
 }
 
-/* Puts a packet, or the contents of another frame, into the output ring. Returns 0, or 1 if no
+/* Puts a packet, or the contents of another frame, into the output ring. Returns 0; returns 1 if no
  * buffer is free. */
 static int put(const U8* bytes, U32 size, int isPacket) {
     U32 buffer, address, head = 0;
@@ -204,8 +207,8 @@ U16 Radio_source(void) {
 
 #endif
 
-/* Reports the result of a packet. Results arrive in the order of packets, so earlier packets
- * without a result count as lost. */
+/* Reports the result of a packet. Results arrive in the order in which the packets were sent, so
+ * earlier packets without a result are reported as lost. */
 static void takeStatus(U8 id, int isDelivered) {
     U32 before = (U32)(id - radio.answered) & ID_MASK;
     if (before >= (U8)(radio.handed - radio.answered))
@@ -220,7 +223,7 @@ static void takeStatus(U8 id, int isDelivered) {
     }
 }
 
-/* Counts packets that were not answered in time as lost. */
+/* Reports packets as lost whose results did not arrive in time. */
 static void expire(void) {
     if (radio.handed != radio.answered && OSTimeGet() - radio.handedAt >= SILENT_TICKS)
         takeStatus((U8)(radio.handed - 1U), 0);

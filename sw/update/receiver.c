@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * receiver: writes an image into its slot. The slot's header is written when its sectors are empty,
- * so that a header in flash always identifies the image that follows, even after a loss of power.
+ * receiver: writes an image into its slot. The slot's header is only written when all sectors of
+ * the slot are empty. A header in flash therefore always belongs to the image that follows it, even
+ * after a loss of power.
  */
 #include "receiver.h"
 
@@ -32,7 +33,7 @@ static int holds(const Receiver* self, U32 at, const U8* data, U32 bytes) {
     return memcmp(chunk, data, bytes) == 0;
 }
 
-/* Programs the bytes that are not in flash yet, and reads them back. */
+/* Programs those bytes that are not in flash yet, and reads all of them back. */
 static int put(const Receiver* self, U32 at, const U8* data, U32 bytes) {
     const Slots_Port* port = self->port;
     U32 size;
@@ -47,15 +48,15 @@ static int put(const Receiver* self, U32 at, const U8* data, U32 bytes) {
     return 1;
 }
 
-/* Returns 1 if this header is in flash, and its image is neither ready nor abandoned. */
+/* Returns 1 if the flash contains this header, and its image is neither ready nor abandoned. */
 static int hasBegun(const Receiver* self, const Slots_Header* header) {
     return holds(self, slotAt(self), (const U8*)header, (U32)sizeof *header) &&
            isErased(self, slotAt(self) + SLOTS_READY, SLOTS_IMAGE_AT - SLOTS_READY) &&
            isErased(self, slotAt(self) + self->port->layout->readyAt, 4);
 }
 
-/* Continues the image whose header is in flash. Its last piece may have been written only in
- * part, and is sent again. */
+/* Continues the image whose header is in flash. The last piece may have been written only in part,
+ * so it must be sent again. */
 static void takeUp(Receiver* self) {
     const U32 at = slotAt(self) + SLOTS_IMAGE_AT;
     self->received = (self->header.bytes - 1U) & ~(CHUNK - 1U);
@@ -70,7 +71,7 @@ static void end(Receiver* self, Receiver_Reason reason) {
     self->state = RECEIVER_IDLE;
 }
 
-/* Abandons the image: it must be sent again, to an erased slot. */
+/* Abandons the image. It must then be sent again, into an erased slot. */
 static void spoil(Receiver* self, Receiver_Reason reason) {
     static const U8 never[4] = {0, 0, 0, 0};
     (void)self->port->program(self->port->context, slotAt(self) + self->port->layout->readyAt,
@@ -108,7 +109,7 @@ static Receiver_Reason prepareFor(Receiver* self, const Slots_Header* header) {
     return RECEIVER_OK;
 }
 
-/* Checks a list of keys except for its signatures. */
+/* Checks everything in a list of keys except its signatures. */
 static Receiver_Reason looksAtKeys(const Receiver* self, const Slots_Header* list) {
     const Slots_Header* keys = Slots_keys(self->port);
     if (!self->port->mapped || list->magic != SLOTS_MAGIC ||
@@ -180,8 +181,8 @@ static int staysSigned(const Receiver* self, const Slots_Header* list) {
     return Slots_isSigned(self->port, list, &header);
 }
 
-/* Adds the list of keys at the first empty place: after a loss of power, an earlier place may
- * contain part of another list. */
+/* Adds the list of keys at the first empty place. Places before it may contain a part of another
+ * list, left by a loss of power. */
 static Receiver_Reason addKeys(const Receiver* self) {
     static const U32 complete = SLOTS_TRUE;
     const Slots_Header* list = &self->header;
@@ -198,7 +199,8 @@ static Receiver_Reason addKeys(const Receiver* self) {
     return RECEIVER_FLASH;
 }
 
-/* Checks that the header is signed, and looks for a part of its image in flash. */
+/* Checks the signature of the header, and whether the flash already contains a part of its
+ * image. */
 static void prepare(Receiver* self) {
     if (!Slots_isSigned(self->port, Slots_keys(self->port), &self->header))
         end(self, RECEIVER_UNSIGNED);
@@ -210,8 +212,8 @@ static void prepare(Receiver* self) {
         self->state = RECEIVER_ERASING;
 }
 
-/* Erases the first non-empty sector that the image needs; if all are empty, writes the header. The
- * header's sector is erased first, so that a half-erased image has no header. */
+/* Erases the first sector of the slot that is not empty; if all are empty, writes the header. The
+ * sector of the header is erased first, so that an image that is partly erased has no header. */
 static void erase(Receiver* self) {
     const Slots_Port* port = self->port;
     const U32 at = slotAt(self), size = port->layout->sectorBytes;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * signature: calls libsodium. The host links Debian's library; the firmware is built from the same
- * sources.
+ * signature: calls libsodium. On the host, Debian's library is linked; the firmware is built from
+ * the same sources.
  */
 #include "signature.h"
 

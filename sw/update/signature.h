@@ -7,8 +7,8 @@
 
 #include "slots.h"
 
-/* Returns 1 if the signature (64 bytes) was made by the owner of the public key (32 bytes) for this
- * message. Takes 3.5 KB of stack. */
+/* Returns 1 if the signature (64 bytes) is that of the message under the public key (32 bytes).
+ * Takes 3.5 KB of stack. */
 int Signature_isGood(const U8* signature, const U8* message, U32 bytes, const U8* key);
-/* Writes the digest, 64 bytes, of the `bytes` bytes that `read` returns from `offset` on. */
+/* Writes the digest (64 bytes) of `bytes` bytes, which `read` returns from `offset` onwards. */
 void Signature_digest(Slots_Read read, void* context, U32 offset, U32 bytes, U8* digest);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * slots: chooses the image that the boot loader starts, and checks the FPGA's bitstream at the
- * start.
+ * slots: chooses the image that the boot loader starts, and checks the FPGA's bitstream when the
+ * vehicle starts.
  */
 #include "slots.h"
 
@@ -89,8 +89,9 @@ static int isSound(const Slots_Port* port, U32 slot, U32 product) {
            Slots_isSigned(port, Slots_keys(port), &header) && Slots_isWhole(port, slot, &header);
 }
 
-/* Returns the highest version in the log. An entry is a version and its complement; other entries
- * were cut by a loss of power. Sets `end` to the offset of the first empty entry. */
+/* Returns the highest version in the log. An entry is a version and its complement; an entry
+ * without this property was cut off by a loss of power and is ignored. Sets `end` to the offset of
+ * the first empty entry. */
 static U32 readLog(const Slots_Port* port, U32* end) {
     U32 highest = 0, entry[2];
     for (*end = 0; *end < SLOTS_LOG_BYTES; *end += (U32)sizeof entry) {
@@ -154,7 +155,8 @@ U32 Slots_choose(const Slots_Port* port, U32 product, int mayTry) {
             Slots_set(port, slot, SLOTS_TRIED))
             return slot;
     }
-    for (i = 0; i < 2U * SLOTS_COUNT; ++i) { /* confirmed images first, then others */
+    /* first pass: confirmed images; second pass: the others */
+    for (i = 0; i < 2U * SLOTS_COUNT; ++i) {
         slot = newer ^ (i % SLOTS_COUNT);
         if ((i >= SLOTS_COUNT || Slots_is(port, slot, SLOTS_CONFIRMED)) &&
             isSound(port, slot, product))
@@ -163,7 +165,7 @@ U32 Slots_choose(const Slots_Port* port, U32 product, int mayTry) {
     return SLOTS_NONE;
 }
 
-/* Reads a bitstream with an erased sync word, as it was when it was signed. */
+/* Reads a bitstream as it was when it was signed: with an erased sync word. */
 static void readUnready(void* context, U32 offset, U8* bytes, U32 count) {
     const Slots_Port* port = (const Slots_Port*)context;
     port->read(port->context, offset, bytes, count);

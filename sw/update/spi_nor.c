@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * spi_nor: each function call is one transaction; the bus is free afterwards.
+ * spi_nor: implements a Slots_Port for a serial NOR flash. Each function call is one transaction;
+ * afterwards the bus is free.
  */
 #include "spi_nor.h"
 
@@ -11,7 +12,7 @@
 #define IDENTIFY 0x9FU
 #define BLOCK_ERASE 0xD8U
 #define BUSY 1U
-#define PAUSES 10000U /* limit of pauses; takes far longer than an erase */
+#define PAUSES 10000U /* limit of the number of pauses; they take far longer than an erase */
 
 /* Starts a transaction: sends an instruction and, if `hasOffset`, an address. */
 static const SpiNor_Bus* begin(void* context, U32 instruction, U32 offset, int hasOffset) {

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * spi_nor: a Slots_Port for a serial NOR flash with the usual instructions 03, 02, D8, 05, 06, 9F
- * (such as W25Q and M25P). Its context is the bus.
+ * spi_nor: a Slots_Port for a serial NOR flash that has the usual commands 03, 02, D8, 05, 06 and
+ * 9F (such as W25Q and M25P). Its context is the bus.
  */
 #pragma once
 
 #include "base.h"
 
 typedef struct SpiNor_Bus {
-    /* With 1, drives chip select low and drives the bus; with 0, releases both. */
+    /* Called with 1: drives the bus, and chip select low. Called with 0: releases both. */
     void (*select)(int isLow);
     U8 (*transfer)(U8 byte);
     void (*pause)(void); /* lets other tasks run for a while */

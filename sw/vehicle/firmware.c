@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * firmware: starts the kernel with the application and the task of the watchdog. This task has the
- * lowest priority, so it only runs if no other task and no interrupt occupies the processor
- * permanently.
+ * firmware: starts the kernel with the application and the watchdog task. This task has the lowest
+ * priority. It runs, and serves the watchdog, only if no other task and no interrupt occupies the
+ * processor permanently.
  */
 #include "board.h"
 #include "boot.h"
@@ -48,7 +48,8 @@ void Program_run(void) {
         (void)OSTaskCreateExt(watchTask, 0, &watchStack[WATCH_WORDS - 1], PRIO_WATCH, 0, watchStack,
                               WATCH_WORDS, 0, OS_TASK_OPT_STK_CHK | OS_TASK_OPT_STK_CLR);
     } else {
-        /* The watchdog is not served, so it resets the chip; the next try follows in one second. */
+        /* The watchdog is not served here, so it resets the chip, which then tries again, once per
+         * second. */
         Boot_note(status == UAV_NO_KEY ? BOOT_NO_KEY : BOOT_NO_FPGA);
     }
     /* Interrupt routines call the kernel, so interrupts stay masked until the first task runs. */

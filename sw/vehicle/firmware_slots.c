@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * firmware_slots: finds the slots in the flash of the processor and in the flash of the FPGA.
+ * firmware_slots: finds the slots for firmware in the processor's flash, and the slots for
+ * bitstreams in the FPGA's flash.
  */
 #include "firmware_slots.h"
 #include "boot.h"

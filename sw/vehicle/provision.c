@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * provision: gives the vehicle its key over the serial port. Polls the port, since no task runs
- * yet; SysTick marks every 10 ms.
+ * provision: accepts the vehicle's keys over the serial port. No task runs yet, so it polls the
+ * port; SysTick measures time in units of 10 ms.
  */
 #include "provision.h"
 #include "ascon.h"
@@ -15,14 +15,15 @@
 #define RECEIVE 10U
 #define LIMIT 1000U /* time-out, units of 10 ms */
 #define LINE_BYTES 88U
-#define JUMPER_PORT 2U /* PC2: a jumper to ground confirms that the vehicle is open */
+/* pin PC2: if a jumper connects it to ground, a vehicle with a key may get other keys */
+#define JUMPER_PORT 2U
 #define JUMPER 2U
 
 static int isBreak(void) {
     return !(GPIO_IDR(PORT) >> RECEIVE & 1UL);
 }
 
-/* Returns 1 once every 10 ms. */
+/* Returns 1 if 10 ms have passed since it last returned 1. */
 static U32 tick(void) {
     return SYST_CSR >> 16 & 1UL;
 }
@@ -61,7 +62,8 @@ static int digitOf(char c) {
     return found ? (int)(found - digits) : -1;
 }
 
-/* Reads two digits per byte. Returns their end; 0 if they are not digits. */
+/* Converts two hexadecimal digits per byte. Returns the text after them; 0 if they are not
+ * digits. */
 static const char* readBytes(const char* text, U8* bytes, U32 count) {
     for (; text && count; --count, text += 2) {
         const int high = digitOf(text[0]), low = high < 0 ? -1 : digitOf(text[1]);
@@ -76,8 +78,8 @@ static int isProtected(void) {
     return (FLASH_OPTCR & FLASH_OPTCR_RDP) != FLASH_OPTCR_RDP_NONE;
 }
 
-/* Sets read protection level 1, effective at the next power-on. Removing it erases flash and
- * keys. */
+/* Sets read protection level 1, which takes effect when the power is switched on next. Removing the
+ * protection erases flash and keys. */
 static void protect(void) {
     if (isProtected())
         return;
@@ -90,7 +92,7 @@ static void protect(void) {
     FLASH_OPTCR |= FLASH_OPTCR_LOCK;
 }
 
-/* Executes the command in a line. Returns the answer. */
+/* Executes the command in a line. Returns the reply. */
 static const char* obey(const char* line) {
     const char *end, *answer = "ok\r\n";
     U8 key[LINK_KEY_BYTES], old[LINK_KEY_BYTES], address[2] = {0, 0}, call[4] = {0, 0, 0, 0};
@@ -148,7 +150,8 @@ void Provision_listen(void) {
     char line[LINE_BYTES];
     U32 ticks = 0;
     RCC_AHB1ENR |= 1UL << PORT | 1UL << JUMPER_PORT;
-    GPIO_PUPDR(PORT) |= 1UL << 2U * RECEIVE; /* pull-up for an unconnected pin */
+    /* enables the pull-up, because the pin may be unconnected */
+    GPIO_PUPDR(PORT) |= 1UL << 2U * RECEIVE;
     if (!isBreak())
         return;
     SYST_RVR = 10UL * SYST_MS - 1UL;
@@ -157,7 +160,7 @@ void Provision_listen(void) {
     while (!tick())
         if (!isBreak()) {
             stop();
-            return; /* this is a byte of another program, not a break */
+            return; /* the port receives the bytes of another program, not a break */
         }
     while (isBreak() && ticks < LIMIT)
         ticks += tick();

@@ -5,16 +5,16 @@
  */
 #pragma once
 
-/* Returns at once if the serial port has no break. Otherwise reports whether read protection is
- * off, and waits ten seconds for one of these lines:
+/* Returns at once if the serial port does not receive a break. Otherwise reports whether read
+ * protection is off, and waits ten seconds for one of these lines:
  *   key KEY ADDRESS             sets the key of the first ground station and the vehicle's address
  *                               (UAV_provide)
  *   open ADDRESS                sets the address, without a key
  *   ground ADDRESS [KEY]        adds an observer (UAV_providePeer)
- *   group NUMBER KEY            adds the group; a call to all must have a number above NUMBER,
- *                               which has eight digits
+ *   group NUMBER KEY            adds the group; calls to all vehicles must then have a number above
+ *                               NUMBER, which has eight digits
  *   fellow ADDRESS [KEY]        adds another vehicle
  *   protect                     sets read protection
- * KEY has 32 hexadecimal digits, ADDRESS four. If the vehicle has a key, one of its current keys
- * must end the line, or PC2 must be wired to ground. */
+ * KEY has 32 hexadecimal digits, ADDRESS four. If the vehicle has a key, each line must end with
+ * one of its current keys, or PC2 must be connected to ground. */
 void Provision_listen(void);

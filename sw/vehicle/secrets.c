@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * secrets: reads the random number generator (RM0033, 20.3), and stores keys in the backup SRAM.
- * After an error of the generator it waits for the watchdog's reset, because predictable numbers
- * would be worse. ST intends the backup SRAM for keys: the battery powers it, and removing the read
- * protection erases it together with the flash.
+ * secrets: reads the random number generator (RM0033, 20.3), and stores keys in the backup SRAM. If
+ * the generator reports an error, waits for the watchdog's reset, because predictable numbers would
+ * be worse. ST recommends the backup SRAM for keys: a battery powers it, and if the read protection
+ * is removed, it is erased together with the flash.
  */
 #include "secrets.h"
 #include "stm32f2.h"
@@ -34,7 +34,8 @@ static U32 load(void* context, U32 word) {
 static void store(void* context, U32 word, U32 value) {
     (void)context;
     BKPSRAM(word) = value;
-    __asm__ volatile("dsb"); /* keeps the order of writes, because power may fail in between */
+    /* ensures the order of the writes, because power may fail between them */
+    __asm__ volatile("dsb");
 }
 
 const UAV_Board secrets_board = {random, load, store};
@@ -42,7 +43,8 @@ const UAV_Board secrets_board = {random, load, store};
 void Secrets_start(void) {
     RCC_AHB2ENR |= RCC_AHB2ENR_RNG;
     RNG_CR = RNG_CR_RNGEN;
-    (void)random(0); /* discards the first number; the generator compares the second one with it */
+    /* discards the first number, with which the generator compares the second one */
+    (void)random(0);
     RCC_APB1ENR |= RCC_APB1ENR_PWR;
     PWR_CR |= PWR_CR_DBP;
     RCC_AHB1ENR |= RCC_AHB1ENR_BKPSRAM;

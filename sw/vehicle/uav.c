@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav: the tasks of the application: server, client and radio.
+ * uav: the tasks of the application: server and client. It also starts the radio task.
  */
 #include "uav.h"
 #include "Autopilot.h"
@@ -62,8 +62,8 @@ static void setParam(Autopilot_Param* param, Ice_Byte* data, Autopilot_ParamId i
     param->data.data = data;
 }
 
-/* Reports the vehicle's state to the ground station after each frame. If there is another vehicle
- * and it replies, the report includes its state. */
+/* Reports the vehicle's state to the ground station after each frame. If another vehicle is
+ * configured and replies, the report includes that vehicle's state. */
 static void clientTask(void* argument) {
     static Ice_ObjectPrx station, self, fellow;
     Autopilot_Param params[6];
@@ -86,13 +86,14 @@ static void clientTask(void* argument) {
         list.size = 5;
         if (hasFellow && Autopilot_VehiclePrx_getFlightState(&fellow, &state) == ICE_OK)
             setParam(&params[list.size++], data[5], Autopilot_fellowState, (U32)state);
-        /* The result is ignored: if the station does not listen yet, it gets the next report. */
+        /* The result is ignored: if the ground station does not listen yet, it gets the next
+         * report. */
         (void)Autopilot_StationPrx_vehicleState(&station, &self, &list);
     }
 }
 
-/* Creates a task with the bounds of its stack, so that the end of the stack is guarded and its use
- * can be measured. */
+/* Creates a task with the bounds of its stack. The end of the stack can then be guarded, and the
+ * use of the stack measured. */
 static void createTask(void (*task)(void*), OS_STK* stack, INT8U priority) {
     (void)OSTaskCreateExt(task, 0, &stack[STACK_WORDS - 1], priority, priority, stack, STACK_WORDS,
                           0, OS_TASK_OPT_STK_CHK | OS_TASK_OPT_STK_CLR);

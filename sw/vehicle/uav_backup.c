@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_backup: reads and writes the words of the board's memory whose places backup.h defines.
+ * uav_backup: reads and writes the words of the memory that keeps its contents without power.
+ * backup.h defines their places.
  */
 #include "uav_backup.h"
 

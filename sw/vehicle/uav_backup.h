@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_backup: the vehicle's memory that a battery powers (backup.h), the state that is kept there
- * (address and flight), and random numbers.
+ * uav_backup: the vehicle's memory that a battery powers (backup.h), the vehicle's address and
+ * flight state, which are stored in it, and random numbers.
  */
 #pragma once
 
 #include "backup.h"
 
-/* Functions of the board for secrets and random numbers. `context` is passed to them unchanged. */
+/* Functions of the board for keys and random numbers. `context` is passed to them unchanged. */
 typedef struct UAV_Board {
     /* Returns 32 random bits from a source that cannot be predicted. */
     U32 (*random)(void* context);
@@ -16,7 +16,7 @@ typedef struct UAV_Board {
     void (*store)(void* context, U32 word, U32 value);
 } UAV_Board;
 
-/* Sets the board, which must stay valid. Call this first. */
+/* Sets the board's functions, which must stay valid. Call this before all other functions. */
 void UAV_useBoard(const UAV_Board* board, void* context);
 
 /* Returns 32 random bits from the board's source. */
@@ -29,6 +29,6 @@ void UAV_store(U32 word, U32 value);
  * address. */
 U32 UAV_address(void);
 
-/* Return and set whether the vehicle is flying. The state survives a restart in flight. */
+/* Return and set whether the vehicle is flying. The value survives a restart in flight. */
 int UAV_isFlying(void);
 void UAV_setFlying(int isFlying);

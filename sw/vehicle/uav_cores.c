@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_cores: starts the servants of the cores in ip/cores.list, and handles their interrupts and
- * bus errors. Its task completes calls that take time.
+ * uav_cores: starts the servants of the cores in ip/cores.list, and handles the interrupts and bus
+ * errors of the cores. Its task completes calls that take time.
  */
 #include "uav_cores.h"
 #include "Autopilot.h"
@@ -16,19 +16,20 @@
 
 typedef char UAV_RoomForEveryServant[ICE_SERVANTS >= UAV_SERVANTS + MAP_CORES ? 1 : -1];
 
-/* semaphores that wake the waiting task, coresTask, and UAV_waitFrame */
+/* semaphores: `waiter` wakes the task that waits for an event, `work` wakes coresTask, `frameDone`
+ * wakes UAV_waitFrame */
 static OS_EVENT *waiter, *work, *frameDone;
 static U32 framesDone, cornersFound;
-/* Number of accesses without a response, and the place of the last one, which a debugger can read.
- * Such an access goes to a register that does not exist, or to a core that hangs until the bridge
- * times out. Only the interrupt writes these variables. */
+/* Number of accesses that got no response, and place of the last one, both for a debugger. Such an
+ * access addresses a register that does not exist, or a core that hangs until the bridge times out.
+ * Only the interrupt routine writes these variables. */
 static U32 busErrors, busErrorPlace;
 static U8 isStarted[MAP_CORES];
 static Hw_Contract contracts[MAP_CONTRACTS];
 static Hw_Chip chip;
 
-/* Waits for the event of any operation. Only the task that serves calls waits here; it then checks
- * whether the event belongs to its operation. */
+/* Waits for an event of a core. Only the task that serves calls waits here. After the wait, it
+ * checks whether the event belongs to its operation. */
 static int waitEvent(void* context, U32 operation, U32 ms) {
     INT8U error;
     (void)context;
@@ -99,7 +100,8 @@ void UAV_startCores(Ice_ObjectAdapterPtr adapter) {
         const Hw_Instance* core = &hw_instances[i];
         isStarted[i] = Hw_Contracts_hold(contracts, MAP_CONTRACTS, core->slot) &&
                        core->start(&port, 0) == HW_OK;
-        if (isStarted[i]) /* calls to a core that is not started get ObjectNotExistException */
+        /* a core that is not started has no servant, so calls to it get ObjectNotExistException */
+        if (isStarted[i])
             (void)Ice_ObjectAdapter_add(adapter, core->servant, core->identity);
     }
 }
@@ -123,7 +125,7 @@ void UAV_coresTask(void* argument) {
                 U32 ms = hw_instances[i].poll(nowMs(0));
                 next = ms < next ? ms : next;
             }
-        /* OSSemPend waits without limit if the time-out is 0. */
+        /* A time-out of 0 means no limit for OSSemPend. */
         OSSemPend(work, next == HW_NEVER ? 0 : (INT32U)(next / MS_PER_TICK + 1U), &error);
     }
 }

@@ -10,10 +10,10 @@ void UAV_initCores(void);
 void UAV_startCores(Ice_ObjectAdapterPtr adapter);
 void UAV_coresTask(void* argument);
 
-/* Handles interrupts of the cores. `lines`: pending interrupts of slots 0..31 and of slots
- * 32..63. */
+/* Handles interrupts of the cores. `lines` has one bit for each slot with a pending interrupt:
+ * slots 0..31, then slots 32..63. */
 void UAV_coresInterrupt(const U32 lines[2]);
 
-/* Waits until the vision core has processed a frame. Returns the number of frames so far; sets
- * `corners` to the sum of their corners. */
+/* Waits until the vision core has processed a frame. Returns the number of frames processed so far,
+ * and sets `corners` to the total number of their corners. */
 U32 UAV_waitFrame(U32* corners);

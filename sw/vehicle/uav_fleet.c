@@ -1,9 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_fleet: the peers other than the first ground station: an observer, another vehicle, and calls
- * to all vehicles. They need API mode, which identifies the source of each packet.
- *
- * An observer connects by itself. Another vehicle is dialed while this one calls it.
+ * uav_fleet: all peers except the first ground station (an observer, another vehicle), and calls to
+ * all vehicles. They require API mode, in which each packet has a source address. * An observer
+ * connects by itself. Another vehicle is dialed when this vehicle calls it.
  */
 #include "uav_fleet.h"
 #include "link_broadcast.h"
@@ -13,8 +12,8 @@
 
 #include <string.h>
 
-/* Sizes of the smaller links: bytes of the send queue, bytes of a received message, fragments in
- * flight. */
+/* Sizes of the links to these peers, which have smaller buffers: send queue, bytes; received
+ * message, bytes; fragments in flight. */
 #define OBSERVER_SENDS 8192U
 #define OBSERVER_TAKES 1024U
 #define OBSERVER_WINDOW 16U
@@ -31,10 +30,10 @@ static const Link_Config observerConfig = {&uav_linkPort, &uav_peers[UAV_OBSERVE
 static const Link_Config vehicleConfig = {&uav_linkPort, &uav_peers[UAV_VEHICLE],
                                           UAV_BYTE_TIME_US16, LINK_USE(vehicleBuffers)};
 
-static U8 toAll[LINK_MAX_FRAME]; /* a call to all vehicles that waits */
+static U8 toAll[LINK_MAX_FRAME]; /* call to all vehicles that IceC has not accepted yet */
 static U8 toAllSize;
 
-/* Adds a peer if the vehicle has one in this role. Returns 1 if a peer was added. */
+/* Adds the peer in this role if the vehicle has one. Returns 1 if a peer was added. */
 static int addPeer(int role, Link* link, const Link_Config* config) {
     UAV_Peer* peer = &uav_peers[role];
     const U32 address = UAV_addressOf(role);
@@ -71,8 +70,9 @@ void UAV_dialVehicle(void) {
         XBeeATEndpoint_dial(&uav_endpoint, UAV_VEHICLE, uav_now);
 }
 
-/* Accepts a call to all vehicles once. While a call waits for IceC, other calls are dropped,
- * because a later copy of them may arrive in time. */
+/* Handles a packet from an unknown source, which may be a call to all vehicles; the same call is
+ * accepted only once. While a call waits for IceC, further calls are dropped, because a later copy
+ * of them may still arrive in time. */
 static void onAnyPacket(void* context, const U8* bytes, U32 size) {
     if (*bytes != LINK_BROADCAST) {
         UAV_onPacketOf(context, bytes, size);
@@ -92,7 +92,7 @@ int UAV_offerCall(void) {
     if (toAllSize && XBeeATEndpoint_onMessage(&uav_endpoint, XBEE_OWN_CHANNEL,
                                               toAll + LINK_BROADCAST_HEAD, toAllSize) == 0)
         toAllSize = 0;
-    return toAllSize != 0; /* the endpoint wakes the radio task when it has accepted the call */
+    return toAllSize != 0; /* when the endpoint has accepted the call, it wakes the radio task */
 }
 
 int UAV_makeVehicleProxy(Ice_ObjectAdapterPtr adapter, Ice_ObjectPrxPtr other) {

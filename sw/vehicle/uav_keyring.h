@@ -6,5 +6,5 @@
 
 #include "icec.h"
 
-/* Adds the servant "keys", unless the firmware is built without keys. */
+/* Adds the servant "keys"; does nothing in firmware that is built without keys. */
 void UAV_startKeyRing(Ice_ObjectAdapterPtr adapter);

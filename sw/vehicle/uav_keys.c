@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_keys: stores the vehicle's keys in slots, and replaces a key by the next one.
+ * uav_keys: stores the vehicle's keys in slots, and replaces the current key by the next one.
  */
 #include "uav_keys.h"
 #include "ascon.h"
@@ -8,7 +8,7 @@
 #include <string.h>
 
 #define SLOT_WORDS ((U32)(sizeof(Backup_Slot) / sizeof(U32)))
-/* STATE_NEXT + number of the slot with the next key, if both slots have a key */
+/* value of the state if both slots have a key: STATE_NEXT + number of the slot with the next key */
 #define STATE_NEXT 0x4E455830U
 #define CHECK_SEED 0x4B455931U
 
@@ -19,8 +19,8 @@ static U32 slotAt(int role, int slot) {
     return (U32)role * UAV_PEER_WORDS + (U32)slot * SLOT_WORDS;
 }
 
-/* Returns the check word of a key, which is never 0. It detects a key that was written only in part
- * because of a loss of power; it does not protect against attackers. */
+/* Returns the check word of a key; it is never 0. It detects a key of which only a part was written
+ * because of a loss of power. It is no protection against attackers. */
 static U32 checkOf(const U32* words) {
     U32 check = CHECK_SEED, i;
     for (i = 0; i < BACKUP_KEY_WORDS; ++i)
@@ -93,8 +93,8 @@ int UAV_hasGroundsPart(void) {
     return UAV_address() < UAV_addressOf(UAV_VEHICLE);
 }
 
-/* Gives a key to a link. A session is bound to an address: between two vehicles, the address of the
- * one that acts as the vehicle. */
+/* Sets a key of a link. A session is bound to an address: that of the vehicle; between two
+ * vehicles, that of the vehicle that does not act as the ground station. */
 static void giveKey(int role, Link* link, int slot, const U8* key) {
     Link_setKey(link, slot, key,
                 role == UAV_VEHICLE && UAV_hasGroundsPart()
@@ -125,8 +125,8 @@ int UAV_setNextKey(int role, Link* link, const U8* key) {
     Ascon_wipe(present, sizeof present);
     if (isSame)
         return 1;
-    /* The state is written before the key: once both slots have a key, the state selects the next
-     * one. */
+    /* The slot is emptied first, then the state is written, then the key: as soon as both slots
+     * have a key, the state must select the next one. */
     UAV_writeKey(role, slot, 0);
     UAV_store(UAV_STATE_AT(role), STATE_NEXT + (U32)slot);
     UAV_writeKey(role, slot, key);

@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_links: the links to the vehicle's peers: sending, receiving, and changes of their state.
+ * uav_links: the links to the vehicle's peers: sending, receiving, and changes of the links'
+ * states.
  */
 #include "uav_links.h"
 #include "radio.h"
 #include "uav.h"
 #include "uav_keys.h"
 
-#define MOST_UNANSWERED 2U /* limit of the packets that were sent and have no status yet */
+/* limit of the packets that were sent and whose status has not arrived yet */
+#define MOST_UNANSWERED 2U
 
 static U8 areUp; /* peers with a session, one bit each */
 
-/* Sends a packet. In transparent mode, which only serves the first ground station, at most one
- * packet waits for the line: the link layer then notices how fast the modem is, and can choose the
+/* Sends a packet. Transparent mode only serves the first ground station. In this mode, at most one
+ * packet waits for the line, so that the link layer notices how fast the modem is, and chooses the
  * next packet as late as possible. */
 static int transmit(void* peer, const U8* frame, U32 size) {
     U32 wait, i;
@@ -45,7 +47,8 @@ static void onChannel(void* peer, int channel, int isOpen) {
 static void onState(void* peer, Link_State state) {
     const U32 role = (U32)roleOf(peer);
     areUp = (U8)((areUp & ~(1U << role)) | (U32)(state == LINK_STATE_UP) << role);
-    uav_pollsAll = 1; /* the key of the session may have to be confirmed */
+    /* polls all peers, because a key may have to be confirmed after the session has begun */
+    uav_pollsAll = 1;
 }
 
 const Link_Port uav_linkPort = {transmit, UAV_random, onMessage, onChannel, onState, 0, 0};

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_links: the links to the vehicle's peers: sending, receiving, and changes of their state.
+ * uav_links: the links to the vehicle's peers: sending, receiving, and changes of the links'
+ * states.
  */
 #pragma once
 
@@ -8,13 +9,14 @@
 
 #define UAV_BYTE_TIME_US16 1440U /* 111,111 baud */
 
-/* functions that a link calls; their context is the UAV_Peer */
+/* functions that each link calls; their context is the UAV_Peer of the link */
 extern const Link_Port uav_linkPort;
 
 /* Ends all sessions without a message to the peers. */
 void UAV_resetLinks(void);
 
-/* Sets the frame size, and the number of packets without a status, that the modem allows. */
+/* Sets the largest frame, and the number of packets without a status, to the limits of the
+ * modem. */
 void UAV_limitLinks(void);
 
 /* Passes a packet to the link of the peer that sent it. Drops packets from unknown peers. */

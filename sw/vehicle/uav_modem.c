@@ -26,7 +26,7 @@ U8 uav_transparent;
 static Radio_OnPacket receiver;
 static Link_Buffers buffers;
 static U8 turn;      /* index of the peer that is polled first */
-static U8 hasOthers; /* 1 if there are peers besides the first ground station */
+static U8 hasOthers; /* 1 if there are peers other than the first ground station */
 
 static const Link_Config config = {&uav_linkPort, &uav_peers[UAV_GROUND], UAV_BYTE_TIME_US16,
                                    LINK_USE(buffers)};
@@ -69,7 +69,7 @@ static void setUpModem(void) {
     xbeeConf.source = (U16)UAV_address();
     xbeeConf.key = uav_modemKey;
     xbeeConf.guardMs = uav_guardMs;
-    /* Without a modem the vehicle continues to fly and retries. */
+    /* If the modem does not answer, the vehicle continues to fly, and the set-up is repeated. */
     while (xbeeInit(&xbeeConf, &rings) != RADIO_OK)
         OSTimeDly(OS_TICKS_PER_SEC);
     uav_isAnswered = (U8)Radio_answers();
@@ -77,7 +77,7 @@ static void setUpModem(void) {
     UAV_limitLinks();
 }
 
-/* Polls all links; in each call another link is the first one. Returns the time until the next
+/* Polls all links, starting with a different one in each call. Returns the time until the next
  * poll, us. */
 static U32 pollAll(void) {
     U32 wait = 0xFFFFFFFFU, due;
@@ -128,7 +128,8 @@ void UAV_radioTask(void* argument) {
             setUpModem();
             upAt = UAV_nowUs();
         }
-        /* The wait is at least one tick, so that the task does not spin while a ring is full. */
+        /* Waits at least one tick; otherwise the task would not let others run while a ring is
+         * full. */
         wait = wait > 1000000U ? OS_TICKS_PER_SEC : wait * OS_TICKS_PER_SEC / 1000000U;
         OSSemPend(uav_radioWork, wait ? wait : 1U, &error);
     }

@@ -7,7 +7,7 @@
 
 #include "icec.h"
 
-/* Initialises the links. Returns 0 if the vehicle has no key and was not opened. */
+/* Initialises the links. Returns 0 if the vehicle has no key and was not explicitly opened. */
 int UAV_initRadio(void);
 
 /* Adds the radio's endpoint to the communicator. */
@@ -15,5 +15,5 @@ void UAV_useRadio(Ice_CommunicatorPtr ic);
 
 void UAV_radioTask(void* argument);
 
-/* Returns the time since the start, us; its resolution is a tick of the OS. */
+/* Returns the time since the start in us, with the resolution of an operating system tick. */
 U32 UAV_nowUs(void);

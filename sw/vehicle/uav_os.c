@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_os: implements locks, waits and signals for IceC and its endpoint with the operating system.
+ * uav_os: implements locks, waits and signals for IceC and its endpoint by means of uC/OS-II's
+ * functions.
  */
 #include "uav_os.h"
 #include "uav_radio_state.h"
 #include "uav_tasks.h"
 
 static OS_EVENT* endpointEvent;
-/* one semaphore for each call; the last one is for tasks that wait to receive */
+/* one semaphore for each slot of a call; the last one is for tasks that wait to receive */
 static OS_EVENT* callDone[ICE_CALLS + 1];
-static OS_EVENT* iceMutex[2]; /* indexed by ICE_LOCK_STATE and ICE_LOCK_SEND */
+static OS_EVENT* iceMutex[2]; /* mutexes, indexed by ICE_LOCK_STATE and ICE_LOCK_SEND */
 
 static void kick(void* context) {
     (void)context;

@@ -1,19 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_peers: stores addresses and keys of peers besides the first ground station, and decrypts
- * calls to all vehicles.
+ * uav_peers: stores addresses and keys of the peers other than the first ground station, and
+ * decrypts calls to all vehicles.
  */
 #include "uav_peers.h"
 #include "ascon.h"
 #include "link_broadcast.h"
 #include "uav_keys.h"
 
-/* word with the number of the newest call to all vehicles */
+/* index of the word that stores the number of the newest call to all vehicles */
 #define NEWEST UAV_STATE_AT(UAV_GROUP)
 
 int UAV_providePeer(int role, U32 address, const U8* key) {
     UAV_store(UAV_ADDRESS_AT(role), 0);
-    /* the number of the newest call stays; otherwise recorded calls would be accepted again */
+    /* in the role of the group, the number of the newest call is kept; otherwise calls recorded by
+     * an attacker would be accepted again */
     if (role != UAV_GROUP)
         UAV_store(UAV_STATE_AT(role), 0);
     UAV_writeKey(role, 1, 0);
@@ -22,8 +23,8 @@ int UAV_providePeer(int role, U32 address, const U8* key) {
     return 1;
 }
 
-/* Reads the key of the group; it is all zeros if the slot is empty. Returns 0 if the slot is empty
- * and the vehicle requires a key. */
+/* Reads the group's key. If the slot is empty, sets the key to zeros, and returns 0 if the vehicle
+ * requires a key. */
 static int readGroupKey(U8* key) {
     return UAV_readKey(UAV_GROUP, 0, key) || UAV_isOpen();
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_radio_state: the state that the files of the radio share: peers, the lock of the links, and
- * the modem's settings. It uses none of these files.
+ * uav_radio_state: defines the state that the files of the radio share: peers, the lock of the
+ * links, and the modem's settings. It does not depend on any of these files.
  */
 #include "uav_radio_state.h"
 #include "uav.h"

@@ -11,6 +11,6 @@
 #define PRIO_CLIENT 12U
 #define PRIO_UPDATE 40U
 
-/* Number of servants besides those of the cores: chip, uav, update, fpga, keys. cmake/cores.cmake
- * reads this number. */
+/* Number of servants that are not servants of cores: chip, uav, update, fpga, keys.
+ * cmake/cores.cmake reads this number. */
 #define UAV_SERVANTS 5

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_update: servants that receive new firmware and bitstreams, and a task for the long steps: it
- * verifies one signature, erases one sector or computes one digest at a time. Only the task of the
- * watchdog has a lower priority.
+ * uav_update: servants that receive new firmware and bitstreams, and a task for the steps that take
+ * long. In one step, the task verifies one signature, erases one sector, or computes one digest.
+ * Only the watchdog task has a lower priority.
  */
 #include "uav_update.h"
 #include "Update.h"
@@ -18,7 +18,8 @@
 #define PERIOD (OS_TICKS_PER_SEC / 10U)
 #define PIECE_BYTES 4096
 #define DICTIONARY_BYTES 65535U
-/* time for confirming a new firmware, s; after it, the old firmware is started again */
+/* time within which new firmware must be confirmed, s; after this time, the old firmware is started
+ * again */
 #define TRIAL_S 60U
 #define RESTART_S 1U /* delay before a restart, s; pending replies are sent meanwhile */
 
@@ -48,7 +49,8 @@ Ice_Status Update_Firmware_getStatus(Update_FirmwarePtr self, Update_Status* res
     return ICE_OK;
 }
 
-/* Sets the result of a call; if it is OK, wakes the task, which does the requested work. */
+/* Sets the result of a call. If the result is OK, wakes the task, which then does the requested
+ * work. */
 static Ice_Status answer(Receiver_Reason reason, Update_Reason* result) {
     *result = (Update_Reason)reason;
     if (reason == RECEIVER_OK)
@@ -70,9 +72,9 @@ Ice_Status Update_Firmware_begin(Update_FirmwarePtr self, const Update_Header* s
     return answer(Receiver_begin(receiverOf(self), &header), result);
 }
 
-/* Returns the bytes of a piece, or 0 if their number differs from the announced one. The dictionary
- * of a compressed piece is the part of the image that is already in flash. The processor reads it
- * there as memory, so it also exists after a loss of power. */
+/* Returns the bytes of a piece; 0 if their number differs from the one in the call. The dictionary
+ * of a compressed piece is the part of the image that is already in flash, which the processor
+ * reads like memory. The dictionary therefore also exists after a loss of power. */
 static const U8* unpack(const Receiver* receiver, U32 offset, Ice_Int size,
                         const Update_Piece* bytes) {
     static U8 unpacked[PIECE_BYTES];
@@ -132,8 +134,8 @@ Ice_Status Update_Firmware_confirm(Update_FirmwarePtr self, Update_Reason* resul
     return ICE_OK;
 }
 
-/* Does one step of each update. Returns 1 if at least one update has more steps. Updates wait
- * during flight, because an erase stalls the processor and a new image restarts it. */
+/* Does one step of each update. Returns 1 if at least one update has more steps. During flight,
+ * updates wait, because an erase stalls the processor and a new image restarts it. */
 static int workOn(U32 uptime) {
     int more = 0, i;
     for (i = 0; i < UAV_UPDATABLES && !UAV_isFlying(); ++i) {
@@ -158,7 +160,8 @@ static void updateTask(void* argument) {
     for (;;) {
         OSSemPend(work, PERIOD, &error);
         while (workOn(OSTimeGet() - begun))
-            OSTimeDly(PERIOD); /* an erase stalls the processor, so other tasks run before it */
+            /* lets other tasks run before an erase, which stalls the processor */
+            OSTimeDly(PERIOD);
     }
 }
 

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
  * ice_slice: reads and writes the slices of user exceptions, and optional values. With encoding
- * 1.0, a slice consists of its type id, a size of 4 bytes (these included), and the members; a byte
- * before the first slice shows whether there are classes. With encoding 1.1, a slice consists of
- * flags, the type id, the size (in the sliced format), the members, and optional values up to an
- * end mark.
+ * 1.0, a slice consists of its type id, a size of 4 bytes (which includes these bytes), and the
+ * members; a byte before the first slice shows whether there are classes. With encoding 1.1, a
+ * slice consists of flags, the type id, the size (only in the sliced format), the members, and
+ * optional values up to an end mark.
  */
 #include "ice_slice.h"
 
@@ -121,15 +121,15 @@ Ice_String Ice_InputStream_startSlice(Ice_InputStreamPtr is) {
     return is->failed ? none : id;
 }
 
-/* Skips a table of instances that follows a slice. `depth` limits the nesting, so that a peer
- * cannot overflow the stack. */
+/* Skips the table of instances that follows a slice. `depth` is limited, so that a peer cannot
+ * overflow the stack by nested tables. */
 static void skipTable(Ice_InputStreamPtr is, int depth) {
     Ice_Int count = Ice_InputStream_readSequence(is, 1);
     while (count-- > 0 && !is->failed) {
         Ice_Byte flags = ICE_SLICE_LAST;
         Ice_Int end;
         if (Ice_InputStream_readSize(is) != 1)
-            continue; /* a reference to an earlier instance has no slices */
+            continue; /* a reference to an earlier instance has no slices of its own */
         do {
             flags = Ice_InputStream_readByte(is);
             if ((flags & ICE_SLICE_COMPACT_ID) == ICE_SLICE_TYPE_STRING)
@@ -147,8 +147,8 @@ static void skipTable(Ice_InputStreamPtr is, int depth) {
     }
 }
 
-/* Reads the table of instances that follows a slice, if it has one. Skips the table if the program
- * has no reader of classes. */
+/* Reads the table of instances that follows a slice, if the slice has one. If the program has no
+ * function that reads classes, skips the table. */
 static void readTable(Ice_InputStreamPtr is) {
     Ice_Byte flags = is->sliceFlags;
     if (is->sliceFlags & ICE_SLICE_TABLE) {
@@ -195,15 +195,15 @@ static void skip(Ice_InputStreamPtr is, Ice_Int format) {
         if (is->values)
             is->values->skip(is);
         else if (Ice_InputStream_readSize(is) == 1)
-            icec_failRead(is, ICE_FAILED_MALFORMED); /* an instance is not expected here */
+            icec_failRead(is, ICE_FAILED_MALFORMED); /* a class instance is not allowed here */
         break;
     default:
         (void)Ice_InputStream_readBlob(is, (Ice_Int)1 << format);
     }
 }
 
-/* Skips optional values with tags below `tag`. Returns 1 if the next one has this tag; its value
- * follows. */
+/* Skips optional values with tags below `tag`. Returns 1 if the next optional value has this tag;
+ * its bytes follow. */
 static Ice_Bool seek(Ice_InputStreamPtr is, Ice_Int tag, Ice_Int format) {
     Ice_Int end = is->sliceFlags && is->sliceEnd ? is->sliceEnd : is->size;
     while (!is->failed && is->position < end) {

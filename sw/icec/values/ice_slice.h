@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_slice: functions shared by the slices of exceptions and of classes.
+ * ice_slice: functions that read and write slices, used for exceptions and for classes.
  */
 #pragma once
 
 #include "ice_value.h"
 
 /* Flags at the start of a slice in encoding 1.1. Slices of exceptions have none of the first three
- * flags, because their type is always a string. */
+ * flags, because an exception's type is always a string. */
 enum {
     ICE_SLICE_TYPE_STRING = 0x01,
     ICE_SLICE_TYPE_INDEX = 0x02,
@@ -22,13 +22,13 @@ enum {
 /* Sets the failure of a stream, unless it has already failed. */
 void icec_failRead(Ice_InputStreamPtr is, Ice_Failed why);
 
-/* Reads the size of a slice with these flags; it has four bytes and includes them. Returns
- * the end of the slice. Returns 0 if the slice has no size, or a wrong size; a wrong size
- * fails the stream. */
+/* Reads the size of a slice with these flags. The size has four bytes and includes them. Returns
+ * the end of the slice; 0 if the slice has no size, or if the size is wrong. A wrong size fails the
+ * stream. */
 Ice_Int icec_readSliceEnd(Ice_InputStreamPtr is, Ice_Byte flags);
 
-/* Ends a slice in encoding 1.1. `flags`: position of its flags; `size`: position of its size, or -1
- * if it has none. */
+/* Ends a slice in encoding 1.1. `flags` is the position of its flags. `size` is the position of its
+ * size; -1 if it has no size. */
 void icec_finishSlice(Ice_OutputStreamPtr os, Ice_Int flags, Ice_Int size);
-/* Writes the size of everything since `begin` into the four bytes there, which are included. */
+/* Writes into the four bytes at `begin` the number of bytes from there to the end of the stream. */
 void icec_patchSize(Ice_OutputStreamPtr os, Ice_Int begin);

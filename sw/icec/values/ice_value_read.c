@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_value_read: reads class instances from a stream, and handles the types of classes.
- * ice_value_write.c describes the layout.
+ * ice_value_read: reads class instances from a stream, and finds their types. ice_value_write.c
+ * describes the layout.
  */
 #include "ice_slice.h"
 
@@ -50,8 +50,8 @@ void Ice_InputStream_beginValues(Ice_InputStreamPtr is, Ice_InputValues* values,
     is->values = values;
 }
 
-/* Sets a pointer to the instance of this number, now, or at the end of the message if the
- * instance's type is not known yet. */
+/* Sets a pointer to the instance with this number. If the type of the instance is not known yet,
+ * does this at the end of the message. */
 static void set(Ice_InputStreamPtr is, void* at, Ice_Int number, const Ice_ValueType* expected,
                 Ice_Bool last) {
     Ice_InputValues* values = is->values;
@@ -120,8 +120,8 @@ static void skip(Ice_InputStreamPtr is) {
         (void)readInstance(is, number);
 }
 
-/* Reads the indirection table after a slice. It contains the instances to which the slice's
- * members refer; these are the patches starting with patchBegin. */
+/* Reads the indirection table after a slice, which contains the instances to which the slice's
+ * members refer. These references are the patches from patchBegin. */
 static void readTable(Ice_InputStreamPtr is) {
     Ice_InputValues* values = is->values;
     Ice_Int count = Ice_InputStream_readSequence(is, 1), first = values->patchBegin;
@@ -140,8 +140,8 @@ static void readTable(Ice_InputStreamPtr is) {
     values->patchEnd = first;
 }
 
-/* Preserves the current slice and skips it; only in encoding 1.1. Returns 0 if the end of the
- * slice is not known, or if there is no room. */
+/* Preserves the current slice and skips it; only possible in encoding 1.1. Returns 0 if the end of
+ * the slice is unknown, or if there is no room. */
 static Ice_UnknownSlice* keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Int compactId) {
     Ice_Byte flags = is->sliceFlags, optionals = (flags & ICE_SLICE_OPTIONALS) != 0;
     Ice_UnknownSlice* slice;
@@ -157,13 +157,14 @@ static Ice_UnknownSlice* keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Int
     slice->compactId = compactId;
     slice->flags = flags & (ICE_SLICE_OPTIONALS | ICE_SLICE_LAST);
     slice->data = is->data + is->position;
-    /* the end marker of optional members is written again when the slice is sent */
+    /* excludes the end mark of optional members, because writing the slice adds it again */
     slice->size = is->sliceEnd - is->position - optionals;
     is->position = is->sliceEnd;
     if (flags & ICE_SLICE_TABLE) {
         Ice_Int count = Ice_InputStream_readSequence(is, 1), i;
         void* room = Ice_InputStream_allocate(is, count, (Ice_Int)sizeof *slice->values);
-        memcpy(&slice->values, &room, sizeof room); /* a slice with a compact id has no type name */
+        /* has no type name, because it has a compact id */
+        memcpy(&slice->values, &room, sizeof room);
         for (i = 0; i < count && !is->failed; ++i)
             slice->values[i].number = readInstance(is, Ice_InputStream_readSize(is));
         slice->count = is->failed ? 0 : count;
@@ -184,7 +185,7 @@ Ice_Bool Ice_InputStream_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Unk
     return slice && !(slice->flags & ICE_SLICE_LAST) && is->position < is->size;
 }
 
-/* Sets the targets of preserved slices; called at the end of the message. */
+/* Sets the pointers in preserved slices; called at the end of the message. */
 static void endUnknown(Ice_InputStreamPtr is) {
     Ice_InputValues* values = is->values;
     Ice_UnknownSlice* slice;
@@ -196,8 +197,8 @@ static void endUnknown(Ice_InputStreamPtr is) {
 
 typedef struct SliceHead {
     Ice_String id;
-    Ice_Int compactId;         /* -1 if none */
-    const Ice_ValueType* type; /* 0 if the type is not known */
+    Ice_Int compactId;         /* compact id; -1 if there is none */
+    const Ice_ValueType* type; /* type of the slice; 0 if it is unknown */
     /* 1 for ::Ice::Object, the base of all classes; its slice ends an instance in encoding 1.0 */
     Ice_Bool isObject;
 } SliceHead;
@@ -241,7 +242,7 @@ static void startSlice(Ice_InputStreamPtr is, SliceHead* head) {
         case ICE_SLICE_TYPE_STRING:
             head->id = typeByName(is);
             break;
-        default: /* the slice of a base in the compact format, which has no type */
+        default: /* in the compact format, the slice of a base has no type */
             break;
         }
     }
@@ -262,8 +263,8 @@ static void readEnd10(Ice_InputStreamPtr is) {
         icec_failRead(is, ICE_FAILED_MALFORMED);
 }
 
-/* Skips slices until the slice of a known type. If there is none, the instance becomes an
- * Ice_Value_type without a slice. In encoding 1.0, which cannot preserve slices, such an
+/* Skips slices up to the first one with a known type. If all types are unknown, the instance
+ * becomes an Ice_Value_type without slices. Encoding 1.0 cannot preserve slices, so such an
  * instance is dropped. */
 static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** list) {
     Ice_Bool isFirst;
@@ -271,7 +272,7 @@ static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** 
         SliceHead head;
         startSlice(is, &head);
         if (is->minor == 0 && head.isObject && !isFirst) {
-            readEnd10(is); /* no pointer may refer to a dropped instance */
+            readEnd10(is); /* the dropped instance must not be referred to by any pointer */
             return 0;
         }
         if (is->failed || (head.isObject && !isFirst)) {
@@ -281,7 +282,7 @@ static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** 
         if (head.type)
             return head.type;
         if (is->sliceEnd == 0) {
-            /* this format does not store where the slice ends */
+            /* in this format, the end of the slice is unknown */
             icec_failRead(is, ICE_FAILED_MALFORMED);
             return 0;
         }
@@ -298,7 +299,7 @@ static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** 
     }
 }
 
-/* Reads the slices of one instance and assigns it this number. */
+/* Reads the slices of one instance, which gets this number. */
 static void readSlices(Ice_InputStreamPtr is, Ice_Int number) {
     Ice_UnknownSlice* unknown = 0;
     const Ice_ValueType* type = knownType(is, &unknown);
@@ -318,7 +319,7 @@ static void readSlices(Ice_InputStreamPtr is, Ice_Int number) {
         return;
     }
     if (type == &Ice_Value_type && unknown)
-        return; /* the last slice had an unknown type */
+        return; /* all slices had unknown types */
     for (; type && !is->failed; type = type->base) {
         type->read(v, is);
         Ice_InputStream_endSlice(is);
@@ -335,8 +336,8 @@ static void readSlices(Ice_InputStreamPtr is, Ice_Int number) {
     }
 }
 
-/* Reads the number of an instance; 1 on the wire means that a new instance follows. Returns the
- * instance's number, counted from 1. */
+/* Reads a reference to an instance: its number, or 1, which means that a new instance follows.
+ * Returns the instance's number, counted from 1. */
 static Ice_Int readInstance(Ice_InputStreamPtr is, Ice_Int number) {
     Ice_InputValues* values = is->values;
     Ice_Byte flags = is->sliceFlags;

@@ -2,10 +2,10 @@
  *
  * ice_value_write: writes instances of classes to a stream.
  *
- * 1.1: an instance is written at its first occurrence, and its number (counted from 2) at later
- * ones. Within a slice in the sliced format, an index into a table after the slice is written
- * instead. 1.0: the negative number of the instance (counted from 1) is written, and all instances
- * follow after the parameters.
+ * Encoding 1.1: an instance is written where it occurs first; later occurrences are written as its
+ * number, counted from 2. In the sliced format, members of a slice are written as an index into a
+ * table that follows the slice. Encoding 1.0: each occurrence is written as the negative number of
+ * the instance, counted from 1; all instances follow after the parameters.
  */
 #include "ice_slice.h"
 
@@ -20,7 +20,8 @@ void Ice_OutputStream_beginValues(Ice_OutputStreamPtr os, Ice_OutputValues* valu
     os->values = values;
 }
 
-/* Returns the index of the instance in `known`; -1 if it is new and was added at the end. */
+/* Returns the index of an instance in `known`. Returns -1 if the instance is new; it was then added
+ * at the end. */
 static Ice_Int placeOf(Ice_OutputStreamPtr os, const Ice_Value* v, Ice_Int* place) {
     Ice_OutputValues* values = os->values;
     Ice_Int i;
@@ -38,8 +39,8 @@ static Ice_Int placeOf(Ice_OutputStreamPtr os, const Ice_Value* v, Ice_Int* plac
     return 1;
 }
 
-/* Returns the number under which the name of this type was written; 0 if it was not written before;
- * it then gets a number. */
+/* Returns the number that this type name got when it was written first. Returns 0 if this is the
+ * first time; the name then gets a number. */
 static Ice_Int typeNumber(Ice_OutputStreamPtr os, Ice_String id) {
     Ice_OutputValues* values = os->values;
     Ice_Int i;
@@ -68,8 +69,8 @@ static void writeType(Ice_OutputStreamPtr os, Ice_String id, Ice_Int compactId) 
         Ice_OutputStream_writeString(os, id);
 }
 
-/* Writes the preserved slices. Slices of an exception have no flags for their type, which is a
- * string. */
+/* Writes preserved slices. Slices of an exception have no flags for the kind of their type, because
+ * it is always a string. */
 static void writeUnknown(Ice_OutputStreamPtr os, const Ice_UnknownSlice* slice,
                          Ice_Bool isException) {
     Ice_OutputValues* values = os->values;
@@ -105,7 +106,7 @@ static void writeSlices11(Ice_OutputStreamPtr os, const Ice_Value* v) {
     if (os->sliced && v->unknown) {
         writeUnknown(os, v->unknown, 0);
         if (type == &Ice_Value_type)
-            return; /* the last of them was the last slice */
+            return; /* one of the preserved slices was the last slice of the instance */
     }
     for (; type; type = type->base) {
         Ice_Int begin = os->size, body;
@@ -122,7 +123,7 @@ static void writeSlices11(Ice_OutputStreamPtr os, const Ice_Value* v) {
     }
 }
 
-/* Writes the instance itself, or its number. */
+/* Writes an instance; if it was written before, writes its number. */
 static void writeInstance(Ice_OutputStreamPtr os, const Ice_Value* v) {
     Ice_Int place = 0, tableBegin = os->values->tableBegin;
     Ice_Byte flags = os->sliceFlags;
@@ -137,7 +138,8 @@ static void writeInstance(Ice_OutputStreamPtr os, const Ice_Value* v) {
     os->sliceFlags = flags;
 }
 
-/* Writes the instances referenced by a slice's members, after it. Returns 0 if none. */
+/* Writes the table of the instances to which a slice's members refer, after the slice. Returns 0 if
+ * there are no such instances. */
 static Ice_Bool writeTable(Ice_OutputStreamPtr os) {
     Ice_OutputValues* values = os->values;
     Ice_Int begin = values->tableBegin, end = values->tableEnd, i;
@@ -195,14 +197,15 @@ static void writeSlice10(Ice_OutputStreamPtr os, const Ice_ValueType* type, cons
     begin = os->size;
     Ice_OutputStream_writeInt(os, 0);
     if (type == &Ice_Value_type)
-        Ice_OutputStream_writeSize(os, 0); /* the facets of very old versions */
+        /* number of facets; only very old versions of Ice had facets here */
+        Ice_OutputStream_writeSize(os, 0);
     else
         type->write(v, os);
     icec_patchSize(os, begin);
 }
 
-/* Ends the values. In 1.0 the instances follow here in groups: a group holds the instances
- * referenced by members of the previous group. */
+/* Ends the values. In encoding 1.0, the instances follow here, in groups: each group contains the
+ * instances to which members of the previous group refer. */
 void Ice_OutputStream_endValues(Ice_OutputStreamPtr os) {
     Ice_OutputValues* values = os->values;
     while (os->minor == 0 && !os->failed && values->written < values->count) {

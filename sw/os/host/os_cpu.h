@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * os_cpu: the interface between kernel and processor, with uC/OS-II's names, for a host. Tasks are
- * coroutines of one thread. Interrupts arrive only when simulated time passes, so every run is
- * exactly repeatable.
+ * coroutines of one thread. Interrupts arrive only when simulated time advances, so every run can
+ * be repeated exactly.
  */
 #pragma once
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// os_host: implements tasks as coroutines (ucontext), delivers interrupts at chosen points, and
-// passes exceptions out of tasks.
+// os_host: runs tasks as coroutines (ucontext), delivers interrupts at defined points, and passes
+// exceptions from a task to the caller of run().
 
 #include "os_host.h"
 
@@ -38,7 +38,7 @@ struct Coroutine {
 struct Port {
     OsHost::Machine machine;
     std::deque<Coroutine> coroutines;
-    Coroutine caller; // the coroutine that has called run()
+    Coroutine caller; // coroutine that has called run()
     Coroutine* active = nullptr;
     std::exception_ptr failure;
     bool masked = false, serving = false;
@@ -107,7 +107,7 @@ void run() {
 
 void stop() {
     switchTo(port.caller);
-    std::terminate(); // unreachable: no code resumes a task after stop
+    std::terminate(); // never reached, because nothing resumes a task after stop
 }
 
 void interruptPoint() {
@@ -118,7 +118,7 @@ void interruptPoint() {
         OSIntEnter();
         port.machine.serve();
         port.serving = false;
-        OSIntExit(); // may switch to another task; this task continues here later
+        OSIntExit(); // another task may run first; this one continues here later
     }
 }
 
@@ -137,7 +137,7 @@ void OS_CPU_SR_Restore(OS_CPU_SR cpu_sr) {
 }
 
 OS_STK* OSTaskStkInit(void (*task)(void*), void* p_arg, OS_STK* ptos, INT16U opt) {
-    (void)ptos; // ignored, because the port allocates larger stacks
+    (void)ptos; // the given stack is not used, because the port allocates larger stacks
     (void)opt;
     port.coroutines.emplace_back();
     Coroutine& c = port.coroutines.back();

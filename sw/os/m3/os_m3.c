@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_m3: the kernel's port to the Cortex-M3: initial stack of a task, first switch, choice of the
- * next task in PendSV, and stack guard.
+ * os_m3: the kernel's port to the Cortex-M3: prepares the stack of a new task, starts the first
+ * task, selects the next task in PendSV, and places the stack guard.
  */
 #include "os_m3.h"
 #include "os_core.h"
@@ -17,7 +17,8 @@ U32* OS_Switch(U32* sp); /* called by os_switch.S */
 static OS_Task* os_running;
 
 static void taskReturned(void) {
-    OS_StackFault(0xFFU); /* a task must not return; handled like a stack overflow */
+    /* a task has returned, which is not allowed; handled like a stack overflow */
+    OS_StackFault(0xFFU);
 }
 
 OS_STK* OSTaskStkInit(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT16U opt) {
@@ -38,23 +39,25 @@ OS_STK* OSTaskStkInit(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT1
 
 void OSCtxSw(OS_Task* from, OS_Task* to) {
     (void)from;
-    (void)to; /* PendSV switches to os_kernel.current */
+    (void)to; /* not needed, because PendSV switches to os_kernel.current */
     ICSR = ICSR_PENDSVSET;
-    __asm__ volatile("dsb"); /* PendSV is pending before the caller enables interrupts */
+    /* ensures that PendSV is pending before the caller enables interrupts */
+    __asm__ volatile("dsb");
 }
 
 void OSStartHighRdy(void) {
     os_running = 0;
-    SHPR3 |= 0xFFUL << 16; /* PendSV gets the lowest priority */
+    SHPR3 |= 0xFFUL << 16; /* sets the lowest priority for PendSV */
     __asm__ volatile("msr psp, %0" : : "r"(0));
     ICSR = ICSR_PENDSVSET;
     __asm__ volatile("cpsie i\n\tisb");
-    for (;;) /* not reached: PendSV switches to the first task */
+    for (;;) /* never reached, because PendSV switches to the first task */
         ;
 }
 
-/* Selects the next task; PendSV calls this function with interrupts disabled. `sp` points at the
- * saved registers of the running task; returns the pointer to those of the next task. */
+/* Selects the next task; PendSV calls this function with interrupts disabled. `sp` points to the
+ * saved registers of the task that was running. Returns the pointer to the saved registers of the
+ * next task. */
 U32* OS_Switch(U32* sp) {
     if (os_running) {
         os_running->stack = sp;

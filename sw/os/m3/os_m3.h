@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_m3: functions that the Cortex-M3 port needs from the board (sw/board), in addition to the idle
- * hook.
+ * os_m3: functions that the Cortex-M3 port calls and the board (sw/board) implements, in addition
+ * to the idle hook.
  */
 #pragma once
 
 #include "ucos_ii.h"
 
-/* Places the stack guard. PendSV calls it with interrupts disabled before a task continues.
- * `bottom`: lowest address of the task's stack, or 0 if it is unknown (OSTaskCreate). */
+/* Places the stack guard. PendSV calls this function, with interrupts disabled, before a task
+ * continues. `bottom` is the lowest address of the task's stack; 0 if it is unknown, as after
+ * OSTaskCreate. */
 void OS_TaskSwitched(OS_STK* bottom);
 
 /* Called when the task with this priority has overflowed its stack; 255 means that a task has
- * returned. Must not return. */
+ * returned from its function. Must not return. */
 void OS_StackFault(INT8U priority);

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_switch: switches tasks in PendSV: saves the registers that the processor has not saved, calls
- * OS_Switch to get the stack of the next task, and restores its registers.
+ * os_switch: switches tasks in PendSV. It saves the registers that the processor has not saved,
+ * calls OS_Switch to get the stack of the next task, and restores that task's registers.
  *
- * Stack of a suspended task, from its stack pointer upwards: r4..r11, then the frame pushed by the
- * processor: r0..r3, r12, lr, pc, xPSR (ARMv7-M ARM, B1.5.6).
+ * Stack of a suspended task, from its stack pointer upwards: r4..r11, then the frame that the
+ * processor has pushed: r0..r3, r12, lr, pc, xPSR (ARMv7-M ARM, B1.5.6).
  */
     .syntax unified
     .thumb
@@ -16,7 +16,7 @@ PendSV_Handler:
     mrs     r0, psp
     cbz     r0, 1f              /* first switch: there is no task to save */
     stmdb   r0!, {r4-r11}
-1:  push    {r3, lr}            /* r3 only keeps the stack aligned */
+1:  push    {r3, lr}            /* r3 is only pushed to keep the stack aligned */
     bl      OS_Switch
     pop     {r3, lr}
     ldmia   r0!, {r4-r11}

@@ -3,8 +3,8 @@
  * fpga: accesses the FPGA's flash, and makes the FPGA load its bitstream. The flash is connected to
  * SPI 1 of the processor and to the configuration pins of the FPGA. The FPGA does not drive these
  * pins after its configuration, nor while PROGRAM_B is low. The processor drives the bus only
- * during its own transactions. While the FPGA loads its configuration, SPI 1 is a slave that
- * receives the addresses that the FPGA reads.
+ * during a transaction that it has started. While the FPGA loads its configuration, SPI 1 acts as a
+ * slave and receives the addresses at which the FPGA reads.
  */
 #include "fpga.h"
 #include "board.h"
@@ -13,25 +13,27 @@
 #include "ucos_ii.h"
 
 #define BUS 0U                 /* pins on port A: chip select 4, clock 5, data in 6, data out 7 */
-#define BUS_PINS (0xFFUL << 8) /* the bits of these pins in MODER */
-/* MODER for transactions of the processor: chip select is an output, three pins belong to SPI 1 */
+#define BUS_PINS (0xFFUL << 8) /* bits of these pins in the register MODER */
+/* value of MODER while the processor uses the bus: chip select is an output, the other three pins
+ * belong to SPI 1 */
 #define BUS_OURS (0xA9UL << 8)
-#define BUS_HEARS (0x8AUL << 8)  /* MODER for listening: all pins except data in belong to SPI 1 */
+/* value of MODER while the processor listens: all pins except data in belong to SPI 1 */
+#define BUS_HEARS (0x8AUL << 8)
 #define BUS_SPI (0x5555UL << 16) /* alternate function 5 (SPI 1) for three pins */
 #define SELECT 4U                /* pin of chip select on port A, and its EXTI line */
 #define SELECT_VECTOR 10U
 /* bytes up to the end of the address: the instruction of the flash, and three bytes of address */
 #define ADDRESS_BYTES 4U
-/* number of polls of at least 10 cycles; the address takes 32 us at 1 MHz */
+/* limit of polls, of at least 10 cycles each; an address takes 32 us at 1 MHz */
 #define POLLS 2000U
 #define CONTROL 2U /* pins on port C: PROGRAM_B 0 (open drain), DONE 1 */
 #define DONE 1U
 #define NO_TASK 255U
-/* Longest wait for DONE, ticks of 10 ms: loading 3.7 Mbit takes 1.9 s at 2 MHz, 3.7 s at 1 MHz, and
- * the FPGA makes at most four tries. */
+/* Longest wait for DONE, ticks of 10 ms. Loading 3.7 Mbit takes 1.9 s at 2 MHz and 3.7 s at 1 MHz,
+ * and the FPGA tries up to four times. */
 #define WAIT_TICKS 1600U
-/* Time without a chip select, in ticks, after which the FPGA does not read, or the wire is
- * missing. */
+/* Time without a falling chip select, ticks of 10 ms. After this time, the FPGA has stopped
+ * reading, or the wire is missing. */
 #define QUIET_TICKS 100U
 #define READS_A_PAUSE 64U
 
@@ -59,7 +61,8 @@ static void pause(void) {
 
 static const SpiNor_Bus bus = {select, transfer, pause};
 
-/* Reads the flash, with pauses for other tasks, including the one that serves the watchdog. */
+/* Reads the flash in parts. Other tasks, such as the one that serves the watchdog, run in
+ * between. */
 static void read(void* context, U32 offset, U8* bytes, U32 count) {
     static U32 reads;
     SpiNor_read(context, offset, bytes, count);
@@ -75,7 +78,7 @@ static void startPins(void) {
     GPIO_OTYPER(CONTROL) |= 1UL;
 }
 
-/* Clears the FPGA's configuration, and holds it cleared for more than 0.5 us by driving PROGRAM_B
+/* Clears the FPGA's configuration by driving PROGRAM_B low for more than 0.5 us, and keeps it
  * low. */
 static void hold(void) {
     U32 i;
@@ -93,7 +96,7 @@ static int isSelected(void) {
     return !(GPIO_IDR(BUS) >> SELECT & 1UL);
 }
 
-/* Empties the receiver of SPI 1, which starts at the next chip select. */
+/* Empties the receiver of SPI 1, so that it starts with the next chip select. */
 static void arm(void) {
     SPI1_CR1 = 0;
     (void)SPI1_DR;
@@ -101,7 +104,7 @@ static void arm(void) {
     SPI1_CR1 = SPI1_CR1_SLAVE;
 }
 
-/* Returns the address that the FPGA is sending to its flash; 0 after a time-out. */
+/* Returns the address that the FPGA sends to the flash; 0 after a time-out. */
 static U32 hear(void) {
     U32 address = 0, polls = 0, i;
     for (i = 0; i < ADDRESS_BYTES; ++i) {
@@ -113,9 +116,9 @@ static U32 hear(void) {
     return address & 0xFFFFFFUL;
 }
 
-/* Lets the FPGA load its configuration, and sleeps until DONE is high or the time is over. SysTick
- * and chip select wake the processor, but their interrupt routines do not run. Returns the address
- * of the last read. */
+/* Lets the FPGA load its configuration, and sleeps until DONE is high or the time-out expires.
+ * SysTick and chip select wake the processor, without running their interrupt routines. Returns the
+ * address of the FPGA's last read. */
 static U32 load(void) {
     U32 i, edge = 0, heard = 0;
     __asm__ volatile("cpsid i");
@@ -153,18 +156,18 @@ static U32 load(void) {
     SPI1_CR1 = SPI1_CR1_MASTER;
     __asm__ volatile("cpsie i");
     if (!isDone() && isSelected())
-        hold(); /* the FPGA hangs: clearing it frees the bus */
+        hold(); /* frees the bus: the FPGA hangs and is cleared */
     return heard;
 }
 
-/* Returns 1 if the FPGA hangs, or has loaded the golden bitstream instead. */
+/* Returns 1 if the FPGA hangs, or has loaded the golden bitstream instead of the one in slot 1. */
 static int loadsAnother(void) {
     const U32 from = load();
     return !isDone() || from == Slots_at(&slots_fpga, 0) + SLOTS_IMAGE_AT;
 }
 
-/* If the bitstream is signed and complete, makes the FPGA load again, so that all its reads are
- * observed, and returns the result of loadsAnother. Otherwise returns 1. */
+/* If the bitstream is signed and complete, makes the FPGA load it again, so that all its reads can
+ * be observed; returns the result of loadsAnother. Otherwise returns 1. */
 static int loadsAnotherAgain(void) {
     hold();
     SPI1_CR1 = SPI1_CR1_MASTER;

@@ -7,11 +7,12 @@
 
 #include "slots.h"
 
-/* Returns the slots of bitstreams in the flash, or 0 without such a flash. Before it returns, the
- * FPGA loads a bitstream, and its pin DONE is awaited. With `mayTry` this is a new bitstream, if
- * there is one; the golden bitstream is loaded if the new one was not confirmed or not accepted.
- * With `mustLoad` the FPGA loads its bitstream again, so that its reads of the flash can be
- * observed. The FPGA is kept empty until a bitstream is found complete and its signature correct;
- * others are refused. If the golden bitstream is refused, the FPGA stays empty. `running` is set to
- * the slot of the bitstream that the FPGA runs. */
+/* Returns the slots of bitstreams in the FPGA's flash; 0 if there is no such flash. Makes the FPGA
+ * load a bitstream and waits for DONE before it returns. With `mayTry`, a new bitstream is loaded
+ * if there is one; if the new bitstream was tried before and not confirmed, or if the FPGA does not
+ * accept it, the golden one is loaded. With `mustLoad`, the FPGA loads its bitstream again, so that
+ * its reads of the flash can be observed. The FPGA stays cleared until a bitstream was found that
+ * is complete and correctly signed; other bitstreams are refused. If the golden bitstream is
+ * refused as well, the FPGA remains empty. Sets `running` to the slot of the bitstream in the FPGA.
+ */
 const Slots_Port* Fpga_slots(const Slots_Port* firmware, int mustLoad, int mayTry, U32* running);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * loader: checks the images in the slots and starts one of them. It has no variables. Its stack is
- * at the end of RAM, where the firmware keeps nothing that must survive a reset. The end of this
- * file has the few functions from other files of libsodium that a signature check needs.
+ * at the end of RAM, where the firmware keeps nothing that must survive a reset. A signature check
+ * needs a few functions from other files of libsodium; they are at the end of this file.
  */
 #include "loader.h"
 #include "backup.h"
@@ -14,8 +14,8 @@
 #include <sodium/crypto_hash_sha512.h>
 #include <sodium/utils.h>
 
-#define TRIAL_PRESCALER 6UL /* divides LSI by 256: one count is 8 ms */
-/* 10 s, the time within which the new firmware must serve the watchdog itself */
+#define TRIAL_PRESCALER 6UL /* divides LSI by 256, so that one count takes 8 ms */
+/* 10 s: time within which new firmware must start to serve the watchdog itself */
 #define TRIAL_RELOAD 1250UL
 
 typedef void (*Vector)(void);
@@ -24,7 +24,7 @@ extern void stack_top(void); /* loader.ld */
 
 void Reset_Handler(void);
 
-/* Restarts after a fault in the loader; the next try may succeed. */
+/* Restarts after a fault in the loader, because the next attempt may succeed. */
 static void restart(void) {
     SCB_AIRCR = SCB_AIRCR_RESET;
     for (;;)
@@ -57,7 +57,7 @@ void Reset_Handler(void) {
     Clock_start();
     RCC_AHB1ENR |= RCC_AHB1ENR_BKPSRAM;
     slot = Slots_choose(&port, LOADER_PRODUCT, BKPSRAM(BACKUP_AT(vehicle.flight)) != BACKUP_FLYING);
-    if (slot == SLOTS_NONE) /* no image can be started; the board must be reprogrammed */
+    if (slot == SLOTS_NONE) /* no image can be started, so the board must be programmed again */
         for (;;)
             __asm__ volatile("wfi");
     if (!Slots_is(&port, slot, SLOTS_CONFIRMED)) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * loader: the boot loader in flash sectors 0 and 1, which starts the firmware in one of the slots,
- * and the functions that it offers to this firmware (docs/firmware.md).
+ * loader: the boot loader in flash sectors 0 and 1, which starts the firmware in one of the slots.
+ * It also offers functions to this firmware (docs/firmware.md).
  */
 #pragma once
 
@@ -9,8 +9,8 @@
 
 #define LOADER_MAGIC 0x1CE50C06UL
 
-/* Functions of libsodium in the loader, so that images need not contain them. The table follows the
- * loader's vectors. */
+/* Functions of libsodium that the loader contains, so that images need not contain them. The table
+ * follows the loader's vector table. */
 typedef struct Loader_Services {
     U32 magic;
     int (*isSigned)(const U8* signature, const U8* message, U32 bytes, const U8* key);
@@ -19,6 +19,6 @@ typedef struct Loader_Services {
 #define LOADER_KEYS ((const Slots_Keys*)(0x08000000UL + SLOTS_KEYS_AT))
 #define LOADER_SERVICES ((const Loader_Services*)0x08000040UL)
 
-/* Returns the slots of the firmware, or 0 if it was started without a loader. Sets `running` to the
- * slot of the firmware that runs. */
+/* Returns the slots of the firmware, and sets `running` to the slot of the running firmware.
+ * Returns 0 if the firmware was started without a loader. */
 const Slots_Port* Loader_slots(U32* running);

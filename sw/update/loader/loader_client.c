@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * loader_client: lets the firmware use the functions of the boot loader.
+ * loader_client: gives the firmware access to the functions of the boot loader.
  */
 #include "flash.h"
 #include "loader.h"
@@ -12,8 +12,8 @@ extern U32 image_begin[]; /* firmware.ld */
 
 static Slots_Port port;
 
-/* Erases a sector. The processor stalls during an erase and cannot serve the watchdog, which is set
- * to 4 s (2.8 s if its oscillator runs at its fastest). */
+/* Erases a sector. The processor stalls during an erase and cannot serve the watchdog. The
+ * watchdog's time is therefore set to 4 s (2.8 s if its oscillator has the highest frequency). */
 static int erase(void* context, U32 offset) {
     const U32 usual = IWDG_RLR;
     int good;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// elf_image: reads ELF files with the structures of <elf.h>; little-endian hosts only.
+// elf_image: reads ELF files with the structures of <elf.h>; works only on little-endian hosts.
 
 #include "elf_image.h"
 #include <algorithm>
@@ -19,8 +19,8 @@ template <class T> T at(const std::vector<uint8_t>& file, size_t offset) {
     return value;
 }
 
-// Computes the CRC of the STM32's CRC unit (RM0033, 3.2) over all words except the last, which
-// stores it.
+// Returns the CRC over all words of an image except the last one, which stores it. The CRC is that
+// of the STM32's CRC unit (RM0033, 3.2).
 uint32_t checksum(const std::vector<uint8_t>& image) {
     uint32_t crc = 0xFFFFFFFF;
     for (size_t offset = 0; offset + 4 < image.size(); offset += 4) {
@@ -79,7 +79,7 @@ ElfImage::ElfImage(const std::string& path) : path_(path) {
     }
 }
 
-// Stores the relocations of the sections that are loaded.
+// Stores the relocations of those sections that are loaded.
 void ElfImage::readRelocations(const std::vector<uint8_t>& file, const Elf32_Ehdr& header,
                                const Elf32_Shdr& section) {
     const auto of = at<Elf32_Shdr>(file, header.e_shoff + section.sh_info * sizeof(Elf32_Shdr));
@@ -122,12 +122,12 @@ std::vector<uint8_t> ElfImage::movedTo(uint32_t address) const {
     std::vector<uint8_t> image = this->image();
     for (const Relocation& r : relocations_) {
         if (r.type == R_ARM_THM_PC22 || r.type == R_ARM_THM_JUMP24 || r.type == R_ARM_NONE)
-            continue; // a PC-relative address does not change
+            continue; // a PC-relative address stays the same when the image moves
         if (r.type != R_ARM_ABS32 && r.type != R_ARM_TARGET1)
             throw std::runtime_error("firmware '" + path_ + "' has a relocation of type " +
                                      std::to_string(r.type) + ": compile with -mword-relocations");
         if (r.symbol < begin || r.symbol > end)
-            continue; // addresses of RAM and registers do not change
+            continue; // addresses of RAM and registers stay the same when the image moves
         for (const Segment& s : segments_)
             if (r.at >= s.runAt && r.at + 4 <= s.runAt + s.bytes.size()) {
                 const uint32_t where = s.address - begin + (r.at - s.runAt);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// elf_image: reads a program for the Cortex-M3 from its ELF file: bytes in flash, symbols,
-// checksum.
+// elf_image: reads a program for the Cortex-M3 from its ELF file: its bytes in flash, its symbols,
+// and its checksum.
 
 #pragma once
 
@@ -13,33 +13,33 @@
 
 class ElfImage {
 public:
-    // Reads the file. Throws std::runtime_error with the reason.
+    // Reads the file. Throws std::runtime_error with the reason if the file cannot be used.
     explicit ElfImage(const std::string& path);
 
     struct Segment {
         uint32_t address; // load address, in flash
-        uint32_t runAt;   // address at run time; in RAM for the initial values of variables
+        uint32_t runAt;   // address at run time; the initial values of variables are copied to RAM
         uint32_t offset;  // offset in the file
         std::vector<uint8_t> bytes;
     };
     const std::vector<Segment>& segments() const { return segments_; }
     bool has(const std::string& symbol) const { return symbols_.count(symbol) != 0; }
-    // Returns the value of a symbol. Throws if the name is unknown.
+    // Returns the value of a symbol. Throws std::runtime_error if there is no such symbol.
     uint32_t symbol(const std::string& name) const;
     uint32_t size(const std::string& name) const { return sizes_.at(name); }
-    // Returns the name of the function at an address; "?" if there is no function.
+    // Returns the name of the function at an address; "?" if the address is in no function.
     std::string functionAt(uint32_t address) const;
 
     // Writes the checksum of the words image_begin .. image_end into the file, at image_end.
     void stamp() const;
 
     // Returns the image (the bytes of flash from image_begin to the checksum), relocated to another
-    // address. The program must be linked with --emit-relocs.
+    // address. The program must have been linked with --emit-relocs.
     std::vector<uint8_t> movedTo(uint32_t address) const;
 
 private:
     struct Relocation {
-        // address in the running program; type as in <elf.h>; value of the symbol
+        // at: address in the running program. type: as in <elf.h>. symbol: value of the symbol.
         uint32_t at, type, symbol;
     };
     void readRelocations(const std::vector<uint8_t>& file, const Elf32_Ehdr& header,

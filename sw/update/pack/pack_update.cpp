@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// pack_update: signs a firmware for both slots of a vehicle, or a new list of keys. It also writes
-// the flash contents of a new vehicle, and the checksum of a firmware.
+// pack_update: makes signed packages for a vehicle: firmware for both of its slots, or a new list
+// of keys. It also writes the flash contents of a new vehicle, and the checksum of a firmware.
 //
 // A package contains, for each slot, the signed header (sw/update/slots.h) and the image that is
-// linked for this slot. A list of keys is a header alone.
+// linked for this slot. A package with a list of keys contains only a header.
 
 #include "elf_image.h"
 #include <CLI/CLI.hpp>
@@ -41,13 +41,14 @@ bool isUnchecked = false;
     throw std::runtime_error(text);
 }
 
-// Throws if an output file is also an input: a private key would be overwritten.
+// Throws if an output file is also an input, because a private key would then be overwritten.
 void checkOutput(const std::string& output, const std::vector<std::string>& inputs) {
     namespace fs = std::filesystem;
     for (const std::string& input : inputs) {
-        std::error_code none; // a missing file is not equivalent
+        // if a file does not exist, `equivalent` sets an error, which is ignored
+        std::error_code none;
         if (input.empty() || output.empty())
-            continue; // not a file
+            continue; // these options do not name files
         if (fs::absolute(input).lexically_normal() == fs::absolute(output).lexically_normal() ||
             fs::equivalent(input, output, none))
             fail("'" + output + "': expected an output file that is not also an input");
@@ -64,7 +65,7 @@ void save(const std::string& path, const Bytes& bytes) {
 
 // Reads the seed of a private key. Returns false if the file does not exist.
 bool readSeed(const std::string& path, Bytes& seed) {
-    // O_NONBLOCK: opening a pipe must not block
+    // O_NONBLOCK, because opening a pipe would otherwise wait for a writer
     const int in = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (in < 0 && errno == ENOENT)
         return false;
@@ -85,15 +86,15 @@ bool readSeed(const std::string& path, Bytes& seed) {
     return true;
 }
 
-// A private key, read from a file that contains its seed. If the file does not exist, a key is
-// created.
+// A private key, which is read from a file that contains its seed. If the file does not exist,
+// creates a key and the file.
 struct Keys {
     explicit Keys(const std::string& path) {
         Bytes seed(crypto_sign_SEEDBYTES);
         if (!readSeed(path, seed)) {
             randombytes_buf(seed.data(), seed.size());
-            // The file gets its name when it is complete, because all source trees of a user share
-            // it.
+            // The file gets its name when it is complete, because several runs at the same time may
+            // use it: all source trees of a user share it.
             std::string temporary = path + ".XXXXXX";
             const int out = mkstemp(temporary.data()); // mode 0600
             const bool made = out >= 0 &&
@@ -105,7 +106,7 @@ struct Keys {
                 std::cout << "pack_update: created a new key pair: " << path
                           << " signs images for vehicles whose flash was filled with this key\n";
             else if (why != EEXIST ||
-                     !readSeed(path, seed)) // another process created the file first
+                     !readSeed(path, seed)) // another process has created the file in the meantime
                 fail("cannot write the private key '" + path + "'");
         }
         crypto_sign_seed_keypair(open_.data(), secret.data(), seed.data());
@@ -136,7 +137,8 @@ void savePublic(const std::string& key, const std::string& output) {
     save(output, {digits.begin(), digits.end()});
 }
 
-// Parses a version: digits only. (std::stoull also accepts spaces and a sign.)
+// Converts a version number; only digits are allowed. (std::stoull would also accept spaces and a
+// sign.)
 uint32_t versionOf(const std::string& text) {
     const bool isNumber = !text.empty() && text.size() <= 10 &&
                           text.find_first_not_of("0123456789") == std::string::npos;
@@ -154,7 +156,7 @@ Bytes signedHeader(const Slots_Header& header, const Keys& keys) {
     return bytes;
 }
 
-// Returns a signed list of one or two public keys.
+// Returns a signed list that contains one or two public keys.
 Bytes listOf(const std::vector<Bytes>& open, uint32_t number, const Keys& signer) {
     Slots_Header list{};
     list.magic = SLOTS_MAGIC;
@@ -167,7 +169,7 @@ Bytes listOf(const std::vector<Bytes>& open, uint32_t number, const Keys& signer
     return signedHeader(list, signer);
 }
 
-// Returns the signed header of an image for a slot, and the image.
+// Returns the signed header for an image in a slot, and the image.
 std::pair<Bytes, Bytes> sign(const Bytes& image, const Slots_Layout& layout, uint32_t slot,
                              uint32_t product, uint32_t version, const Keys& keys) {
     Slots_Header header{};
@@ -195,24 +197,24 @@ std::pair<Bytes, Bytes> sign(const ElfImage& elf, uint32_t slot, uint32_t versio
 
 constexpr uint8_t sync[] = {0xAA, 0x99, 0x55, 0x66};
 
-// Reads the words of a bitstream after its sync word (UG380, tables 5-23 to 5-30).
+// Reads the words of a bitstream that follow its sync word (UG380, tables 5-23 to 5-30).
 class Packets {
 public:
     Packets(const Bytes& file, size_t at) : file_(file), at_(at) {}
-    // Skips to the end of the last packet, the command DESYNC. Returns false if the packet is
-    // missing.
+    // Skips to the end of the last packet, which is the command DESYNC. Returns false if this
+    // packet is missing.
     bool toDesync() {
         while (at_ + 2 <= file_.size()) {
             const uint32_t head = word(), type = head >> 13, reg = head >> 5 & 63;
             if (type == 1 && (head >> 11 & 3) == 0)
-                continue; // a no-operation word
+                continue; // skips a no-operation word
             if ((type != 1 && type != 2) || (head >> 11 & 3) != write)
                 return false;
             size_t words = head & 31;
             if (type == 2)
                 words = size_t{word()} << 16 | word();
             if (reg == fdri)
-                words += 2; // the packet has two more words: its CRC
+                words += 2; // this packet has two more words, which contain its CRC
             if (words > (file_.size() - std::min(at_, file_.size())) / 2)
                 return false;
             const bool isCommand = type == 1 && reg == cmd && words == 1;
@@ -222,7 +224,7 @@ public:
         }
         return false;
     }
-    // Returns how many bytes follow, except no-operation words and erased flash.
+    // Returns the number of bytes that follow, not counting no-operation words and erased flash.
     size_t rest() {
         size_t end = file_.size();
         while (at_ + 2 <= end && file_[at_] == 0x20 && file_[at_ + 1] == 0)
@@ -243,8 +245,8 @@ private:
     size_t at_;
 };
 
-// Throws if a bitstream is incomplete or has bytes after its end. An incomplete bitstream would
-// hang a vehicle's FPGA, and BitGen appends no bytes.
+// Throws if a bitstream is incomplete, or if other bytes follow it. With an incomplete bitstream,
+// the vehicle's FPGA would hang. BitGen appends no bytes.
 void checkWhole(const std::string& path, const Bytes& file, size_t at) {
     Packets packets(file, at);
     if (!packets.toDesync())
@@ -257,7 +259,7 @@ void checkWhole(const std::string& path, const Bytes& file, size_t at) {
              " bytes after the end of the bitstream: expected none");
 }
 
-// Throws if a .bit file has more or fewer bytes than field 'e' of its header states (the format of
+// Throws if the number of bytes in a .bit file differs from field 'e' in its header (the format of
 // Xilinx's BitGen).
 void checkHeader(const std::string& path, const Bytes& file) {
     const auto number = [&](size_t at, size_t bytes) {
@@ -279,8 +281,8 @@ void checkHeader(const std::string& path, const Bytes& file) {
              " bytes of bitstream, as its header states, got " + std::to_string(follow));
 }
 
-// Reads a bitstream, starting SLOTS_SYNC_AT bytes before its sync word. The sync word is left out;
-// the vehicle adds it.
+// Reads a bitstream, from SLOTS_SYNC_AT bytes before its sync word. The sync word is replaced by
+// erased flash; the vehicle writes it later.
 Bytes readBitstream(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
     const Bytes file((std::istreambuf_iterator<char>(in)), {});
@@ -309,13 +311,14 @@ void packBitstream(const std::string& path, uint32_t version, const std::string&
     save(output, header);
 }
 
-// The header at address 0 makes the FPGA load slot 1, and slot 0 if that fails (UG380, chapter 7).
+// Writes the contents of the FPGA's flash for a new vehicle. The header at address 0 makes the FPGA
+// load slot 1; if this fails, the FPGA loads slot 0 (UG380, chapter 7).
 void fillFpga(const std::string& path, uint32_t version, const std::string& key,
               const std::string& output) {
     Bytes flash(2 << 20, 0xFF);
     const uint32_t slots[2] = {Slots_at(&slots_fpga, 0), Slots_at(&slots_fpga, 1)},
                    next = slots[1] + SLOTS_IMAGE_AT, golden = slots[0] + SLOTS_IMAGE_AT,
-                   read = 0x0300;                          // read instruction of the flash
+                   read = 0x0300;                          // command of the flash that reads
     const uint32_t words[] = {0xAA99, 0x5566,              // sync word
                               0x3261, next & 0xFFFF,       // GENERAL1
                               0x3281, read | next >> 16,   // GENERAL2

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * without_fleet: a vehicle with only one ground station (ICESOC_FLEET=OFF), without observer, other
- * vehicle or calls to all vehicles.
+ * without_fleet: functions for a vehicle with only one ground station (ICESOC_FLEET=OFF): no
+ * observer, no other vehicle, no calls to all vehicles.
  */
 #include "uav_fleet.h"
 #include "uav_links.h"

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * without_keys: a vehicle without keys (ICESOC_KEYS=OFF), whose links are not encrypted. It starts
- * only if it was opened explicitly (provision.h), so that a vehicle with a key never flies
- * unprotected.
+ * without_keys: functions for a vehicle without keys (ICESOC_KEYS=OFF), whose links are not
+ * encrypted. The vehicle starts only if it was explicitly opened (provision.h), so that a vehicle
+ * that had a key never flies unprotected.
  */
 #include "uav_keyring.h"
 #include "uav_keys.h"

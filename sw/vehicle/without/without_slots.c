@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * without_slots: firmware without updates (ICESOC_UPDATE=OFF). The FPGA loads its bitstream by
- * itself.
+ * without_slots: functions for firmware without updates (ICESOC_UPDATE=OFF). The FPGA loads its
+ * bitstream without help of the processor.
  */
 #include "firmware_slots.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * without_update: a vehicle without updates over the air (ICESOC_UPDATE=OFF).
+ * without_update: functions for a vehicle without updates over the air (ICESOC_UPDATE=OFF).
  */
 #include "uav_update.h"
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// apb_rules: properties of an APB requester (ARM IHI 0024, 3.1 to 3.4, 4.1).
+// apb_rules: checks the rules for an APB requester (ARM IHI 0024, 3.1 to 3.4, 4.1) as formal
+// properties.
 //
-// The completer is unconstrained: PREADY may be high at any time, including the set-up phase.
+// The completer may do anything: PREADY may be high at any time, even in the set-up phase.
 
 `default_nettype none
 
@@ -18,16 +19,18 @@ module apb_rules #(
     input wire [31:0]           pwdata_i,
     input wire [3:0]            pstrb_i,
     input wire                  pready_i,
-    input wire                  abort_i // the requester may abandon the transfer in the next clock
+    // the requester may end the transfer before PREADY, in the next clock
+    input wire                  abort_i
 );
     reg past = 1'b0;
     always @(posedge clk_i) begin
         past <= past || rst_i;
         if (past && !rst_i && !$past(rst_i)) begin
-            // A set-up phase of one clock, then the access phase, which lasts until PREADY.
+            // A transfer has a set-up phase of one clock, then an access phase that lasts until
+            // PREADY.
             assert (psel_i || !penable_i);
             assert (!penable_i || $past(psel_i));
-            assert (!psel_i || pwrite_i || pstrb_i == 4'd0); // no strobe in a read
+            assert (!psel_i || pwrite_i || pstrb_i == 4'd0); // PSTRB is 0 in a read
             if ($past(psel_i && !abort_i && !(penable_i && pready_i))) begin
                 assert (psel_i && penable_i);
                 assert (pwrite_i == $past(pwrite_i) && paddr_i == $past(paddr_i));
@@ -35,7 +38,7 @@ module apb_rules #(
             end
             if ($past(psel_i && penable_i && pready_i))
                 assert (!penable_i);
-            // No transfer ends before its access phase.
+            // No transfer ends before it has reached its access phase.
             if ($past(psel_i && !penable_i))
                 assert (psel_i);
         end

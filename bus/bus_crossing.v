@@ -3,12 +3,13 @@
 // bus_crossing: connects a slot to a core in a separate clock domain: accesses, interrupt and reset
 // cross through hdl/cdc.
 //
-// An access takes four to five clocks of the core, and six of the chip. If the core does not answer
-// within TIMEOUT clocks, because its clock has stopped or it hangs, the access ends with an error.
-// The core may still perform it later; until it has answered, all other accesses end with an error,
-// and the interrupt line is low. core_valid_o falls only by core_ready_i or a reset of the core.
-// The handshake has no reset, so a reset of either side neither creates nor loses a request.
-// Constraints: as for cdc_bus, cdc_bit and cdc_reset; coremap writes them for each such core.
+// An access takes four to five clocks of the core and six clocks of the chip. If the core does not
+// answer within TIMEOUT clocks, because its clock has stopped or it hangs, the access ends with an
+// error. The core may still perform this access later. Until the core has answered, all other
+// accesses end with an error, and the interrupt line is low. core_valid_o falls only when
+// core_ready_i is high or the core is reset. The handshake has no reset, so a reset of either side
+// neither creates nor loses a request. Constraints: those of cdc_bus, cdc_bit and cdc_reset;
+// coremap writes them for each core with a separate clock.
 
 `default_nettype none
 
@@ -17,7 +18,7 @@ module bus_crossing #(
 ) (
     `include "slot_ports.vh"
     output wire        irq_o,
-    // the core's clock, and the signals of the slot in this clock domain
+    // clock of the core, and the signals of the slot in this clock domain
     input  wire        core_clk_i,
     output wire        core_rst_o,
     output wire        core_valid_o,
@@ -30,11 +31,12 @@ module bus_crossing #(
     input  wire        core_irq_i
 );
     // ---- clk_i
-    reg       owes;     // a request was sent to the core, and the core has not answered yet
-    reg       asked;    // the current access has sent the request that is pending
-    // the answer arrived one clock ago: an interrupt that the access has ended is low by now
+    reg       owes;     // a request was sent to the core and has not been answered yet
+    reg       asked;    // the current access has sent its request
+    // the answer arrived one clock ago; if the access has ended an interrupt, the interrupt line is
+    // low by now
     reg       answered;
-    reg       deaf;     // the last access timed out, and the core has not answered yet
+    reg       deaf;     // an earlier access timed out, and the core has not answered it yet
     reg [7:0] patience;
     wire      handed, irq, error;
     wire [31:0] rdata;
@@ -86,23 +88,23 @@ module bus_crossing #(
     cdc_copy #(.WIDTH(33))
         u_answer (.clk_i(clk_i), .bus_async_i(answer), .bus_sync_o({error, rdata}));
     cdc_bit u_irq (.clk_i(clk_i), .bit_async_i(core_irq), .bit_sync_o(irq));
-    reg rst; // a flip-flop, because an asynchronous reset must be free of glitches
+    reg rst; // a flip-flop, because an asynchronous reset must have no glitches
     initial rst = 1'b1;
     always @(posedge clk_i) rst <= rst_i;
     cdc_reset u_rst (.clk_i(core_clk_i), .rst_async_i(rst), .rst_o(core_rst_o));
     wire unused = &{1'b0, request_kept, pending, 1'b0};
 
 `ifdef FORMAL
-    // The slot never hangs the bus, whatever the core clock does. The proof removes the crossings,
-    // so that answers arrive at any time after their request, or never. The proof of cdc_bus shows
-    // that a request and an answer arrive exactly once and complete. The core side is proven in
-    // bus_crossing_core.
+    // Proves that the slot never hangs the bus, whatever the clock of the core does. For this proof
+    // the crossings are removed, so that an answer arrives at any time after its request, or never.
+    // The proof of cdc_bus shows that each request and each answer arrives exactly once and
+    // complete. bus_crossing_core is proven separately.
     bus_rules #(.LIMIT(TIMEOUT + 1), .PATIENCE(TIMEOUT + 2)) u_rules (
         .clk_i(clk_i), .rst_i(rst_i), .valid_i(bus_valid_i), .write_i(bus_write_i),
         .addr_i({6'd0, bus_addr_i}), .wdata_i(bus_wdata_i), .ready_i(bus_ready_o),
         .rdata_i(bus_rdata_o), .error_i(bus_error_o));
     reg past = 1'b0;
-    reg [15:0] used = 16'd0; // number of clocks the access has waited before this one
+    reg [15:0] used = 16'd0; // number of clocks for which the access has waited before this clock
     initial assume (rst_i);
     always @(posedge clk_i) begin
         past <= 1'b1;
@@ -113,14 +115,14 @@ module bus_crossing #(
         cover (bus_valid_i && bus_ready_o && !bus_error_o && !rst_i);
     end
     always @* begin
-        assume (!handed || owes); // answers follow requests only
+        assume (!handed || owes); // an answer comes only after a request
         if (!rst_i) begin
             assert (patience + used == TIMEOUT);
             assert (!ask || !owes);                          // one request at a time
-            // a waiting access has a request without an answer
+            // if an access waits, its request has not been answered yet
             assert (!asked || owes || answered);
             assert (!answered || !owes);
-            // Each access that succeeds has an answer to its request, and to no other.
+            // An access succeeds only with the answer to its own request.
             assert (!(bus_valid_i && bus_ready_o && !bus_error_o) || asked);
         end
     end

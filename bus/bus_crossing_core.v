@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_crossing_core: core side of bus_crossing; carries out each request as one access to the core,
-// and keeps the answer until the next access ends.
+// bus_crossing_core: the part of bus_crossing in the core's clock domain. It carries out each
+// request as one access to the core, and keeps the answer until the next access ends.
 //
-// A reset of the core ends the access with an error. Requests do not overlap: the next one arrives
-// after ended_o of the previous one.
+// A reset of the core ends the access with an error. Requests do not overlap: the next request
+// comes after ended_o of the previous one.
 
 `default_nettype none
 
 module bus_crossing_core (
-    input  wire        clk_i,  // the core's clock
-    input  wire        rst_i,  // may begin at any time, ends with clk_i
-    // request and answer
+    input  wire        clk_i,  // clock of the core
+    input  wire        rst_i,  // reset, which may begin at any time and ends synchronously to clk_i
+    // request and answer; begins_i is high for one cycle
     input  wire        begins_i, // one cycle
-    output wire        ended_o,  // one cycle, one clock after the access
-    output reg  [32:0] answer_o, // error and data, valid with ended_o
-    output reg         irq_o,    // a flip-flop, because a glitch of a LUT must not cross
+    output wire        ended_o,  // high for one cycle, one clock after the access
+    output reg  [32:0] answer_o, // error and data of the access, valid with ended_o
+    // comes from a flip-flop, because a glitch must not reach the other clock domain
+    output reg         irq_o,
     // core
     output wire        core_valid_o,
     input  wire        core_ready_i,
@@ -30,7 +31,8 @@ module bus_crossing_core (
     assign ended_o      = ended;
     always @(posedge clk_i) begin
         busy  <= begins_i || (busy && !ends);
-        ended <= ends; // one clock after the access takes effect on the interrupt
+        // high one clock after the access, because core_irq_i then shows the effect of the access
+        ended <= ends;
         irq_o <= core_irq_i;
         if (ends)
             answer_o <= {core_error_i || rst_i, core_rdata_i};
@@ -41,8 +43,9 @@ module bus_crossing_core (
         .clk_i(clk_i), .rst_i(rst_i), .valid_i(core_valid_o), .write_i(1'b0), .addr_i(10'd0),
         .wdata_i(32'd0), .ready_i(core_ready_i), .rdata_i(core_rdata_i), .error_i(core_error_i));
     reg        past = 1'b0, open = 1'b0; // open: a request has not been answered yet
-    reg        known = 1'b0, done = 1'b0; // known: an access has ended; done: in the last clock
-    reg [32:0] answer;                    // its error and data
+    // known: an access has ended; done: an access ended in the last clock
+    reg        known = 1'b0, done = 1'b0;
+    reg [32:0] answer;                    // error and data of the access that ended last
     wire       completes = core_valid_o && core_ready_i;
     always @(posedge clk_i) begin
         past  <= 1'b1;
@@ -54,12 +57,13 @@ module bus_crossing_core (
         assume (!begins_i || !open);
     end
     always @* begin
-        // Each request is one access and has one answer.
+        // Each request leads to one access and one answer.
         assert (open == (busy || ended));
         assert (!(busy && ended));
         assert (!core_valid_o || open);
         assert (ended_o == done);
-        // The answer is the core's, or an error of the reset. It is stable until the next access.
+        // The answer is that of the core, or an error if the core was reset. It is stable until the
+        // next access ends.
         assert (!known || answer_o == answer);
         assert (known || !ended_o);
         cover (ended_o && !answer_o[32] && answer_o[31:0] == 32'd5);

@@ -2,10 +2,10 @@
 //
 // bus_decoder: connects the master of the register bus to SLOTS slots of 16 words (docs/bus.md).
 //
-// The master presents address and direction one clock before valid, so they are decoded into
-// registers: no path leads from the master's address through a slot. Each slot has a separate word
-// address, 0 while it is not selected, because a common one would have hundreds of loads. Slots
-// above SLOTS-1 answer at once with error and data 0.
+// The master presents address and direction one clock before valid, and the decoder stores them in
+// registers, so no path leads from the master's address through a slot. Each slot has its own word
+// address, which is 0 while the slot is not selected; a common word address would have hundreds of
+// loads. An access to a slot above SLOTS-1 ends at once with an error and data 0.
 
 `default_nettype none
 
@@ -16,12 +16,12 @@ module bus_decoder #(
     // master
     input  wire                bus_valid_i,
     input  wire                bus_write_i,
-    input  wire [9:0]          bus_addr_i, // slot * 16 + word
+    input  wire [9:0]          bus_addr_i, // 16 times the slot, plus the word
     input  wire [31:0]         bus_wdata_i,
     output wire                bus_ready_o,
     output wire [31:0]         bus_rdata_o,
     output wire                bus_error_o,
-    // slots: 1, 4 or 32 bits per slot, slot 0 in the lowest bits
+    // slots: 1, 4 or 32 bits for each slot, with slot 0 in the lowest bits
     output wire [SLOTS-1:0]    slot_valid_o,
     output wire                slot_write_o,
     output reg  [4*SLOTS-1:0]  slot_addr_o,
@@ -44,9 +44,9 @@ module bus_decoder #(
         write  <= bus_write_i;
     end
 
-    // With up to three slots, the answers are combined by AND and OR, one LUT per bit. With more,
-    // each group of eight slots has an 8:1 multiplexer (two LUTs and a MUXF7 per bit), and the
-    // groups are combined by AND and OR. Zeros fill the last group.
+    // With up to three slots, AND and OR combine the answers, one LUT per bit. With more slots,
+    // each group of eight slots has an 8:1 multiplexer (two LUTs and a MUXF7 per bit), and AND and
+    // OR combine the groups. The last group is filled with zeros.
     generate
         if (SLOTS < 4) begin : g_few
             reg [31:0] rdata;
@@ -60,10 +60,11 @@ module bus_decoder #(
         end else begin : g_many
             localparam GROUPS = (SLOTS + 7) / 8;
             reg [2:0]            index;
-            // one bit per group: it is selected; a single incomplete group is always selected
+            // one bit per group that is selected; if there is only one group and it is incomplete,
+            // it is always selected
             reg [GROUPS-1:0]     group;
-            reg [256*GROUPS-1:0] left;  // each bit of the slot number halves the candidates of each
-                                        // group
+            // candidates of each group; each bit of the slot number halves their number
+            reg [256*GROUPS-1:0] left;
             reg [31:0]           rdata;
             integer g, b, i;
             always @(posedge clk_i) begin
@@ -94,11 +95,11 @@ module bus_decoder #(
     assign bus_error_o  = !mapped || |(selected & slot_error_i);
 
 `ifdef FORMAL
-    // The rules of the master are assumed. The registers here depend only on the previous clock, so
-    // the properties hold for all inputs.
+    // The rules for the master are assumed. The registers here depend only on the inputs of the
+    // previous clock, so the properties hold for all inputs.
     reg             past = 1'b0;
-    reg [10:0]      shown; // address and direction presented one clock ago
-    reg [SLOTS-1:0] one;   // any one slot, one-hot
+    reg [10:0]      shown; // address and direction that were presented one clock ago
+    reg [SLOTS-1:0] one;   // one slot that the prover chooses, one-hot
     integer k;
     always @(posedge clk_i) begin
         past  <= 1'b1;

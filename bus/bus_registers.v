@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_registers: a complete slot of 16 words, described by parameters: the three words of the
-// wrapper, then the words of the block.
+// bus_registers: implements a complete slot of 16 words that is described by parameters: the three
+// words of the wrapper, and the words of the block.
 //
-// For words 3..15, one mask per kind selects the words of that kind. A word has at most one kind; a
-// word without a kind answers with an error. WIDTHS has 6 bits per word: bits above a word's width
-// read as 0 and have no storage.
-//   RW   value_o holds the written value; reset to 0
-//   RO   reads value_i
-//   W1C  bits set by value_i stay until 1 is written to them; a bit that is set while it is cleared
-//        stays set
-//   WS   a write acts through strobe_o and wdata_o; reads give 0, nothing is stored
-// strobe_o marks each write to a word in the cycle of the write, when wdata_o is valid and value_o
-// still has the old value. Word w is at bit 32*(w-3) of the vectors, and at bit w-3 of strobe_o.
+// Each kind of word has a mask with one bit for each of the words 3..15. A word has at most one
+// kind; an access to a word without a kind is an error. WIDTHS has 6 bits for each word: bits above
+// this width read as 0 and are not stored.
+//   RW   value_o is the written value; a reset sets it to 0
+//   RO   a read returns value_i
+//   W1C  bits that value_i sets stay set until 1 is written to them; a bit that is set and cleared
+//        at the same time stays set
+//   WS   a write only acts through strobe_o and wdata_o; a read returns 0
+// strobe_o is high for each write to a word, in the cycle of the write. wdata_o is then valid, and
+// value_o still has the old value. Word w is at bit 32*(w-3) of the vectors and at bit w-3 of
+// strobe_o.
 
 `default_nettype none
 
@@ -23,7 +24,7 @@ module bus_registers #(
     parameter [15:0] RO       = 16'h0000,
     parameter [15:0] W1C      = 16'h0000,
     parameter [15:0] WS       = 16'h0000,
-    parameter [95:0] WIDTHS   = {16{6'd32}} // word w: bits 6w+5..6w, 1..32
+    parameter [95:0] WIDTHS   = {16{6'd32}} // width of word w in bits 6w+5..6w, 1..32
 ) (
     `include "slot_ports.vh"
     // the block
@@ -31,7 +32,7 @@ module bus_registers #(
     input  wire [32*13-1:0]  value_i,
     output wire [12:0]       strobe_o,
     output wire [31:0]       wdata_o,
-    input  wire [EVENTS-1:0] event_i, // events, high for one cycle each
+    input  wire [EVENTS-1:0] event_i, // events; each is high for one cycle
     output wire              irq_o
 );
     wire        reg_write, reg_read;
@@ -45,7 +46,7 @@ module bus_registers #(
         .event_i(event_i), .irq_o(irq_o)
     );
 
-    wire [32*13-1:0] shown; // value that a read of each word returns
+    wire [32*13-1:0] shown; // values that reads of the words return
     genvar w;
     generate
         for (w = 3; w < 16; w = w + 1) begin : g_word
@@ -123,7 +124,7 @@ module bus_registers #(
             end
         end
     endgenerate
-    // EVENT and MASK.
+    // The registers EVENT and MASK.
     reg  [EVENTS-1:0] seen, masked;
     wire [EVENTS-1:0] cleared = {EVENTS{bus_valid_i && bus_write_i && bus_addr_i == 4'd1}} &
         bus_wdata_i[EVENTS-1:0];

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_rules: the contract of docs/bus.md as properties, for either side of the register bus.
+// bus_rules: checks the rules of docs/bus.md as formal properties, for either side of the register
+// bus.
 //
-// Instantiated under `ifdef FORMAL at the ports of a slave (default) or of a master. The rules for
-// the other side are assumed, the rules for this side are asserted.
+// A module instantiates it under `ifdef FORMAL at its ports as a slave (default) or as a master.
+// The rules for the other side are assumed; the rules for the module's own side are asserted.
 
 `default_nettype none
 
 module bus_rules #(
-    parameter MASTER   = 0,   // 1: the instance is in a master
-    parameter LIMIT    = 16,  // clocks within which a slave answers, at least 1
-    parameter PATIENCE = 256  // clocks after which a master may abandon an access
+    parameter MASTER   = 0,   // 1: the rules for a master are asserted; 0: those for a slave
+    parameter LIMIT    = 16,  // number of clocks within which a slave must answer, at least 1
+    parameter PATIENCE = 256  // number of clocks after which a master may abandon an access
 ) (
     input wire        clk_i,
     input wire        rst_i,
@@ -24,14 +25,15 @@ module bus_rules #(
 );
 `ifdef FORMAL
     reg        past   = 1'b0;
-    reg [15:0] waited = 16'd0; // number of clocks for which valid has waited before this one
+    // number of clocks for which valid has been high without ready before this clock
+    reg [15:0] waited = 16'd0;
     always @(posedge clk_i) begin
         past   <= 1'b1;
         waited <= valid_i && !ready_i && !rst_i ? waited + (waited != 16'hFFFF) : 16'd0;
     end
 
-    reg waiting = 1'b0; // valid was high in the previous clock, and ready was not
-    reg ended   = 1'b0; // a transfer happened in the clock before
+    reg waiting = 1'b0; // high if valid was high in the previous clock and ready was low
+    reg ended   = 1'b0; // high if a transfer happened in the previous clock
     reg        write_was;
     reg [9:0]  addr_was;
     reg [31:0] wdata_was;
@@ -42,20 +44,23 @@ module bus_rules #(
         addr_was  <= addr_i;
         wdata_was <= wdata_i;
     end
-    // Hint for induction: the counter and the flag agree.
+    // A relation that the prover needs for induction: counter and flag agree.
     always @*
         assert (waiting == (waited != 16'd0));
 
-    // Master: a waiting transfer does not change; it is withdrawn only after PATIENCE clocks.
+    // Rule for the master: a transfer that waits does not change, and it is withdrawn only after
+    // PATIENCE clocks.
     wire stable    = !waiting || !valid_i
                      || (write_i == write_was && addr_i == addr_was &&
                          (!write_i || wdata_i == wdata_was));
-    // The address and the direction precede valid by one clock, because the decoder registers them.
+    // Address and direction are valid one clock before valid, because the decoder stores them in
+    // registers.
     wire early     = !valid_i || !past || (addr_i == addr_was && write_i == write_was);
-    // Valid is low between two transfers, because a write may take a clock to take effect.
+    // Valid is low for a clock between two transfers, because a write may take effect one clock
+    // later.
     wire paused    = !valid_i || !ended;
     wire withdrawn = waiting && !valid_i && waited < PATIENCE;
-    // Slave: answers in time; an error has data 0.
+    // Rule for the slave: it answers in time, and the data of an error is 0.
     wire late      = valid_i && !ready_i && waited >= LIMIT - 1;
     wire leaking   = valid_i && ready_i && error_i && !write_i && rdata_i != 32'd0;
 
@@ -67,7 +72,7 @@ module bus_rules #(
                 assert (paused);
                 assert (!withdrawn);
                 assume (!leaking);
-                // A slave may hang, so an assumption does not exclude `late`.
+                // `late` is not excluded by an assumption, because a slave may hang.
             end
         end else begin : g_slave
             always @* if (!rst_i) begin

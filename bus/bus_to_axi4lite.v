@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_to_axi4lite: slot with a 32-bit AXI4-Lite master (ARM IHI 0022, chapter B1), for a core with
-// an AXI4-Lite slave. Words and events: bus_window.v.
+// bus_to_axi4lite: connects a slot to a core with an AXI4-Lite slave; it is a 32-bit AXI4-Lite
+// master (ARM IHI 0022, chapter B1). bus_window.v describes the words and events.
 //
-// One transfer at a time. AXI transfers cannot be abandoned: after a time-out the handshakes
-// continue until the late response has arrived and is discarded. Accesses until then wait, and time
-// out.
+// There is one transfer at a time. An AXI transfer cannot be abandoned: after a time-out the
+// handshakes continue until the late response arrives, which is then discarded. Accesses before
+// that wait, and may time out too.
 
 `default_nettype none
 
 module bus_to_axi4lite #(
     parameter [31:0] ID_VALUE   = 32'd0,
-    parameter        ADDR_WIDTH = 12,  // width of the core's byte addresses, 3..32
-    parameter        TIMEOUT    = 255  // time-out in clocks, 1..255
+    parameter        ADDR_WIDTH = 12,  // width of a byte address in the core, 3..32
+    parameter        TIMEOUT    = 255  // time-out, clocks, 1..255
 ) (
     `include "slot_ports.vh"
     output wire                  irq_o,
@@ -36,13 +36,14 @@ module bus_to_axi4lite #(
     output wire                  axi_rready_o,
     input  wire [31:0]           axi_rdata_i,
     input  wire [1:0]            axi_rresp_i,
-    input  wire                  irq_i // interrupt line of the core, a level in clk_i
+    // interrupt line of the core, a level in the clock domain clk_i
+    input  wire                  irq_i
 );
     wire busy, write;
     wire [ADDR_WIDTH-1:0] addr;
     wire [31:0] wdata;
     reg  [ADDR_WIDTH-1:2] address;
-    reg  open; // a transfer has begun and its response has not arrived; no other access starts
+    reg  open; // a transfer has begun and its response has not arrived, so no other access starts
 
     wire response = (axi_bvalid_i && axi_bready_o) || (axi_rvalid_i && axi_rready_o);
 
@@ -89,13 +90,14 @@ module bus_to_axi4lite #(
 
     wire unused = &{1'b0, addr[1:0], axi_bresp_i[0], axi_rresp_i[0], 1'b0};
 
-`ifdef RULES // included for proofs and for tests of cores
-    // Handshakes of AXI4-Lite as properties of a master (ARM IHI 0022, A3.1-A3.3, B1.1). The slave
-    // is assumed to use all its freedom: ready before, with or after valid, and a response at any
-    // later time, or never.
+`ifdef RULES // the rules are included in proofs and in tests of cores
+    // The handshakes of AXI4-Lite as properties of a master (ARM IHI 0022, A3.1-A3.3, B1.1). The
+    // slave is assumed to do anything that the standard allows: ready comes before, together with
+    // or after valid, and the response comes at any later time or never.
     reg past = 1'b0;
     reg aw_taken = 1'b0, w_taken = 1'b0, ar_taken = 1'b0;
-    wire write_open = aw_taken && w_taken; // address and data taken, no response yet
+    // the slave has taken address and data, and has not responded yet
+    wire write_open = aw_taken && w_taken;
     always @(posedge clk_i) begin
         past     <= past || rst_i;
         aw_taken <= !rst_i &&
@@ -107,14 +109,15 @@ module bus_to_axi4lite #(
     end
 `ifdef FORMAL
     always @* if (!rst_i) begin
-`else // in simulation the checks are clocked, because combinational signals have glitches
+// in simulation the checks are made at clock edges, because combinational signals have glitches
+`else
     always @(posedge clk_i) if (past && !rst_i) begin
 `endif
-        // Master: at most one write and one read at a time.
+        // Master: at most one write and one read are in progress.
         assert (!(axi_awvalid_o && aw_taken));
         assert (!(axi_wvalid_o && w_taken));
         assert (!(axi_arvalid_o && ar_taken));
-        // Slave (A3.3.1): responds only after it has taken the complete transfer.
+        // Slave (A3.3.1): it responds only after it has taken the complete transfer.
         assume (!axi_bvalid_i || write_open);
         assume (!axi_rvalid_i || ar_taken);
     end
@@ -122,7 +125,7 @@ module bus_to_axi4lite #(
         if (past && $past(rst_i)) // A3.1.2: valid is low after a reset
             assert (!axi_awvalid_o && !axi_wvalid_o && !axi_arvalid_o);
         if (past && !rst_i && !$past(rst_i)) begin
-            // A3.2.1: once valid is high, it stays high and the payload is stable until ready
+            // A3.2.1: once valid is high, valid and the payload stay unchanged until ready
             if ($past(axi_awvalid_o && !axi_awready_i))
                 assert (axi_awvalid_o && axi_awaddr_o == $past(axi_awaddr_o));
             if ($past(axi_wvalid_o && !axi_wready_i))
@@ -138,7 +141,7 @@ module bus_to_axi4lite #(
     end
 `endif
 `ifdef FORMAL
-    // Each answered access had one transfer, and was answered with the core's response.
+    // Each access that succeeds has had exactly one transfer, and returns the core's response.
     wire window = bus_valid_i && bus_addr_i[3] && bus_ready_o && !bus_error_o;
     always @* if (!rst_i && window) begin
         assert (open && address[4:2] == bus_addr_i[2:0]);
@@ -146,14 +149,14 @@ module bus_to_axi4lite #(
                             : axi_rvalid_i && !axi_rresp_i[1] && bus_rdata_o == axi_rdata_i);
         assert (bus_write_i ? write_open : ar_taken);
     end
-    always @* begin // accesses to a data word write complete words
+    always @* begin // an access to a data word writes the complete word
         assert (axi_wstrb_o == 4'hF && {axi_awprot_o, axi_arprot_o} == 6'd0);
         assert ({axi_awaddr_o[1:0], axi_araddr_o[1:0]} == 4'd0);
         if (!rst_i && bus_valid_i && bus_addr_i[3] && busy && open &&
             (bus_write_i ? axi_bvalid_i : axi_rvalid_i))
             assert (bus_ready_o); // the first response ends the access
     end
-    reg was_late = 1'b0; // a late response has been discarded
+    reg was_late = 1'b0; // high after a late response has been discarded
     always @(posedge clk_i)
         was_late <= !rst_i && (was_late || (!busy && response));
     always @* if (!rst_i) begin

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_window: slot side of an adapter for a third-party core; shows eight words of the core at a
+// bus_window: the slot of an adapter for a third-party core; it shows eight words of the core at a
 // time.
 //
 //   0..2  ID, EVENT, MASK (bus_wrapper); EVENT bit 0: the core's interrupt line was high,
 //         bit 1: TIMEOUT, the core did not answer
-//   3     PAGE rw: byte address in the core of word 8, a multiple of 32. If the core has eight
-//         words or fewer, PAGE is 0 and the words repeat
+//   3     PAGE rw: byte address in the core that word 8 accesses, a multiple of 32. If the core has
+//         at most eight words, PAGE is always 0 and the words repeat
 //   8..15 words of the core at PAGE + 0, 4, .. 28
 //
 // If the core does not answer within TIMEOUT clocks, or answers with an error, the access ends with
@@ -17,12 +17,13 @@
 
 module bus_window #(
     parameter [31:0] ID_VALUE   = 32'd0,
-    parameter        ADDR_WIDTH = 12,  // width of the core's byte addresses, 3..32
-    parameter        TIMEOUT    = 255  // time-out in clocks, 1..255
+    parameter        ADDR_WIDTH = 12,  // width of a byte address in the core, 3..32
+    parameter        TIMEOUT    = 255  // time-out, clocks, 1..255
 ) (
     `include "slot_ports.vh"
     output wire                  irq_o,
-    // to the adapter: busy_o stays high, and the other outputs stable, until done_i or the time-out
+    // to the adapter: busy_o stays high, and the other outputs stay stable, until done_i is high or
+    // the access times out
     input  wire                  idle_i,
     output reg                   busy_o,
     output wire                  write_o,
@@ -31,13 +32,14 @@ module bus_window #(
     input  wire                  done_i,
     input  wire                  error_i,
     input  wire [31:0]           rdata_i,
-    // the core's interrupt line, a level of clk_i
+    // interrupt line of the core, a level in the clock domain clk_i
     input  wire                  irq_i
 );
     generate
         if (ADDR_WIDTH < 3 || ADDR_WIDTH > 32 || TIMEOUT < 1 || TIMEOUT > 255) begin : g_refused
-`ifdef VERILATOR // as in npi_arbiter: $error for Verilator, the name of an unknown module for
-                 // others
+// reports an error as npi_arbiter does: $error for Verilator and Yosys, the name of an unknown
+// module for other tools
+`ifdef VERILATOR
             $error("bus_window: ADDR_WIDTH is 3..32, TIMEOUT 1..255");
 `elsif YOSYS
             $error("bus_window: ADDR_WIDTH is 3..32, TIMEOUT 1..255");
@@ -48,7 +50,7 @@ module bus_window #(
     endgenerate
 
     localparam [3:0] PAGE = 4'd3;
-    localparam WIDTH = ADDR_WIDTH > 5 ? ADDR_WIDTH : 6; // at least one page, which has 32 bytes
+    localparam WIDTH = ADDR_WIDTH > 5 ? ADDR_WIDTH : 6; // width for at least one page of 32 bytes
 
     wire        own_ready, own_error, reg_write, reg_read;
     wire [31:0] own_rdata;
@@ -113,7 +115,7 @@ module bus_window #(
         .addr_i({6'd0, bus_addr_i}), .wdata_i(bus_wdata_i), .ready_i(bus_ready_o),
         .rdata_i(bus_rdata_o), .error_i(bus_error_o));
     reg past = 1'b0;
-    reg [15:0] used = 16'd0; // number of clocks the access has waited before this one
+    reg [15:0] used = 16'd0; // number of clocks for which the access has waited before this clock
     (* hierconn *) wire [1:0] \u_wrapper.event_i ;
     wire answered = busy_o && done_i;
     always @(posedge clk_i)
@@ -135,15 +137,15 @@ module bus_window #(
         cover (past && !rst_i && given_up && answered && !error_i);
     end
     always @* if (!rst_i) begin
-        assert (!busy_o || wanted);          // a request to the adapter never lasts longer than the
-                                             // access
+        // a request to the adapter does not last longer than the access
+        assert (!busy_o || wanted);
         assert (patience + used == TIMEOUT);
         if (bus_valid_i && !bus_write_i && bus_addr_i == PAGE)
             assert (bus_rdata_o == page_value);
         assert (!busy_o ||
                 (write_o == bus_write_i && addr_o == {page, bus_addr_i[2:0], 2'b00} &&
                  wdata_o == bus_wdata_i));
-        // An access ends with the core's answer, which may be an error, or with the time-out, which
+        // An access ends with the core's answer, which may be an error, or with a time-out, which
         // sets an event.
         if (wanted) begin
             assert (bus_ready_o == (answered || used == TIMEOUT));
@@ -152,7 +154,8 @@ module bus_window #(
         end
         assert (\u_wrapper.event_i == {wanted && used == TIMEOUT && !answered, irq_i});
         if (bus_valid_i && !window) begin
-            assert (bus_ready_o && bus_error_o == bus_addr_i[2]); // words 4..7 do not exist
+            // an access to one of the words 4..7, which do not exist, is an error
+            assert (bus_ready_o && bus_error_o == bus_addr_i[2]);
             assert (bus_write_i || bus_addr_i != 4'd0 || bus_rdata_o == ID_VALUE);
         end
     end

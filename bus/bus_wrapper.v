@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_wrapper: the first three words of every slot, and access strobes for the words of the block
-// (docs/bus.md).
+// bus_wrapper: implements the first three words of every slot, and generates access strobes for the
+// words of the block (docs/bus.md).
 //
 //   0  ID     ro   ID_VALUE
 //   1  EVENT  w1c  sticky events; an event that arrives while it is cleared stays set
 //   2  MASK   rw   1: the event drives irq_o
-//   3..15          words of the block, those with a 1 in WORDS
+//   3..15          words of the block; bit w of WORDS is 1 if word w exists
 //
-// The block answers in the cycle of the access: it drives reg_rdata_i for reg_addr_o, and accepts
+// The block answers in the cycle of the access: it drives reg_rdata_i for reg_addr_o, and stores
 // reg_wdata_o while reg_write_o is high.
 
 `default_nettype none
 
 module bus_wrapper #(
     parameter [31:0] ID_VALUE = 32'd0,
-    parameter [15:0] WORDS    = 16'hFFF8, // bit w: word w exists (bits 2..0 are ignored)
+    parameter [15:0] WORDS    = 16'hFFF8, // bit w: word w exists; bits 2..0 are ignored
     parameter        EVENTS   = 1         // number of events, 1..32
 ) (
     `include "slot_ports.vh"
@@ -25,7 +25,7 @@ module bus_wrapper #(
     output wire [3:0]        reg_addr_o,
     output wire [31:0]       reg_wdata_o,
     input  wire [31:0]       reg_rdata_i,
-    // events: one cycle each
+    // events; each is high for one cycle
     input  wire [EVENTS-1:0] event_i,
     output wire              irq_o
 );
@@ -79,8 +79,8 @@ module bus_wrapper #(
     always @(posedge clk_i) begin
         past <= 1'b1;
         if (past && !$past(rst_i)) begin
-            // No event is lost, even if it arrives while others are cleared; the mask changes only
-            // by writes.
+            // No event is lost, even if it arrives while other events are cleared. The mask changes
+            // only by writes.
             assert (sticky ==
                     (($past(sticky) &
                       ~($past(writes && bus_addr_i == EVENT) ? $past(bus_wdata_i[EVENTS-1:0]) :
@@ -95,12 +95,12 @@ module bus_wrapper #(
         cover (past && !rst_i && irq_o && write && bus_addr_i == EVENT && |(event_i & clear));
     end
     always @* begin
-        // An access to a word that does not exist is an error and never strobes a register of the
-        // block.
+        // An access to a word that does not exist is an error, and does not read or write a
+        // register of the block.
         assert ({reg_write_o, reg_read_o} ==
                 ({writes, bus_valid_i && !bus_write_i} & {2{bus_addr_i > MASK && !bus_error_o}}));
         assert (bus_error_o == (bus_addr_i > MASK && !WORDS[bus_addr_i]));
-        // A read returns the wrapper's word, the block's word, or 0 if the word does not exist.
+        // A read returns a word of the wrapper or of the block, or 0 if the word does not exist.
         if (bus_addr_i > MASK)
             assert (bus_rdata_o == (exists ? reg_rdata_i : 32'd0));
         else

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// soc: the chip: platform, modem, system slot, and the cores of ip/cores.list.
+// soc: the complete chip: platform, modem, system slot, and the cores in ip/cores.list.
 //
-// The generated map_regs.vh numbers the slots, the memory ports and the cores' pins; the generated
-// soc_cores.vh instantiates the cores.
+// The generated file map_regs.vh numbers the slots, the memory ports and the pins of cores. The
+// generated file soc_cores.vh instantiates the cores.
 
 `default_nettype none
 
 module soc #(
     parameter CLK_HZ = 100000000, // Hz
-    parameter GATES  = 0 // 1: each core with an output idle_o has a clock gate (core_gate.v)
+    parameter GATES  = 0 // 1: each core that has an output idle_o gets a clock gate (core_gate.v)
 ) (
     input  wire        clk_i,
     input  wire        rst_i,
@@ -25,7 +25,7 @@ module soc #(
     input  wire        fsmc_nadv_n_i,
     output wire        fsmc_nwait_n_o,
     // modem pins
-    input  wire        modem_rxd_i, // serial line from the modem
+    input  wire        modem_rxd_i, // serial line, from the modem
     output wire        modem_txd_o,
     input  wire        modem_cts_n_i,
     output wire        modem_rts_n_o,
@@ -55,12 +55,14 @@ module soc #(
     localparam SLOTS = MAP_SLOT_COUNT;
     localparam PORTS = MAP_NPI_PORT_COUNT;
     localparam SYSTEM = MAP_SLOT_SYSTEM, MODEM = MAP_SLOT_MODEM, MODEM_PORT = MAP_NPI_PORT_MODEM;
-    // The bridge and the modem take read words in the cycle in which they arrive and need no FIFO.
+    // The bridge and the modem take each read word in the cycle in which it arrives, so they need
+    // no FIFO.
     localparam [31:0] NO_READ_FIFO = 1 << MAP_NPI_PORT_FSMC | 1 << MODEM_PORT;
     localparam [PORTS-1:0] READ_FIFO = ~NO_READ_FIFO[PORTS-1:0];
 
-    // A flip-flop drives the reset of all blocks, so that no path leads from the pin through their
-    // logic. A simulator would evaluate that logic at each change of an input (1.07 times slower).
+    // A flip-flop drives the reset of all blocks, so that no path leads from the reset pin through
+    // their logic. Otherwise a simulator would have to evaluate this logic at each change of an
+    // input (1.07 times slower).
     wire rst;
     cdc_reset u_rst (.clk_i(clk_i), .rst_async_i(rst_i), .rst_o(rst));
 
@@ -74,7 +76,7 @@ module soc #(
     wire [31:0]          slot_wdata;
     wire                 slot_write;
     wire [SLOTS-1:1]     slot_irq;
-    // memory ports; port 0 is the bridge's, inside the platform
+    // memory ports; port 0, the port of the bridge, is inside the platform
     wire [32*PORTS-1:32] npi_addr;
     wire [PORTS-1:1]     npi_addr_req, npi_addr_ack, npi_rnw, npi_rmw, npi_wr_push, npi_wr_empty;
     wire [PORTS-1:1]     npi_wr_almost_full, npi_wr_flush, npi_rd_pop, npi_rd_empty, npi_rd_flush;
@@ -146,8 +148,9 @@ module soc #(
         .access_error_i(access_error), .error_memory_i(error_memory),
         .error_addr_i(error_addr), .error_write_i(error_write), .late_i(late)
     );
-    // The processor's interrupt input is edge-sensitive, so no glitch of a LUT may reach it.
+    // The interrupt input of the processor is edge-sensitive, so the interrupt line comes from a
+    // flip-flop, which has no glitches.
     always @(posedge clk_i) irq_o <= irq;
 
-    wire unused = &{1'b0, slot_addr, 1'b0}; // addresses of empty slots, which nothing uses
+    wire unused = &{1'b0, slot_addr, 1'b0}; // addresses of slots that are empty
 endmodule

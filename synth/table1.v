@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// table1: the content of the paper's Table I: FSMC bridge, memory controller with two NPI ports,
-// radio IP. With MODEM_API = 1, the modem controller is the one of the flying chip (hdl/soc.v).
+// table1: the blocks in the paper's Table I: FSMC bridge, memory controller with two NPI ports,
+// radio IP. With MODEM_API = 1, the modem controller is that of the chip that flies (hdl/soc.v).
 //
-// The table does not contain the system slot (page register, errors). The signals of the system
-// slot are ports here, and slot 0 answers like an empty slot.
+// The table does not include the system slot (page register, errors). Therefore the signals of the
+// system slot are ports of this module, and slot 0 answers like an empty slot.
 
 `default_nettype none
 
 module table1 #(
     parameter CLK_HZ    = 100000000, // Hz
-    parameter MODEM_API = 0          // 1: with API frames, as the chip flies; 0: as published
+    // 1: the modem controller with API frames, as in the chip that flies; 0: as published
+    parameter MODEM_API = 0
 ) (
     input  wire        clk_i,
     input  wire        rst_i,
@@ -26,7 +27,7 @@ module table1 #(
     input  wire        fsmc_nadv_n_i,
     output wire        fsmc_nwait_n_o,
     // modem pins
-    input  wire        modem_rxd_i, // from the modem
+    input  wire        modem_rxd_i, // serial line, from the modem
     output wire        modem_txd_o,
     input  wire        modem_cts_n_i,
     output wire        modem_rts_n_o,
@@ -64,7 +65,7 @@ module table1 #(
     wire [31:0]          slot_wdata;
     wire                 slot_write;
     wire [SLOTS-1:1]     slot_irq;
-    // memory ports; port 0 is the bridge's, inside the platform
+    // memory ports; port 0, the port of the bridge, is inside the platform
     wire [32*PORTS-1:32] npi_addr;
     wire [PORTS-1:1]     npi_addr_req, npi_addr_ack, npi_rnw, npi_rmw, npi_wr_push, npi_wr_empty;
     wire [PORTS-1:1]     npi_wr_almost_full, npi_wr_flush, npi_rd_pop, npi_rd_empty, npi_rd_flush;

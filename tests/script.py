@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""script: code shared by the tests of commands: runs a command, checks its output, and writes the
+"""script: helpers for the tests of commands: they run a command, check its output, and write the
 files that it needs.
 
-A test program ends with `script.main(Cases)`. CTest passes the name of a case, then the arguments
-that the case reads from sys.argv[2:].
+A test program ends with `script.main(Cases)`. CTest passes the name of a case, followed by the
+arguments that the case reads from sys.argv[2:].
 """
 import os
 import re
@@ -15,11 +15,13 @@ import unittest
 from pathlib import Path
 
 TREE = Path(__file__).resolve().parents[1]
-LONGEST = 600  # s; a program that takes longer hangs: a loaded machine must not decide a test
+# time after which a program is considered to hang, s; it is long, because the load of the machine
+# must not decide a test
+LONGEST = 600
 
 
 def write(path, text):
-    """Writes a file, and creates its folders; a script is made executable."""
+    """Writes a file and creates its folders. A script becomes executable."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)
@@ -33,7 +35,7 @@ def append(path, text):
 
 
 def edit(path, old, new):
-    """Replaces a text in a file; fails if the file does not contain it."""
+    """Replaces a text in a file. Fails if the file does not contain the text."""
     text = Path(path).read_text()
     assert old in text, f"{path} has no {old!r}"
     Path(path).write_text(text.replace(old, new))
@@ -52,7 +54,7 @@ def git(words, *more):
 
 
 def repository():
-    """Makes the current folder a git repository."""
+    """Turns the current folder into a git repository."""
     git("init -q .")
     git("config user.email a@b")
     git("config user.name a")
@@ -67,7 +69,7 @@ class Script(unittest.TestCase):
     said = ""  # output of the last command
 
     def ask(self, *words, status=0, **how):
-        """Runs a command, checks its exit status (None: any failure), and stores its output in
+        """Runs a command, checks its exit status (None means any failure), and stores its output in
         `said`."""
         done = subprocess.run(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               errors="replace", **{"stdin": subprocess.DEVNULL, **how})
@@ -76,9 +78,9 @@ class Script(unittest.TestCase):
         self.assertTrue(right, f"exit status {done.returncode} of {words}: {self.said[-20000:]}")
 
     def make(self, *words, tree=TREE, build="build", **how):
-        """Runs a command with make, as a user does, in the whole tree or in a small tree of the
-        test. The files that the command would build and install exist already, unless `build`
-        is None."""
+        """Runs a command with make like a user, in the whole source tree or in a small tree of the
+        test. Everything that the command would build and install already exists, unless `build` is
+        None."""
         ours = {
             name: value
             for name, value in os.environ.items()
@@ -87,8 +89,8 @@ class Script(unittest.TestCase):
                  *words, env={**ours, "ICESOC_TREE": str(Path(tree).resolve())}, **how)
 
     def has(self, *patterns, file=None):
-        """Checks that the output of the last command, or the file, has a line that matches each of
-        these expressions."""
+        """Checks that for each of these expressions, the output of the last command (or the file)
+        has a line that matches it."""
         text = Path(file).read_text(errors="replace") if file else self.said
         for pattern in patterns:
             self.assertTrue(re.search(pattern, text, re.M),

@@ -4,9 +4,9 @@
 // a new board. It is a separate design (synth/ise/lines.v) and needs neither the board's clock nor
 // DDR3.
 //
-// The microcontroller uses three GPIO lines as a serial interface, as for a shift register: clock,
-// data in and answer. There are three such channels, which share no line, so that at least one
-// channel works although a wire is broken or two wires are shorted.
+// The microcontroller uses three GPIO lines as a serial interface to a shift register: clock, data
+// in and answer. There are three such channels on separate lines, so that at least one channel
+// works even if a wire is broken or two wires are shorted.
 //
 //   start       data line falls while the clock line is high: the levels of all pins are captured
 //   bits        sampled at rising edges of the clock line, lowest bit first; the data line may
@@ -20,9 +20,9 @@
 //                   levels of LINES pins, levels of the modem's 5 pins EARLY clocks after the last
 //                   stop
 //
-// The clock count counts units of 64 clocks of the board's clock. The levels after EARLY clocks
-// distinguish a driver, which moves a released pin immediately, from a pull resistor, which takes a
-// microsecond.
+// The clock count is in units of 64 clocks of the board's clock. The levels EARLY clocks after the
+// last stop distinguish a driver, which moves a released pin immediately, from a pull resistor,
+// which needs a microsecond for this.
 //
 //   pin  0..15 D0..D15   16..40 A0..A24   41 NE1   42 NE2   43 NOE   44 NWE   45 NBL0   46 NBL1
 //        47 NADV   48 NWAIT   49 IRQ   50 MODEM_RXD   51 MODEM_TXD   52 MODEM_CTS   53 MODEM_RTS
@@ -32,11 +32,11 @@
 
 module line_tester #(
     parameter LINES     = 55,
-    parameter UNIT_LOG2 = 6 // log2 of the clocks in one unit of the clock count; simulations use a
-                            // smaller value
+    // log2 of the number of clocks in one unit of the clock count; simulations use a smaller value
+    parameter UNIT_LOG2 = 6
 ) (
     input  wire             osc_i, // the FPGA's internal oscillator, about 50 MHz
-    input  wire             clk_i, // the board's clock, which is only measured
+    input  wire             clk_i, // clock of the board, which is only measured
     input  wire [LINES-1:0] pins_i,
     output wire [LINES-1:0] pins_o,
     output wire [LINES-1:0] pins_oe_o
@@ -47,7 +47,7 @@ module line_tester #(
     localparam MODEM = 50, MODEM_PINS = 5, EARLY = 6;
     localparam SENT = 17 + 2 * LINES, ANSWER = 40 + LINES + MODEM_PINS;
 
-    // ---- board's clock: the upper bit of the divider changes once per unit
+    // ---- clock of the board: the upper bit of the divider changes once per unit
     reg  [UNIT_LOG2:0] divider = 0;
     always @(posedge clk_i) divider <= divider + 1;
     wire       slow;
@@ -60,15 +60,17 @@ module line_tester #(
             clocks <= clocks + 16'd1;
     end
 
-    // ---- rising edges of NWE, however close to each other: a strobe that rings is counted more
-    // than once. The microcontroller moves NWE only while no frame is captured.
+    // ---- counter of NWE's rising edges, even if they are close to each other: a strobe that rings
+    // is counted more than once. The microcontroller changes NWE only while no frame is being
+    // captured.
     reg [7:0] edges = 8'd0;
     always @(posedge pins_i[NWE]) edges <= edges + 8'd1;
-    // Stable when captured: a frame starts two clocks or more after the last edge of NWE.
+    // The count is stable when it is captured, because a frame starts at least two clocks after the
+    // last edge of NWE.
     wire [7:0] nwe_count;
     cdc_copy #(.WIDTH(8)) u_edges (.clk_i(osc_i), .bus_async_i(edges), .bus_sync_o(nwe_count));
 
-    // ---- channels: level of each of the three clock and data lines now, and one clock ago
+    // ---- channels: current level of each clock and data line, and its level one clock ago
     wire [2:0] clock, data;
     reg  [2:0] clock_was = 3'd0, data_was = 3'd0;
     cdc_bit #(.WIDTH(3)) u_clock (.clk_i(osc_i),
@@ -85,15 +87,15 @@ module line_tester #(
     wire [2:0] rises  = clock & ~clock_was;
 
     // ---- frame
-    reg [2:0]        channel = 3'd0; // channel on which the current frame arrives, one-hot; 0: no
-                                     // frame
-    reg [2*LINES:0]  sent = 0;       // the bits of the frame received last
+    // channel on which the current frame arrives, one-hot; 0 while there is no frame
+    reg [2:0]        channel = 3'd0;
+    reg [2*LINES:0]  sent = 0;       // bits of the last frame
     reg [ANSWER-1:0] answer = 0;
     reg [7:0]        count = 8'd0;   // bits taken
     reg              keyed = 1'b0;   // the current frame began with the key
     reg [LINES-1:0]  value = 0, enable = 0;
     wire             bit_in = |(channel & data);
-    reg [3:0]            since = 4'd0; // clocks since the pins were driven, at most EARLY
+    reg [3:0]            since = 4'd0; // number of clocks since the pins were driven, up to EARLY
     reg [MODEM_PINS-1:0] early = 0;
 
     always @(posedge osc_i) begin
@@ -124,7 +126,7 @@ module line_tester #(
         end
     end
 
-    // ---- pins: the answer line of a channel is driven while a frame with the key lasts
+    // ---- pins: the answer line of a channel is driven during a frame that began with the key
     wire [2:0] answers = channel & {3{keyed}};
     wire [LINES-1:0] line = {{LINES-1{1'b0}}, 1'b1};
     wire [LINES-1:0] busy = (answers[0] ? line << NWAIT : 0) | (answers[1] ? line << IRQ : 0) |

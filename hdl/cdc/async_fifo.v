@@ -1,28 +1,30 @@
 // SPDX-License-Identifier: MIT
 //
-// async_fifo: FIFO between two clock domains with any ratio and phase; either clock may stop.
+// async_fifo: FIFO between two clock domains. The clocks may have any ratio and phase, and either
+// clock may stop.
 //
-// Each side sends its pointer to the other side in Gray code, through a two-stage synchroniser. A
-// signal is called `_async` before the synchroniser and `_sync` after it; only `_sync` may be used.
+// Each side sends its pointer to the other side in Gray code, through a two-stage synchroniser. The
+// name of a signal ends in `_async` before the synchroniser and in `_sync` after it; only `_sync`
+// may be used.
 //
-// The FIFO has no reset, because the resets of two clocks arrive at different times. The pointers
-// start at 0 at configuration. To empty the FIFO, the reader takes the words that are in it.
+// The FIFO has no reset, because a reset would reach the two clock domains at different times. The
+// pointers are 0 after configuration. To empty the FIFO, the reader takes the words that are in it.
 
 `default_nettype none
 
 module async_fifo #(
     parameter WIDTH = 11,
-    parameter LOG2  = 5 // depth, 2**LOG2 words; LOG2 2..6
+    parameter LOG2  = 5 // depth: 2**LOG2 words, LOG2 is 2..6
 ) (
     // writer
     input  wire             write_clk_i,
-    input  wire             push_i,     // push a word; allowed only while full_o is low
+    input  wire             push_i,     // pushes a word; allowed only while full_o is low
     input  wire [WIDTH-1:0] data_i,
     output wire             full_o,
     // reader
     input  wire             read_clk_i,
-    input  wire             pop_i,      // take the word on data_o; allowed only while empty_o is
-                                        // low
+    // takes the word on data_o; allowed only while empty_o is low
+    input  wire             pop_i,
     output wire [WIDTH-1:0] data_o,     // valid while empty_o is low
     output wire             empty_o
 );
@@ -41,8 +43,8 @@ module async_fifo #(
 
     // ---- writer
     wire [LOG2:0] next_written = written + 1'b1;
-    // The FIFO is full if the write pointer is one whole turn ahead of the read pointer: in Gray
-    // code the two upper bits then differ and the others are equal.
+    // The FIFO is full if the write pointer is DEPTH ahead of the read pointer. In Gray code the
+    // two upper bits of the pointers then differ, and the other bits are equal.
     assign full_o  = to_reader == {~to_writer_sync[LOG2:LOG2-1], to_writer_sync[LOG2-2:0]};
     always @(posedge write_clk_i)
         if (push_i) begin
@@ -75,9 +77,9 @@ module async_fifo #(
 `endif
 
 `ifdef FORMAL
-    // Proves that words leave in order and unchanged. Time advances in steps; in each step either
-    // clock, both or none has an edge. A bit that changed in the step before an edge of the other
-    // clock may arrive with its old or its new value, independently for each bit.
+    // Proves that words leave in order and unchanged. Time advances in steps; in each step, either
+    // clock, both clocks or none of them has an edge. If a bit changed in the step before an edge
+    // of the other clock, the edge may sample the old or the new value, independently for each bit.
     (* hierconn, init = 8'd0 *) wire [LOG2:0] \u_to_reader.bit_meta , \u_to_writer.bit_meta ;
 
     (* gclk *) wire step;
@@ -88,7 +90,7 @@ module async_fifo #(
     assign to_reader_async = (to_reader & reader_sees) | (was_to_reader & ~reader_sees);
     assign to_writer_async = (to_writer & writer_sees) | (was_to_writer & ~writer_sees);
 
-    // `value` is the word at position `place`, which the prover chooses.
+    // `value` is the word that the prover watches, at the position `place` that it chooses.
     localparam [LOG2:0] DEPTH = 1 << LOG2;
     (* anyconst *) reg [LOG2:0] place;
     reg [WIDTH-1:0] value;
@@ -112,15 +114,15 @@ module async_fifo #(
         assume (!(push_i && full_o));
         assume (!(pop_i && empty_o));
         assert (to_reader == (written ^ (written >> 1)) && to_writer == (taken ^ (taken >> 1)));
-        // The FIFO never holds more words than fit. Each side sees the pointer of the other side
-        // late, never early.
+        // The FIFO never holds more words than its depth. The pointer that a side receives from the
+        // other side may be old, but is never ahead.
         assert (count <= DEPTH && held_seen <= DEPTH);
         assert (full_o == (held_seen == DEPTH));
         assert (taken - t1 <= taken - t2 && taken - t2 <= held_seen);
         assert (written - w1 <= written - w2 && written - w2 <= count);
         if (place - taken < count)
             assert (words[place[LOG2-1:0]] == value);
-        // The reader therefore takes words in order and unchanged.
+        // Therefore the reader takes the words in order and unchanged.
         if (!empty_o && taken == place)
             assert (data_o == value);
         cover (full_o);

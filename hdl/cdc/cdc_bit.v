@@ -2,23 +2,23 @@
 //
 // cdc_bit: two-stage synchroniser for bits from another clock domain or from pins.
 //
-// Each bit arrives independently, one to three clocks late. A level is certain to be seen if it
-// lasts for two clocks. A bus may use this module only if it is in Gray code, or if its bits are
-// independent. With TOGETHER the bits depend on each other: constraints keep the skew between them
-// shorter than the time for which they are stable (docs/fsmc.md). The module has no reset: the
-// output is INITIAL for the first two clocks. Constraint: at most one period of clk_i to bit_meta
-// (FROM:TO), and the whole period from bit_meta to bit_sync. In proofs, and in simulation with
-// +cdc_random, bit_meta may take the input of the previous clock. This models all effects of
-// metastability and routing.
+// Each bit arrives one to three clocks later, independently of the other bits. A level that lasts
+// for two clocks is certain to be seen. A bus may use this module only if it is in Gray code or its
+// bits are independent. With TOGETHER the bits are not independent: constraints keep the skew
+// between them shorter than the time for which they are stable (docs/fsmc.md). The module has no
+// reset: the output is INITIAL for the first two clocks. Constraints: at most one period of clk_i
+// to bit_meta (FROM:TO), and the whole period from bit_meta to bit_sync. In proofs, and in
+// simulations with +cdc_random, bit_meta may take the input of the previous clock. This models all
+// effects of metastability and routing.
 
 `default_nettype none
 
 module cdc_bit #(
     parameter             WIDTH    = 1,
-    // number of upper bits that share one delay: if one of them changes, all of them are delayed
-    // together; the delay of the lower bits follows clk_i
+    // number of upper bits that have a common delay: if one of them changes, all of them are late
+    // together; the delay of the lower bits is chosen per clock of clk_i
     parameter             TOGETHER = 0,
-    // 1: no bit is delayed in this module, because a cdc_skew before it delays the bits
+    // 1: this module delays no bit, because a cdc_skew in front of it does so
     parameter             EXACT    = 0,
     parameter [WIDTH-1:0] INITIAL  = 0
 ) (
@@ -46,7 +46,7 @@ module cdc_bit #(
     end
 `elsif FORMAL
     reg  [WIDTH-1:0] bit_was;
-    wire [WIDTH-1:0] late; // 1 for each bit that is delayed; chosen freely by the prover
+    wire [WIDTH-1:0] late; // 1 for each bit that arrives late; the prover chooses freely
     wire [WIDTH-1:0] old = EXACT != 0 ? {WIDTH{1'b0}} : TOGETHER != 0 ? {WIDTH{late[0]}} : late;
     initial bit_was = INITIAL;
     always @(posedge clk_i) begin

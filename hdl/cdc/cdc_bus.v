@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// cdc_bus: transfers each word of src_clk_i exactly once to dst_clk_i, two to three clocks later.
+// cdc_bus: transfers each word from src_clk_i to dst_clk_i exactly once, two to three clocks later.
 //
-// A register of the source holds the word. The destination copies it in the clock in which the
-// second flip-flop of the synchroniser toggles. There is no handshake, so the next word must follow
-// at least two dst_clk_i clocks plus the skew of the paths later. The module has no reset.
-// Constraint: one dst_clk_i period from src_data's register to the copy, and the constraint of
-// cdc_bit.
+// A register in the source's clock domain holds the word. The destination copies it in the clock in
+// which the second flip-flop of the synchroniser toggles. There is no handshake, so the next word
+// must come at least two clocks of dst_clk_i later, plus the skew of the paths. The module has no
+// reset. Constraints: one period of dst_clk_i from src_data's register to the copy, and the
+// constraints of cdc_bit.
 
 `default_nettype none
 
@@ -16,13 +16,14 @@ module cdc_bus #(
     input  wire             src_clk_i,
     input  wire             src_valid_i,
     input  wire [WIDTH-1:0] src_data_i,
-    output reg  [WIDTH-1:0] src_data_o,     // last accepted word, in the clock src_clk_i
+    // last word that was accepted, in the clock domain src_clk_i
+    output reg  [WIDTH-1:0] src_data_o,
     input  wire             dst_clk_i,
     output wire             dst_valid_o,    // one cycle
-    // word, valid from dst_valid_o until src_clk_i takes the next word
+    // word, valid from dst_valid_o until the next word is accepted
     output wire [WIDTH-1:0] dst_data_o,
     output wire             pending_sync_o, // pending_async_o, synchronised to dst_clk_i
-    output wire             pending_async_o // a word has not been transferred yet
+    output wire             pending_async_o // high while a word has not been transferred yet
 );
     always @(posedge src_clk_i)
         if (src_valid_i)
@@ -37,24 +38,23 @@ module cdc_bus #(
         u_cdc_copy (.clk_i(dst_clk_i), .bus_async_i(src_data_o), .bus_sync_o(dst_data_o));
 
 `ifdef FORMAL
-    // Proves that each word is transferred once, in order and unchanged. Time advances in steps;
-    // either clock and the data may change in each step, so every ratio and phase is covered. An
-    // input that changes at the same time as an edge is sampled with its old value; cdc_bit may
+    // Proves that each word is transferred once, in order and unchanged. Time advances in steps. In
+    // each step either clock and the data may change, so the proof covers every ratio and phase. An
+    // input that changes in the same step as an edge is sampled with its old value; cdc_bit may
     // sample the new value one clock later.
     (* gclk *) wire step;
     reg past = 1'b0, was_src = 1'b1, was_clk = 1'b1, was_valid = 1'b0, known = 1'b0;
     reg [WIDTH-1:0] was_data = 0;
     reg was_given = 1'b0, gave = 1'b0;
-    // up to two words that have not been transferred yet; if there are none, `newer` is the last
-    // word
+    // up to two words that have not been transferred; if there are none, `newer` is the last word
     reg [WIDTH-1:0] older = 0, newer = 0;
     reg [1:0] count = 2'd0;
-    reg [2:0] clocks = 3'd3;             // edges of dst_clk_i since the source edge of the last
-                                         // word
+    // number of edges of dst_clk_i since the edge of src_clk_i that sent the last word
+    reg [2:0] clocks = 3'd3;
     wire rise        = past && src_clk_i && !was_src;
     wire edge_of_clk = past && dst_clk_i && !was_clk;
     wire writes      = rise && was_given;
-    wire handed      = edge_of_clk && was_valid; // the user of the module has seen dst_valid_o
+    wire handed      = edge_of_clk && was_valid; // the user of the module has sampled dst_valid_o
     wire rings       = writes && clocks == 3'd0 && count != 2'd0 && was_data == newer;
     wire new_write   = writes && !rings;
     always @(posedge step) begin
@@ -75,14 +75,15 @@ module cdc_bus #(
         end else if (edge_of_clk && clocks != 3'd7) begin
             clocks <= clocks + 3'd1;
         end
-        // Two edges of src_clk_i that send a word are at least three edges of dst_clk_i apart;
-        // ringing has closer edges.
+        // Between two edges of src_clk_i that send a word there are at least three edges of
+        // dst_clk_i. Edges that are closer are ringing.
         assume (!new_write || clocks >= 3'd3);
     end
-    wire [1:0] left  = count - {1'b0, handed}; // number of words left after this step
-    wire       gives = edge_of_clk ? was_valid : gave; // dst_valid_o was high in the previous clock
+    wire [1:0] left  = count - {1'b0, handed}; // number of words that are left after this step
+    // dst_valid_o was high in the last clock of dst_clk_i
+    wire       gives = edge_of_clk ? was_valid : gave;
     always @* if (past) begin
-        // Each word is pending immediately and is transferred once, in order, unchanged.
+        // Each word is pending at once, and is transferred once, in order and unchanged.
         assert (!handed || count != 2'd0);
         assert (left <= 2'd1 || dst_valid_o);
         assert (pending_async_o == (new_write || left != 2'd0 || gives));
@@ -92,10 +93,10 @@ module cdc_bus #(
             assert (dst_data_o == (left == 2'd2 ? older : newer));
         end
         assert (left == 2'd0 || clocks + {2'd0, edge_of_clk} <= 3'd3 || (clocks == 3'd3 && handed));
-        // src_data_o is the last word written; it only changes at an edge that writes a word.
+        // src_data_o is the last word that was sent; it changes only at an edge that sends a word.
         if (known || new_write)
             assert (src_data_o == (new_write ? was_data : newer));
-        // The copy of the last word is stable until the next word arrives.
+        // The copy of the last word stays unchanged until the next word arrives.
         if (known && left == 2'd0)
             assert (dst_data_o == newer);
         cover (rings);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// cdc_copy: register in clk_i that copies a bus from another clock domain or from pins.
+// cdc_copy: a register in the clock domain clk_i that copies a bus from another clock domain or
+// from pins.
 //
-// All logic after the register sees the same value, but the value is arbitrary while the bus
-// changes. Use the module only if a synchronised flag shows that the bus has been stable since the
-// previous clock (cdc_bus), or if any value is harmless. The module has no reset. Constraint: one
-// clock period from the bus to the copy.
+// All logic after this register sees the same value, but while the bus changes, the value is
+// arbitrary. Use the module only if a synchronised flag shows that the bus has been stable since
+// the previous clock (cdc_bus), or if any value is harmless. The module has no reset. Constraint:
+// one clock period from the bus to the copy.
 
 `default_nettype none
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// cdc_pulse: turns an event in src_clk_i into a one-cycle pulse in dst_clk_i, two to three clocks
-// later.
+// cdc_pulse: converts an event in src_clk_i to a pulse of one cycle in dst_clk_i, two to three
+// clocks later.
 //
-// A flip-flop toggles with each event and passes a two-stage synchroniser; a change of the
-// synchroniser's output is the event. Events must be at least two dst_clk_i clocks plus path delays
-// apart; closer events, such as ringing, count as one event. src_clk_i needs no edges other than
-// the events. The module has no reset, so a reset of either side neither creates nor loses an
-// event. Constraint: as for cdc_bit, and one dst_clk_i period from turned_sync to turned.
+// Each event toggles a flip-flop, whose output passes through a two-stage synchroniser; each change
+// of the synchroniser's output is an event. The time between two events must be at least two clocks
+// of dst_clk_i plus the delays of the paths; events that are closer, such as ringing, count as one.
+// src_clk_i needs an edge only for each event. The module has no reset, so a reset of either side
+// neither creates nor loses an event. Constraints: those of cdc_bit, and one period of dst_clk_i
+// from turned_sync to turned.
 
 `default_nettype none
 
@@ -17,7 +18,8 @@ module cdc_pulse (
     input  wire dst_clk_i,
     output wire dst_valid_o,
     output wire pending_sync_o, // pending_async_o, synchronised to dst_clk_i
-    // high from the edge of the event until a clock after dst_valid_o; changes with either clock
+    // high from the edge of the event until one clock after dst_valid_o; it may change with either
+    // clock
     output wire pending_async_o
 );
     reg  turned, last, earlier;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// cdc_random: chooses at random which bits a flip-flop samples with their old value, because they
+// cdc_random: chooses at random which bits a flip-flop samples with their old value, as if they had
 // changed near its clock edge; for simulation only.
 //
-// The file is included in the body of a module with WIDTH and TOGETHER. Bits are late only if the
-// simulation runs with +cdc_random (testbench/common/observer.h). Only bits that have changed are
-// affected, so a chip that is idle stays idle.
+// The file is included in the body of a module that has WIDTH and TOGETHER. Bits are late only if
+// the simulation runs with +cdc_random (testbench/common/observer.h). Only bits that have changed
+// can be late, so a chip that is idle stays idle.
 
     reg uncertain;
     initial uncertain = $test$plusargs("cdc_random") != 0;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// cdc_skew: models the arrival in dst_clk_i of bits that change with src_clk_i; for simulation only
-// (cdc_random.vh).
+// cdc_skew: models how bits that change with src_clk_i arrive in the clock domain dst_clk_i; for
+// simulation only (cdc_random.vh).
 //
-// A bit that changed at the last edge of src_clk_i, after the last edge of dst_clk_i, arrives with
-// its old or its new value, independently for each bit. A Gray-coded count therefore arrives as one
-// of two values; a binary count may arrive as a value that it never had.
+// If a bit changed at the last edge of src_clk_i, and this edge came after the last edge of
+// dst_clk_i, the bit arrives with its old or its new value, independently of the other bits.
+// Therefore a Gray-coded count arrives as one of two values, but a binary count may arrive as a
+// value that it never had.
 
 `default_nettype none
 

@@ -1,33 +1,34 @@
 // SPDX-License-Identifier: MIT
 //
-// axis_filter: sends a buffer through a core with one AXI-Stream input and one output, of 8, 16, 32
-// or 64 bits, and writes the core's output into another buffer (`make new-foreign BUS=axis`).
+// axis_filter: sends a buffer through a core with one AXI-Stream input and one AXI-Stream output,
+// of 8, 16, 32 or 64 bits, and writes the core's output to another buffer (`make new-foreign
+// BUS=axis`).
 //
-// An operation ends with the core's tlast. Without tlast (LAST 0) it ends after as many output
-// beats as input beats. An operation with 0 bytes is refused. If the output is longer than the
-// buffer, the part that fits is written and the operation is refused.
+// An operation ends with the core's tlast. If the core has no tlast (LAST 0), it ends after as many
+// output beats as input beats. An operation with 0 bytes is refused. If the output is longer than
+// the buffer, the part that fits is written, and the operation is reported as refused.
 
 `default_nettype none
 
 module axis_filter #(
-    parameter WIDTH     = 8,   // data width of the core in both directions: 8, 16, 32, 64
-    parameter BYTE_BITS = 11,  // width of a byte count, 7..32
-    parameter ROOM      = 1024, // size of the target buffer in bytes, a multiple of 8
+    parameter WIDTH     = 8,   // data width of the core's input and output, bits: 8, 16, 32 or 64
+    parameter BYTE_BITS = 11,  // width of byte counts, 7..32
+    parameter ROOM      = 1024, // size of the target buffer, bytes; a multiple of 8
     parameter LAST      = 1    // 0: the output of the core has no tlast
 ) (
     `include "memory_ports.vh"
     input  wire                 clk_i,
     input  wire                 rst_i,
     // the operation
-    input  wire                 core_rst_i, // abandons the operation
+    input  wire                 core_rst_i, // aborts the operation
     input  wire                 start_i,
-    input  wire [31:0]          source_i,   // byte address, a multiple of 64
+    input  wire [31:0]          source_i,   // byte address of the source, a multiple of 64
     input  wire [BYTE_BITS-1:0] bytes_i,    // number of bytes; a multiple of WIDTH / 8, unless the
                                             // core uses tkeep
     input  wire [31:0]          target_i,
-    output wire                 done_o,     // high for a clock
+    output wire                 done_o,     // high for one clock at the end of an operation
     output wire                 refused_o,  // with done
-    output wire [BYTE_BITS-1:0] bytes_o,    // number of output bytes, valid since done_o
+    output wire [BYTE_BITS-1:0] bytes_o,    // number of output bytes, valid from done_o on
     // stream to the core
     output wire                 m_axis_tvalid_o,
     input  wire                 m_axis_tready_i,
@@ -41,22 +42,25 @@ module axis_filter #(
     input  wire [WIDTH/8-1:0]   s_axis_tkeep_i,
     input  wire                 s_axis_tlast_i
 );
-    localparam KEEP = WIDTH / 8, BEATS = 64 / WIDTH; // bytes per beat, beats per word
+    // number of bytes per beat, and of beats per word
+    localparam KEEP = WIDTH / 8, BEATS = 64 / WIDTH;
     localparam [31:0] BYTES_OF_BEAT = KEEP, BEATS_OF_WORD = BEATS;
     localparam [3:0]  LAST_BEAT = BEATS_OF_WORD[3:0] - 4'd1;
     localparam [BYTE_BITS-1:0] STEP = BYTES_OF_BEAT[BYTE_BITS-1:0];
 
-    localparam WORD_BITS = BYTE_BITS - 2; // width of a word count
+    localparam WORD_BITS = BYTE_BITS - 2; // width of word counts
 
-    reg         waiting; // transfers of an earlier, abandoned operation are still in progress
+    // the operation has not begun, because transfers of an earlier, aborted operation are still in
+    // progress
+    reg         waiting;
     reg         writing; // the output is being written to memory
     // closing: the last word was taken, and the rest of its burst is being filled; closed: the
-    // module waits until the burst is in memory
+    // module waits until this burst is in memory
     reg         closing, closed;
     reg         empty, over; // refused
-    reg  [BYTE_BITS-1:0] left; // bytes not yet sent to the core
-    reg  [BYTE_BITS-1:0] bytes; // number of bytes written; while `waiting`, the size of the next
-                                // operation
+    reg  [BYTE_BITS-1:0] left; // number of bytes that have not been sent to the core
+    // number of bytes that were written; while `waiting` is high, the size of the next operation
+    reg  [BYTE_BITS-1:0] bytes;
     wire        read_idle, write_idle, write_ready, word_valid;
     wire [63:0] word;
     wire        go        = waiting && read_idle && write_idle && !core_rst_i;
@@ -65,10 +69,10 @@ module axis_filter #(
         left[2:0] != 3'd0 ? 8'hFF >> (4'd8 - {1'b0, left[2:0]}) : 8'hFF;
     wire        word_ready;
 
-    // ---- splitting a word from memory into beats ----
+    // ---- splits each word from memory into beats ----
     reg  [3:0]  beat;
-    wire [7:0]  rest    = word_keep >> KEEP * beat >> KEEP; // byte enables of the beats after this
-                                                            // one
+    // byte enables of the bytes after this beat
+    wire [7:0]  rest    = word_keep >> KEEP * beat >> KEEP;
     wire        is_last = beat == LAST_BEAT || rest == 8'd0;
     wire        sent    = m_axis_tvalid_o && m_axis_tready_i;
     wire [63:0] shifted = word >> WIDTH * beat;
@@ -79,13 +83,14 @@ module axis_filter #(
     assign m_axis_tlast_o  = word_last && is_last;
     assign word_ready      = m_axis_tready_i && is_last;
 
-    // ---- joining beats into a word ----
+    // ---- joins beats into words ----
     reg  [3:0]  place;
     reg         full;      // the word is complete
-    reg         ends;      // the complete word is the last one of the packet
+    reg         ends;      // the complete word is the last word of the packet
     reg  [63:0] out;
     reg  [7:0]  out_keep;
-    reg  [BYTE_BITS-1:0] awaited; // number of input bytes for which no output has arrived
+    // number of bytes that the core has still to output, if it has no tlast
+    reg  [BYTE_BITS-1:0] awaited;
     wire        room      = bytes != ROOM[BYTE_BITS-1:0];
     wire        out_ready = writing && (write_ready || !room);
     wire        given     = full && out_ready;
@@ -93,7 +98,7 @@ module axis_filter #(
     wire        last = LAST != 0 ? s_axis_tlast_i : awaited <= STEP;
     assign s_axis_tready_o = !full || out_ready;
 
-    reg [3:0] out_bytes; // number of bytes up to the last byte that is kept
+    reg [3:0] out_bytes; // number of bytes up to and including the last byte that is kept
     integer b;
     always @* begin
         out_bytes = 4'd0;
@@ -161,8 +166,8 @@ module axis_filter #(
     wire flush = closing || core_rst_i;
     npi_stream #(.WORD_BITS(WORD_BITS)) u_stream (
         `include "memory_connect.vh"
-        .clk_i(clk_i), .rst_i(rst_i), // not core_rst_i: words that were requested must still be
-                                      // taken
+        // not core_rst_i: words that were requested must be taken even after core_rst_i
+        .clk_i(clk_i), .rst_i(rst_i),
         .read_start_i(go), .read_base_i(source_i[31:6]),
         .read_words_i({1'b0, bytes[BYTE_BITS-1:3]} + {{(WORD_BITS-1){1'b0}}, |bytes[2:0]}),
         .read_stop_i(core_rst_i), .read_valid_o(word_valid), .read_data_o(word),
@@ -176,22 +181,24 @@ module axis_filter #(
     wire unused = &{1'b0, shifted, kept, source_i[5:0], target_i[5:0], 1'b0};
 
 `ifdef FORMAL
-    // Proves that words are split into beats and beats are joined into words, each once and in
-    // order, and that the rules of npi_stream are kept. npi_stream has a separate proof. Here it is
-    // cut out, and only the properties of its proof are assumed.
+    // Proves that each word is split into beats and beats are joined into words, once and in order,
+    // and that the module keeps the rules of npi_stream. npi_stream is proven separately; here it
+    // is removed, and only the properties that its proof shows are assumed.
     reg past = 1'b0;
-    reg [3:0] f_sent;  // beats of the word that the core has taken
-    reg [3:0] f_size;  // number of beats for the bytes of the word
-    reg [3:0] f_count; // beats of the output that are not in memory yet
-    // any lane of a word, with its bytes as they arrived
+    reg [3:0] f_sent;  // number of beats of the current word that the core has taken
+    reg [3:0] f_size;  // number of beats in the current word
+    reg [3:0] f_count; // number of output beats that have not been passed to npi_stream
+    // one lane of a word, chosen by the prover, and its bytes as they arrived
     (* anyconst *) reg [3:0] f_lane;
     reg [WIDTH-1:0] f_data;
     reg [KEEP-1:0]  f_keep;
-    // bytes of the operation; bytes that arrived so far, up to the number sent
+    // number of bytes of the operation, and number of bytes that have arrived (limited to the first
+    // number)
     reg [BYTE_BITS-1:0] f_bytes = 0, f_came = 0;
-    reg [WORD_BITS-1:0] f_left = 0;   // words that npi_stream still delivers
-    reg [WORD_BITS-1:0] f_written = 0; // words passed to npi_stream in this operation
-    wire [3:0] f_place = given ? 4'd0 : f_count; // position of the arriving beat
+    reg [WORD_BITS-1:0] f_left = 0;   // number of words that npi_stream must still deliver
+    // number of words that were passed to npi_stream in this operation
+    reg [WORD_BITS-1:0] f_written = 0;
+    wire [3:0] f_place = given ? 4'd0 : f_count; // position in its word of the beat that arrives
     wire       f_rst   = rst_i || core_rst_i;
     integer f;
     initial assume (rst_i);
@@ -201,7 +208,8 @@ module axis_filter #(
             f_size = f_size + {3'd0, word_keep[f]};
         assume (!word_valid || f_left != 0);
         assume (!read_idle || f_left == 0);
-        assume (!start_i || !(waiting || writing || closing || closed)); // one operation at a time
+        // no operation is started during another operation
+        assume (!start_i || !(waiting || writing || closing || closed));
         assume ((bytes_i & (STEP - 1'b1)) == {BYTE_BITS{1'b0}});
         assume ({28'd0, f_lane} < BEATS);
     end
@@ -226,7 +234,8 @@ module axis_filter #(
         else if (write && write_ready)
             f_written <= f_written + 1'b1;
         if (past && !f_rst) begin
-            if ($past(word_valid && !word_ready)) // a word of npi_stream is stable
+            // npi_stream keeps its word stable until it is taken
+            if ($past(word_valid && !word_ready))
                 assume (word_valid && $stable(word));
             if ($past(m_axis_tvalid_o && !m_axis_tready_i))
                 assert (m_axis_tvalid_o &&
@@ -241,31 +250,33 @@ module axis_filter #(
             else
                 assert (!empty && waiting == $past(waiting && !go) &&
                         writing == $past(go || (writing && !(given && ends))));
-            // The answer ends when its burst is filled up and in memory.
+            // The operation ends when its last burst is filled up and in memory.
             assert (closing == $past(given && ends) &&
                     (!done_o || empty || $past(closing || closed)));
-            // number of bytes: the words before the last one, and the bytes kept of the last
+            // the number of bytes is correct: the words before the last one are complete, and the
+            // last word has the bytes that are kept
             if ($past(given && ends))
                 assert (over || bytes == $past(bytes) + $past(out_bytes));
         end
     end
     always @* if (past && !f_rst) begin
-        // Rules of npi_stream: the module starts it only when it is idle, and passes no word
-        // together with a start or a flush. npi_stream writes every word for which the buffer has
-        // room.
+        // Rules of npi_stream: the module starts npi_stream only when it is idle, and passes no
+        // word together with a start or a flush. npi_stream writes every word for which the buffer
+        // has room.
         assert (!go || (read_idle && write_idle && !write && !flush));
         assert (!flush || !write);
         assert ({2'd0, waiting} + {2'd0, writing} + {2'd0, closing} + {2'd0, closed} <= 3'd1);
         assert (!(writing || closing || closed) || bytes <= ROOM);
         assert (!writing || bytes == {f_written, 3'd0});
         assert (!(writing && over) || !room);
-        // There are as many words as the bytes need; the last word holds the remaining bytes.
+        // There are as many words as the bytes need; the last word contains the remaining bytes.
         assert (f_left == {1'b0, left[BYTE_BITS-1:3]} + |left[2:0]);
         assert (!waiting || bytes == f_bytes);
         assert (!word_valid ||
                 (word_last == (f_left == 1) &&
                  f_size == (word_last ? left >> $clog2(KEEP) : 8 / KEEP)));
-        // Split: all beats of a word are sent, and the word is taken with the last of them.
+        // Splitting: all beats of a word are sent, and the word is taken together with the last
+        // beat.
         assert (beat == f_sent && m_axis_tvalid_o == word_valid);
         if (word_valid) begin
             assert (f_sent < f_size && word_ready == (m_axis_tready_i && f_sent + 4'd1 == f_size));
@@ -273,7 +284,7 @@ module axis_filter #(
                     m_axis_tkeep_o == word_keep[KEEP*f_sent +: KEEP]);
             assert (m_axis_tlast_o == (word_last && f_sent + 4'd1 == f_size));
         end
-        // Joined: each beat is in its position, and bytes after the last one are dropped.
+        // Joining: each beat is at its position, and bytes after the last beat are not kept.
         assert ({28'd0, f_count} <= BEATS &&
                 (full ? place == 4'd0 && f_count != 4'd0 : place == f_count && place <= LAST_BEAT));
         assert (f_lane >= f_count ? out_keep[KEEP*f_lane +: KEEP] == 0
@@ -286,7 +297,7 @@ module axis_filter #(
         cover (done_o && !refused_o && bytes == 3);
         cover (given && ends && f_count == BEATS - 1 && came);
     end
-    // Without tlast the packet ends with the last beat that is due.
+    // Without tlast, the packet ends with the last beat that the core must output.
     always @* if (past && !f_rst && LAST == 0 && f_came != f_bytes) begin
         assert (awaited == f_bytes - f_came);
         assert (last == (f_bytes - f_came == STEP));

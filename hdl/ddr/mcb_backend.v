@@ -3,13 +3,14 @@
 // mcb_backend: connects the command stream of the arbiter to a 64-bit user port of the Spartan-6
 // memory controller block, MCB (UG388).
 //
-// The read FIFO of the MCB holds 64 words; the MCB loses words that do not fit. A read therefore
-// waits until half of the FIFO, which holds the longest burst, is not reserved for other reads.
+// The read FIFO of the MCB holds 64 words, and the MCB loses words that do not fit. Therefore a
+// read waits until half of this FIFO, which is the size of the longest burst, is free of words for
+// earlier reads.
 
 `default_nettype none
 
 module mcb_backend #(
-    parameter ADDR_WIDTH = 27 // width of a byte address, 9..30; the MCB supports 1 GiB
+    parameter ADDR_WIDTH = 27 // width of a byte address, 9..30; the MCB supports up to 1 GiB
 ) (
     input  wire        clk_i,
     input  wire        rst_i,
@@ -30,7 +31,7 @@ module mcb_backend #(
 );
     generate
         if (ADDR_WIDTH < 9 || ADDR_WIDTH > 30) begin : g_refused
-`ifdef VERILATOR // Stops elaboration, as in npi_arbiter.
+`ifdef VERILATOR // Stops the elaboration with an error, as in npi_arbiter.
             $error("mcb_backend: ADDR_WIDTH is 9..30");
 `elsif YOSYS
             $error("mcb_backend: ADDR_WIDTH is 9..30");
@@ -56,8 +57,8 @@ module mcb_backend #(
     assign rd_data_o   = mcb_rd_data_i;
     assign mcb_rd_en_o = rd_valid_o && rd_ready_i;
 
-    // `free` is the number of words in the read FIFO that are not promised to a read, 0..64.
-    // Subtracting n is adding ~(n - 1).
+    // `free` is the number of words in the read FIFO that no read has reserved, 0..64. n is
+    // subtracted by adding ~(n - 1).
     reg  [6:0] free;
     wire       take = mcb_cmd_en_o && cmd_read_i;
     wire [7:0] next = {free, 1'b1} + {take ? {2'b11, ~cmd_last_i} : 7'd0, mcb_rd_en_o};
@@ -68,33 +69,34 @@ module mcb_backend #(
     wire unused = &{1'b0, next[0], 1'b0};
 
 `ifdef FORMAL
-    // Proves that the MCB never gets a command that it refuses, and that no word is lost.
+    // Proves that the MCB never gets a command that it would refuse, and that no word is lost.
     reg past = 1'b0;
     initial assume (rst_i);
-    reg [7:0] asked = 0; // number of words requested by reads and not yet taken
+    reg [7:0] asked = 0; // number of words that reads have requested and that have not been taken
     always @(posedge clk_i) begin
         past <= 1'b1;
         asked <= rst_i ? 8'd0
                        : asked +
                            (mcb_cmd_en_o && mcb_cmd_instr_o[0] ? {2'd0, mcb_cmd_bl_o} + 8'd1 : 8'd0)
                                - {7'd0, mcb_rd_en_o};
-        // The MCB shows only requested words.
+        // The MCB delivers only words that were requested.
         assume (mcb_rd_empty_i || asked != 0);
         if (past && !rst_i) begin
-            // The MCB never gets a command that it refuses; promised words stay within 0..64.
+            // The MCB never gets a command that it would refuse, and the number of reserved words
+            // stays within 0..64.
             assert (asked == 8'd64 - {1'b0, free} && free <= 7'd64);
             assert (!(mcb_cmd_en_o && (mcb_cmd_full_i || !mcb_calib_done_i)));
             assert (!(mcb_wr_en_o && mcb_wr_full_i));
             assert (!(mcb_rd_en_o && mcb_rd_empty_i));
-            // Nothing is lost between arbiter and MCB.
+            // Nothing is lost between the arbiter and the MCB.
             assert (mcb_cmd_en_o == (cmd_valid_i && cmd_ready_o));
             assert (mcb_wr_en_o == (wr_valid_i && wr_ready_o));
             assert (mcb_rd_en_o == (rd_valid_o && rd_ready_i));
             if (mcb_cmd_en_o)
                 assert (mcb_cmd_instr_o == {2'b00, cmd_read_i} &&
                         mcb_cmd_bl_o == {1'b0, cmd_last_i});
-            // Writes never wait for room of reads; reads wait only while more than half of the FIFO
-            // is promised.
+            // Writes never wait because of reads. Reads wait only while more than half of the FIFO
+            // is reserved.
             if (mcb_calib_done_i && !mcb_cmd_full_i && (!cmd_read_i || asked <= 8'd32))
                 assert (cmd_ready_o);
             cover (asked == 8'd64);

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
 // memory_mcb: memory controller with PORTS NPI ports (docs/memory.md) on a 64-bit user port of the
-// Spartan-6 MCB. Connects an npi_arbiter and an mcb_backend.
+// Spartan-6 MCB. It connects an npi_arbiter to an mcb_backend.
 
 `default_nettype none
 
 module memory_mcb #(
     parameter             PORTS      = 2, // number of ports, 2..8
-    parameter [PORTS-1:0] URGENT     = 0, // this parameter and the following ones: see npi_arbiter
+    // this parameter and the following ones are explained in npi_arbiter
+    parameter [PORTS-1:0] URGENT     = 0,
     parameter [2:0]       URGENT_RUN = 3'd3,
     parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}},
     parameter             BLOCK_RAM  = 1,

@@ -1,33 +1,34 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_arbiter: arbitrates PORTS memory ports with NPI semantics (docs/memory.md) onto one command
-// stream.
+// npi_arbiter: arbitrates between PORTS memory ports with NPI semantics (docs/memory.md) and sends
+// one stream of commands to the memory.
 //
-// A request is acknowledged as soon as it has a place in the queue, at most one per clock. The
-// order of acknowledgement is the order in memory, across all ports.
+// A request is acknowledged as soon as it has a place in the queue, at most one request per clock.
+// The memory executes the requests of all ports in the order of their acknowledgements.
 
 `default_nettype none
 
 module npi_arbiter #(
     parameter             PORTS      = 2, // number of ports, 2..8
-    parameter [PORTS-1:0] URGENT     = 0, // one bit per port: the port is served before others
-                                          // (npi_select)
-    parameter [2:0]       URGENT_RUN = 3'd3, // urgent grants in a row while others wait, 1..7
-    // one bit per port: the port has a read FIFO. A port without a read FIFO must take each word at
-    // once; otherwise it holds up all ports.
+    // one bit per port: 1 if the port is served before the other ports (npi_select)
+    parameter [PORTS-1:0] URGENT     = 0,
+    // maximum number of urgent requests in a row while other ports wait, 1..7
+    parameter [2:0]       URGENT_RUN = 3'd3,
+    // one bit per port: 1 if the port has a read FIFO. A port without a read FIFO must take each
+    // word at once; otherwise all ports wait.
     parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}},
     parameter             BLOCK_RAM  = 1,  // 1: FIFOs in block RAM; 0: in LUT RAM, which is one
                                            // clock faster
-    parameter             ADDR_WIDTH = 27, // width of a byte address, 9..32 (27: 128 MiB)
-    parameter             FIFO_LOG2  = 5,  // FIFO depth, 2**n words: 32 as specified; less in
-                                           // proofs
-    parameter             QUEUE_LOG2 = 4   // queue depth, 2**n: 15 requests, because one place
-                                           // stays free; less in proofs
+    parameter             ADDR_WIDTH = 27, // width of a byte address, 9..32 (27 for 128 MiB)
+    // log2 of the FIFO depth in words: 5 as specified; less in proofs
+    parameter             FIFO_LOG2  = 5,
+    // log2 of the queue depth: 4 for 15 requests, because one place stays free; less in proofs
+    parameter             QUEUE_LOG2 = 4
 ) (
     input  wire                clk_i,
     input  wire                rst_i,
     `include "npi_ports.vh"
-    // back-end: commands of 1..32 words; the words of a write precede its command
+    // back-end: commands of 1..32 words; the words of a write are passed before its command
     output wire                cmd_valid_o,
     output wire                cmd_read_o,
     output wire [ADDR_WIDTH-1:0] cmd_addr_o,
@@ -44,8 +45,8 @@ module npi_arbiter #(
     generate
         if (PORTS < 2 || PORTS > 8 || URGENT_RUN == 0 || ADDR_WIDTH < 9 ||
             ADDR_WIDTH > 32) begin : g_refused
-            // Verilog-2005 has no error message as a module item: Icarus and XST report the name of
-            // an unknown module instead.
+            // Verilog-2005 has no module item for an error message. Icarus and XST report the name
+            // of an unknown module instead.
 `ifdef VERILATOR
             $error("npi_arbiter: PORTS is 2..8, URGENT_RUN 1..7, ADDR_WIDTH 9..32");
 `elsif YOSYS
@@ -58,7 +59,7 @@ module npi_arbiter #(
 
     localparam PORT_BITS = PORTS > 4 ? 3 : PORTS > 2 ? 2 : 1;
 
-    // The bit of a request is still high in the cycle of the request's acknowledgement.
+    // In the cycle in which a request is acknowledged, its bit is still high.
     wire             full, granted;
     wire [PORTS-1:0] choice;
     npi_select #(.PORTS(PORTS), .URGENT(URGENT), .URGENT_RUN(URGENT_RUN)) u_select (
@@ -68,7 +69,8 @@ module npi_arbiter #(
     );
 
     // The address and size of the chosen request are an OR over all ports, so that all ports have
-    // the same delay. For two ports one bit suffices. Without a grant the result is not used.
+    // the same delay. For two ports one bit is enough to choose. If no request is granted, the
+    // result is not used.
     wire [PORTS-1:0]    pick = PORTS == 2 ? {choice[PORTS-1:1], !choice[1]} : choice;
     reg [ADDR_WIDTH-1:0] addr;
     reg [2:0]           size;
@@ -84,7 +86,7 @@ module npi_arbiter #(
             port = port | (i[PORT_BITS-1:0] & {PORT_BITS{pick[i]}});
         end
     end
-    // A read of a cache line may start with any of its words; rd_word selects it.
+    // A read of a cache line may start at any of its words; rd_word is that word.
     wire line = size == 3'd1 || size == 3'd2;
     wire [ADDR_WIDTH-4:0] start = {addr[ADDR_WIDTH-1:5], addr[4] && size != 3'd2, addr[3] && !line};
 
@@ -125,7 +127,7 @@ module npi_arbiter #(
                 .empty_o(npi_wr_empty_o[p]), .full_o(npi_wr_almost_full_o[p])
             );
             if (READ_FIFO[p]) begin : g_fifo
-                wire rd_full; // a requester must have room for the words of its reads (rule 3)
+                wire rd_full; // a port must have room for the words of its reads (rule 3)
                 npi_fifo #(.WIDTH(68), .LOG2(FIFO_LOG2), .BLOCK(BLOCK_RAM)) u_read (
                     .clk_i(clk_i), .rst_i(rst_i || npi_rd_flush_i[p]),
                     .push_i(rd_valid_i && back_at[p]), .data_i(rd_word),
@@ -161,7 +163,8 @@ module npi_arbiter #(
     assign wr_be_o    = wr_be;
     assign rd_ready_o = |(back_at & back_free);
 
-    // Byte enables are supported, so read-modify-write is not needed. Transfers are aligned.
+    // These inputs are not used: byte enables are supported, so read-modify-write is not needed,
+    // and transfers are aligned.
     wire unused =
         &{1'b0, npi_rmw_i, npi_size_i, npi_addr_i, addr[2:0], back_index[4], move_at, 1'b0};
 

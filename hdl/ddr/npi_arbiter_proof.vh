@@ -3,25 +3,24 @@
 // npi_arbiter_proof: proves npi_arbiter and its parts together; included at the end of npi_arbiter,
 // only for the prover (formal.npi_arbiter*).
 //
-// `me` is any port that keeps the rules of docs/memory.md; the other ports may do anything and must
-// not harm it. `mark` is any accepted request (every fourth, starting with any), `w_mark` any word
-// that `me` pushes, `r_mark` any word that `me` pops. The assertions on these marks therefore hold
-// for all requests and words:
+// `me` is any port that keeps the rules of docs/memory.md; the other ports may do anything, and
+// must not harm `me`. `mark` is any accepted request (every fourth request, starting with any),
+// `w_mark` is any word that `me` pushes, and `r_mark` any word that `me` pops. The prover chooses
+// them, so the assertions about them hold for all requests and words:
 // - commands are the accepted requests, in order, each once, aligned; the command of a write
 //   follows all its words;
-// - words of a write leave the FIFO of their port in order, with the command's position in the
-//   stream to the back-end;
+// - words of a write leave the FIFO of their port in order, and reach the back-end at the position
+//   that the command has in the stream;
 // - words of a read reach the port that requested them, in order, each with its position in its
 //   transfer;
 // - no FIFO of `me` overflows or is read when empty; its flags are correct; a word is in the FIFO
-//   when it
-//   is needed;
+//   when it is needed;
 // - a request stays visible to npi_select until it is granted, so that the bound on waiting that is
 //   proven for npi_select holds.
 //
-// The second half relates the counts in the harness to the registers of the arbiter, so that a
-// fault is detected where it begins. With these relations, all assertions together are inductive:
-// the proof covers runs of any length.
+// The second half relates the counts of this file to the registers of the arbiter, so that a fault
+// is detected where it begins. These relations make all assertions together inductive: the proof
+// covers runs of any length.
 
     // The state of the arbiter's parts, for two ports.
     localparam KIND = PORT_BITS + 4, ADDR_BITS = ADDR_WIDTH - 3, X = 2 * FIFO_LOG2;
@@ -31,7 +30,7 @@
     (* hierconn *) wire [(ADDR_BITS<<QUEUE_LOG2)-1:0] \u_queue.f_addrs ;
     (* hierconn *) wire [4*QUEUE_LOG2-1:0]          \u_queue.f_places ;
     (* hierconn *) wire [4:0]                       \u_queue.f_moved ;
-    // a request is moving words; its kind
+    // words of a request are being transferred; the kind of this request
     (* hierconn *) wire [KIND:0]                    \u_queue.f_moving ;
     (* hierconn *) wire [(72<<FIFO_LOG2)-1:0]       \g_port[0].u_write.f_words ,
         \g_port[1].u_write.f_words ;
@@ -64,14 +63,14 @@
     (* anyconst *) reg [PORT_BITS-1:0] me;
     (* anyconst *) reg [Q-1:0] mark;
     (* anyconst *) reg [W-1:0] w_mark, r_mark;
-    // `me` pops every word at once, and may have any number of words outstanding
+    // `me` pops every word at once, and is then allowed any number of outstanding words
     (* anyconst *) reg         eager;
     reg [PORTS-1:0] was_granted;
-    reg             asked = 1'b0; // `me` has a request that was not chosen yet
+    reg             asked = 1'b0; // `me` has a request that has not been chosen yet
     initial assume (rst_i);
     always @* assume ({1'b0, me} < PORTS);
 
-    // ---- Pins and FIFOs of `me`; of the data, only the first and the last bit
+    // ---- Pins and FIFOs of `me`; only the first and the last bit of the data
     localparam DEPTH_INT = 1 << F;
     reg          req, ack, rnw, my_grant, push, pop, has_fifo, w_full, w_empty, r_empty, w_flush,
         r_flush, w_pop, r_push;
@@ -122,20 +121,20 @@
     wire [3:0]   out_word  = {wr_be_o[7], wr_data_o[63], wr_be_o[0], wr_data_o[0]};
 
     // ---- Counts, modulo 2**W
-    reg [W-1:0] w_pushed, w_claimed, w_moved; // words of `me`: pushed into its FIFO; claimed by
-                                              // accepted writes; moved to the back-end
+    // words of `me`: pushed into its FIFO; claimed by accepted writes; passed to the back-end
+    reg [W-1:0] w_pushed, w_claimed, w_moved;
     reg [W-1:0] r_claimed, r_pushed, r_popped;
-    reg [W-1:0] all_w, all_moved;             // words of accepted writes of all ports; moved to the
-                                              // back-end
-    reg [W-1:0] all_r, all_asked, all_came;   // words of accepted reads; words of issued commands;
-                                              // words that have arrived
+    // words of all ports: of accepted writes; passed to the back-end
+    reg [W-1:0] all_w, all_moved;
+    // words of all ports: of accepted reads; of issued commands; arrived from the back-end
+    reg [W-1:0] all_r, all_asked, all_came;
     reg [Q-1:0] accepted, issued;             // requests
     wire        moves  = wr_valid_o && wr_ready_i;
     wire        comes  = rd_valid_i && rd_ready_o;
     wire        issues = cmd_valid_o && cmd_ready_i;
     wire [W-1:0] cmd_words = {2'd0, cmd_last_o} + 1'b1;
 
-    // g_* is the request that is accepted now.
+    // g_* is the request that is accepted in this clock.
     reg [PORT_BITS-1:0] g_from;
     reg                 g_read;
     reg [2:0]           g_size;
@@ -157,8 +156,8 @@
     wire         g_any   = |grant;
     wire [W-1:0] g_words = words_of(g_size);
 
-    // t_* is the marked request while it is in the arbiter, and the position in each count at which
-    // its words begin.
+    // t_* is the marked request while it is in the arbiter. It includes, for each count, the value
+    // at which the words of this request begin.
     reg                 t_live = 1'b0;
     reg [PORT_BITS-1:0] t_port;
     reg                 t_read;
@@ -166,23 +165,23 @@
     reg [ADDR_BITS-1:0] t_addr;
     reg [W-1:0]         t_stream, t_own;
     wire [W-1:0] t_words = words_of(t_size);
-    // index of the next word within the marked request, if it belongs to this request
+    // index of the next word in the marked request; valid if the next word belongs to this request
     wire [W-1:0] t_index = (t_read ? all_came : all_moved) - t_stream;
     wire         t_next  = t_live && t_index < t_words;
     wire [W-1:0] t_own_index = t_own + t_index; // among `me`'s
     wire         t_mine  = t_port == me;
     wire [PORTS-1:0] t_one = {{(PORTS - 1){1'b0}}, 1'b1} << t_port;
 
-    // s_* are the positions at which the words of each queued request begin in the counts of all
-    // writes, all reads, the writes of `me` and the reads of `me`.
+    // s_* are the values at which the words of each queued request begin, in the counts of all
+    // writes, of all reads, of the writes of `me` and of the reads of `me`.
     localparam SLOTS = 1 << Q;
     reg [W*SLOTS-1:0] s_w, s_r, s_wo, s_ro;
 
-    // w_value and r_value are the marked words while they are in the FIFOs of `me`.
+    // w_value and r_value are the marked words while they are in FIFOs of `me`.
     reg  [3:0] w_value;
     reg  [5:0] r_value;
     reg        r_have = 1'b0;
-    // numbers of words in the FIFOs
+    // number of words in each FIFO
     wire [W-1:0] w_level = w_pushed - w_moved, r_level = r_pushed - r_popped;
     wire       w_have = w_mark - w_moved < w_level;
 
@@ -240,11 +239,12 @@
         end
     end
 
-    // ---- Rules of the contract
+    // ---- Rules of docs/memory.md
     integer q;
     always @* begin
         for (q = 0; q < PORTS; q = q + 1)
-            // no transfer is larger than the FIFOs of the proof; npi_queue is proven with all sizes
+            // no transfer is larger than the FIFOs of this proof; npi_queue is proven with all
+            // sizes
             assume (npi_size_i[4*q +: 3] <= F);
         assume (!asked || req); // a request is held until it is acknowledged
         assume (!push || !w_full);
@@ -254,15 +254,17 @@
         assume (!eager || pop == !r_empty);
         assume (!w_flush || (!asks_write && w_claimed == w_moved));
         assume (!r_flush || (!asks_read && r_claimed == r_pushed));
-        assume (!rd_valid_i || all_asked != all_came); // the back-end delivers only requested words
+        // the back-end delivers only words that were requested
+        assume (!rd_valid_i || all_asked != all_came);
     end
 
     // ---- Guarantees
     integer o;
     always @* if (!rst_i) begin
         assert (npi_addr_ack_o == was_granted);
-        assert (!asked || !ack); // the request is not withdrawn, so npi_select sees it
-                                 // continuously, and its bound holds
+        // the request is not withdrawn, so npi_select sees it all the time, and the bound of
+        // npi_select holds
+        assert (!asked || !ack);
         assert ((grant & ~npi_addr_req_i) == 0 && (grant & npi_addr_ack_o) == 0 &&
                 (grant & (grant - 1'b1)) == 0);
         assert (!cmd_valid_o || issued != accepted);
@@ -276,25 +278,25 @@
             if (t_mine && t_own_index == w_mark)
                 assert (w_have && out_word == w_value);
         end
-        for (o = 0; o < PORTS; o = o + 1) // for each port: all bits that leave
+        for (o = 0; o < PORTS; o = o + 1) // all bits that leave, for each port
             assert (!wr_pops[o] ||
                     {wr_be_o, wr_data_o} == {wr_bes[8*o +: 8], wr_datas[64*o +: 64]});
         assert (moves == |wr_pops && (!moves || all_moved != all_w));
         if (rd_valid_i && t_next && t_read) begin
             assert (rd_pushes == (comes ? t_one : 0));
-            if (t_mine && !has_fifo && !r_empty) // a port without a FIFO takes the word in this
-                                                 // clock
+            // a port without a read FIFO takes the word in this clock
+            if (t_mine && !has_fifo && !r_empty)
                 assert (rd_ready_o == pop &&
                         pop_word == {t_index[1:0] | 4'd0, rd_data_i[63], rd_data_i[0]});
         end
         assert (comes == |rd_pushes);
         if (has_fifo && r_have && !r_empty && r_popped == r_mark)
             assert (pop_word == r_value);
-        // the flags match the levels
+        // the flags agree with the number of words
         assert (w_level <= DEPTH);
         assert (w_full == (w_level == DEPTH));
         assert (!w_pop || !w_empty);
-        assert (w_claimed - w_moved <= w_level); // the requested words are in the FIFO
+        assert (w_claimed - w_moved <= w_level); // the words that were claimed are in the FIFO
         assert (BLOCK_RAM != 0 || w_empty == (w_level == 0));
         assert (w_empty || w_level != 0);
         if (has_fifo) begin
@@ -310,7 +312,7 @@
         cover (cmd_valid_o && issued == mark && t_mine && t_read && moves && !t_next);
     end
 
-    // ---- The relation of the counts to the arbiter registers
+    // ---- Relations of the counts to the registers of the arbiter
     wire [Q-1:0] head, move, issue, back;
     assign {head, move, issue, back} = \u_queue.f_places ;
     wire [Q-1:0] n_head = head - back, n_move = move - back, n_issue = issue - back,
@@ -323,7 +325,7 @@
     wire [W-1:0] came_me  = back_kind[KIND-1:4] == me ? came : 0;
     wire [3:0] w_word = w_words[4*w_mark[F-1:0] +: 4];
     wire [5:0] r_word = r_words[6*r_mark[F-1:0] +: 6];
-    // b_* are s_*, with the counts themselves for the slot that is accepted next.
+    // b_* are the values s_*; for the slot that is accepted next, they are the counts themselves.
     reg [W*SLOTS-1:0] b_w, b_r, b_wo, b_ro;
     always @* begin
         b_w  = s_w;

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_fifo: FIFO with first-word fall-through: the first word is on data_o while empty_o is 0.
+// npi_fifo: FIFO with first-word fall-through: while empty_o is 0, data_o is the first word.
 //
-// Words are stored in LUT RAM, or with BLOCK in block RAM, which needs no LUTs for words but one
-// more clock from push_i to empty_o. Pushing while full and popping while empty are errors of the
-// user; the proofs of the users show that they do not occur.
+// Words are stored in LUT RAM, or with BLOCK in block RAM. Block RAM needs no LUTs for the words,
+// but one more clock from push_i to empty_o. The user must not push while the FIFO is full or pop
+// while it is empty; the proofs of the users show that this does not happen.
 
 `default_nettype none
 `include "shift_order.vh"
 
 module npi_fifo #(
     parameter WIDTH = 72,
-    parameter LOG2  = 5, // depth, 2**LOG2 words; LOG2 2..24
-    parameter BLOCK = 0  // 1: words are in block RAM; 0: in LUT RAM
+    parameter LOG2  = 5, // depth: 2**LOG2 words, LOG2 is 2..24
+    parameter BLOCK = 0  // 1: the words are in block RAM; 0: in LUT RAM
 ) (
     input  wire             clk_i,
     input  wire             rst_i, // reset, which also empties the FIFO
@@ -24,13 +24,13 @@ module npi_fifo #(
     output wire             full_o
 );
     `SHIFT_ORDER(after, LOG2)
-    // Positions of the next word to write, and of the next word to move to data_o (in LUT RAM: the
-    // word on data_o).
+    // Addresses of the next word to write, and of the next word to move to data_o (with LUT RAM: of
+    // the word on data_o).
     reg  [LOG2-1:0] write_place, read_place;
     wire [LOG2-1:0] write_next = after(write_place);
 
     // full_o is a register, because paths of the requesters begin at it.
-    wire nearly; // room for exactly one word; also high for a full FIFO
+    wire nearly; // the FIFO has room for exactly one word or is full
     wire moves;  // the word at read_place can move to data_o
     reg  full;
     assign full_o = full;
@@ -59,19 +59,21 @@ module npi_fifo #(
                 if (push_i)
                     words[write_place] <= data_i;
         end else begin : g_block
-            // no_rw_check (Yosys): no word is read in the clock of its write (see below). Otherwise
-            // chips with a RAM that does not return the old word, such as ECP5, need 150 flip-flops
-            // and 80 LUTs to hold it.
+            // no_rw_check (Yosys): no word is read in the clock in which it is written (see below).
+            // Without this attribute, Yosys would add 150 flip-flops and 80 LUTs on chips whose RAM
+            // does not return the old word in this case, such as ECP5.
             (* ram_style = "block", no_rw_check *)
             reg [WIDTH-1:0] words [0:(1<<LOG2)-1];
             reg [WIDTH-1:0] word;
             reg             empty;
-            // The RAM returns only words of earlier clocks: it is never read at the address being
-            // written. pop_i is only an enable, so it may arrive late.
+            // The RAM returns only words of earlier clocks, because it is never read at the address
+            // that is being written. pop_i only drives an enable, so it may arrive late in the
+            // clock.
             wire fetch = empty || pop_i;
             wire ready = read_place != write_place;
             assign moves   = fetch && ready;
-            assign nearly  = after(write_next) == read_place; // including the word on data_o
+            // the count includes the word on data_o
+            assign nearly  = after(write_next) == read_place;
             assign empty_o = empty;
             assign data_o  = word;
             always @(posedge clk_i) begin
@@ -85,12 +87,13 @@ module npi_fifo #(
     endgenerate
 
 `ifdef FORMAL
-    // Proves that words leave in order and unchanged, and that the flags match the count.
-    parameter PROOF = 0; // 1 for the proof of the FIFO itself: errors of its user are excluded by
-                         // assumptions
+    // Proves that words leave in order and unchanged, and that the flags agree with the number of
+    // words.
+    // 1 in the proof of the FIFO itself, in which assumptions exclude errors of the user
+    parameter PROOF = 0;
 
-    // The words of the FIFO, numbered, and the numbers of the next word to write and to pop, for
-    // proofs of its users.
+    // Numbers the words of the FIFO, and computes the numbers of the next word to write and to pop,
+    // for the proofs of its users.
     `SHIFT_NUMBERS(place_of, number_of, after, LOG2)
     wire [LOG2-1:0] f_write = number_of(write_place);
     wire [LOG2-1:0] f_read  = number_of(read_place) - {{(LOG2-1){1'b0}}, BLOCK != 0 && !empty_o};
@@ -118,7 +121,7 @@ module npi_fifo #(
                 end
         end else begin : g_proof
             initial assume (rst_i);
-            // A word chosen by the prover leaves unchanged, in its position.
+            // A word that the prover chooses leaves unchanged, at its position.
             (* anyconst *) reg [LOG2-1:0] place;
             reg [WIDTH-1:0] value;
             reg inside = 1'b0;
@@ -139,7 +142,7 @@ module npi_fifo #(
                     if (BLOCK == 0)
                         assert (empty_o == (count == 0));
                     else if ($past(count) != 0 && !$past(pop_i) && !$past(rst_i))
-                        assert (!empty_o); // the word appears one clock later, not more
+                        assert (!empty_o); // the word appears at most one clock later
                     if (BLOCK != 0 && empty_o)
                         assert (count <= 1);
                     assert (inside == ({1'b0, from_read} < count));

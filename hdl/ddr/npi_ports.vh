@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_ports: PORTS memory ports (docs/memory.md) from the side of the memory, packed: port p has
-// bit p, bits 64p+63..64p, and so on. Include it at the beginning of a port list.
+// npi_ports: PORTS memory ports (docs/memory.md) as seen from the memory, packed: port p has bit p
+// of a 1-bit signal, bits 64p+63..64p of a 64-bit signal, and so on. Include it at the beginning of
+// a port list.
 
     input  wire [32*PORTS-1:0] npi_addr_i,
     input  wire [PORTS-1:0]    npi_addr_req_i,

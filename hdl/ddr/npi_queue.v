@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_queue: queue of accepted requests; moves the words of writes, issues commands and returns the
-// words of reads.
+// npi_queue: queue of accepted requests. It transfers the words of writes to the back-end, issues
+// the commands, and returns the words of reads to their ports.
 //
 // One LUT RAM holds 2**LOG2 requests (one place stays free). Four pointers follow each other:
-//   head   position of the next accepted request
-//   move   write that sends words to the back-end now (reads are skipped)
-//   issue  request that sends its command now, after all words of a write
-//   back   read that receives words now (writes are skipped)
-// In the same cycle, a request can be accepted, a write word can move, a command can be issued and
-// a read word can arrive. Commands are issued in the order of acceptance.
+//   head   place for the next accepted request
+//   move   write whose words are being sent to the back-end (reads are skipped)
+//   issue  request whose command is sent next; a write first sends all its words
+//   back   read whose words are arriving (writes are skipped)
+// In the same cycle, a request can be accepted, a write word can be sent, a command can be issued
+// and a read word can arrive. Commands are issued in the order of acceptance.
 
 `default_nettype none
 `include "shift_order.vh"
@@ -17,7 +17,7 @@
 module npi_queue #(
     parameter PORT_BITS = 1,  // width of a port number
     parameter ADDR_BITS = 24, // width of the address of a 64-bit word
-    parameter LOG2      = 4   // number of places, 2**LOG2; LOG2 2..5
+    parameter LOG2      = 4   // log2 of the number of places, 2..5
 ) (
     input  wire                 clk_i,
     input  wire                 rst_i,
@@ -25,13 +25,14 @@ module npi_queue #(
     input  wire                 push_i,
     input  wire [PORT_BITS-1:0] push_port_i,
     input  wire                 push_read_i,
-    input  wire [2:0]           push_size_i, // size of the transfer: 2**size words, 0..5
+    input  wire [2:0]           push_size_i, // size of the transfer: 2**size words, size is 0..5
     input  wire [ADDR_BITS-1:0] push_addr_i,
     output wire                 full_o,
     // words of writes
-    output reg  [(1<<PORT_BITS)-1:0] move_at_o, // port that must send a word: one bit, or no bit
+    // port that must send a word next, one-hot; 0 if no port must send one
+    output reg  [(1<<PORT_BITS)-1:0] move_at_o,
     output wire [PORT_BITS-1:0] move_port_o,
-    input  wire                 move_done_i,  // the word is sent in this cycle
+    input  wire                 move_done_i,  // high if the word is sent in this cycle
     // commands
     output wire                 cmd_valid_o,
     output wire                 cmd_read_o,
@@ -39,17 +40,18 @@ module npi_queue #(
     output wire [4:0]           cmd_last_o,   // number of words minus 1
     input  wire                 cmd_ready_i,
     // words of reads
-    output wire                 back_valid_o, // the next word from the back-end is for this port
+    // high if a word is expected from the back-end, for port back_port_o
+    output wire                 back_valid_o,
     output wire [PORT_BITS-1:0] back_port_o,
     output wire [4:0]           back_index_o, // position of the word in its transfer
-    input  wire                 back_done_i   // the word arrives in this cycle
+    input  wire                 back_done_i   // high if the word arrives in this cycle
 );
     localparam KIND = PORT_BITS + 4;
 
     reg [ADDR_BITS-1:0] addrs [0:(1<<LOG2)-1];
     reg [KIND-1:0] kinds [0:(1<<LOG2)-1]; // kind of a request: port, read, size
-    // The initial value prevents Yosys from using these registers as the RAM's address registers
-    // and keeping two copies of them.
+    // The initial values prevent Yosys from making a second copy of these registers, as address
+    // registers inside the RAM.
     reg [LOG2-1:0] head = 0, move = 0, issue = 0, back = 0;
     reg [4:0]      move_index, back_index;
 
@@ -57,13 +59,13 @@ module npi_queue #(
     `SHIFT_ORDER(moved_after, 5)
     `SHIFT_NUMBERS(moved_of, moved_number, moved_after, 5)
 
-    // Returns the number of words minus 1 for a size; 6 and 7 count as 5.
+    // Returns the number of words minus 1 for a size; sizes 6 and 7 count as 5.
     function [4:0] last_of;
         input [2:0] size;
         last_of = {size[2] && |size[1:0], size[2], size[2] || &size[1:0], size[2] || size[1],
                    |size};
     endfunction
-    // Returns the same for the size of the request at `move`.
+    // Returns the number of words minus 1 for the size of the request at `move`.
     function [4:0] move_last_of;
         input [2:0] size;
         case (size)
@@ -76,15 +78,15 @@ module npi_queue #(
         endcase
     endfunction
 
-    // The queue is full if all places but one are in use. This is a register, because requests wait
-    // for it.
+    // The queue is full if only one place is free. `full` is a flip-flop, because requests wait for
+    // this signal.
     wire [LOG2-1:0] head_next = after(head);
     wire            nearly    = after(head_next) == back;
     reg             full;
     assign full_o = full;
 
-    // The request at `move` is in registers, since the write FIFOs depend on it. It is loaded from
-    // the RAM or, if the RAM does not contain it yet, from the push.
+    // The kind of the request at `move` is in flip-flops, because the write FIFOs depend on it.
+    // These are loaded from the RAM or, if the request is not in the RAM yet, from the input.
     reg             moving;
     reg [KIND-1:0]  move_kind;
     wire [KIND-1:0] push_kind = {push_port_i, push_read_i, push_size_i};
@@ -155,8 +157,9 @@ module npi_queue #(
     wire unused = &{1'b0, issue_port, 1'b0};
 
 `ifdef FORMAL
-    // The four pointers never pass each other, and the kind of a request does not change.
-    // Registers of the queue, for npi_arbiter_proof; requests are numbered by position.
+    // The four pointers never pass each other, and the kind of a request does not change. These
+    // registers of the queue are used by npi_arbiter_proof; requests are numbered by their
+    // position.
     `SHIFT_NUMBERS(place_of, number_of, after, LOG2)
     wire [(KIND<<LOG2)-1:0]      f_kinds;
     wire [(ADDR_BITS<<LOG2)-1:0] f_addrs;
@@ -175,16 +178,16 @@ module npi_queue #(
     reg past = 1'b0;
     initial assume (rst_i);
 
-    // A request in any position of the ring leaves unchanged, once, and in its turn.
+    // A request at any position of the ring leaves the queue once, unchanged, and in order.
     (* anyconst *) reg [LOG2-1:0] place;
     reg [ADDR_BITS-1:0] addr;
     reg [KIND-1:0] kind;
     reg            inside = 1'b0, issued = 1'b0;
-    reg [5:0]      moved = 0, came = 0; // words of the request that have moved, and that have
-                                        // arrived
+    // number of words of this request that have been sent, and number that have arrived
+    reg [5:0]      moved = 0, came = 0;
     wire           is_read   = kind[3];
     wire [5:0]     all_words = {1'b0, last_of(kind[2:0])} + 6'd1;
-    // distances of the pointers from `back`, the oldest
+    // distance of each pointer from `back`, the oldest
     wire [LOG2-1:0] f_head, f_move, f_issue, f_back;
     assign {f_head, f_move, f_issue, f_back} = f_places;
     wire [LOG2-1:0] n_head = f_head - f_back, n_move = f_move - f_back, n_issue = f_issue - f_back,
@@ -232,14 +235,16 @@ module npi_queue #(
             if (inside) begin
                 assert (addrs[place] == addr && kinds[place] == kind);
                 assert (issued == (n_place < n_issue));
-                // No word of a write is sent before its turn, and all are sent before its command.
+                // The words of a write are not sent before those of earlier writes, and all of them
+                // are sent before the command.
                 if (n_place > n_move)
                     assert (moved == 6'd0);
                 if (move == place && moving)
                     assert (moved == (is_read ? 6'd0 : {1'b0, f_moved}));
                 if (n_place < n_move)
                     assert (moved == (is_read ? 6'd0 : all_words));
-                // No word of a read arrives before its command; its words are counted.
+                // The words of a read do not arrive before those of earlier reads; back_index
+                // counts them.
                 if (back != place)
                     assert (came == 6'd0);
                 if (back == place)
@@ -253,7 +258,8 @@ module npi_queue #(
             end
             if (back_valid_o && back == place)
                 assert (issued && is_read && back_port_o == kind[KIND-1:4]);
-            // An offered command or move is stable until it is taken.
+            // A command, or the request for a word of a write, stays unchanged until it is
+            // accepted.
             if (!$past(rst_i)) begin
                 if ($past(cmd_valid_o) && !$past(cmd_ready_i))
                     assert (cmd_valid_o && $stable(cmd_read_o) && $stable(cmd_addr_o) &&
@@ -266,7 +272,7 @@ module npi_queue #(
             cover (full_o);
             cover (inside && issued && is_read && came == 6'd4);
             cover (cmd_valid_o && !cmd_read_o && cmd_last_o == 5'd3);
-            // reaches all four actions in one cycle, as far as three positions allow
+            // all four actions happen in one cycle, as far as three places allow this
             cover (move_done_i && cmd_valid_o && cmd_ready_i && back_done_i);
             cover (push_i && move_done_i && back_done_i);
         end

@@ -2,11 +2,11 @@
 //
 // npi_select: round-robin arbiter for PORTS requesters, with an optional urgent class.
 //
-// Ports with their bit set in URGENT are served before the others; each class is served
-// round-robin. While a port that is not urgent waits, at most URGENT_RUN urgent grants are given in
-// a row. With N ports, U of them urgent, a request therefore waits for at most this many grants to
-// other ports:
-//   no port urgent:     N - 1 grants to other ports
+// Ports with their bit set in URGENT are served before the others; within each class, ports are
+// served round-robin. While a port that is not urgent waits, there are at most URGENT_RUN urgent
+// grants in a row. With N ports, of which U are urgent, a request waits for at most this number of
+// grants to other ports:
+//   no port urgent:     N - 1
 //   a port not urgent:  (N - U) * (URGENT_RUN + 1) - 1
 //   an urgent port:     U + (U - 1) / URGENT_RUN, with U < N; U - 1, with U = N
 // npi_select_proof proves these bounds.
@@ -16,21 +16,24 @@
 module npi_select #(
     parameter             PORTS      = 2, // number of ports, 2..8
     parameter [PORTS-1:0] URGENT     = 0,
-    parameter [2:0]       URGENT_RUN = 3'd3 // urgent grants in a row while others wait, 1..7
+    // maximum number of urgent grants in a row while other ports wait, 1..7
+    parameter [2:0]       URGENT_RUN = 3'd3
 ) (
     input  wire             clk_i,
     input  wire             rst_i,
-    input  wire [PORTS-1:0] req_i,    // requests, held until the cycle of ack_o
-    input  wire             enable_i, // a grant can be given in this cycle
-    output wire [PORTS-1:0] choice_o, // port that is served while any_o is high: one-hot, or 0
-    output wire             any_o,    // a grant is given
+    input  wire [PORTS-1:0] req_i,    // requests; a request is held until the cycle of its ack_o
+    input  wire             enable_i, // high if a grant can be given in this cycle
+    output wire [PORTS-1:0] choice_o, // port that gets the grant while any_o is high: one-hot, or 0
+    output wire             any_o,    // high if a grant is given
     output reg  [PORTS-1:0] ack_o     // grant of the previous cycle
 );
-    // Round-robin mask: the ports after the last one served in their class.
+    // Round-robin mask: ports with a higher number than the port of the same class that was served
+    // last.
     reg [PORTS-1:0] later;
     reg [2:0]       run;
-    // ack_o has a high fan-out, and paths from many ports are long; these paths begin at a copy of
-    // ack_o. The copy has no reset; otherwise synthesis would merge the two.
+    // ack_o has a high fan-out, and with many ports the paths from it are long. Therefore these
+    // paths begin at a copy of ack_o. The copy has no reset; with a reset, synthesis would merge it
+    // with ack_o.
     reg [PORTS-1:0] copy;
     wire [PORTS-1:0] served = PORTS > 2 ? copy : ack_o;
 
@@ -39,13 +42,14 @@ module npi_select #(
     wire [PORTS-1:0] normal  = asking & ~URGENT;
     wire             overdue = run == URGENT_RUN;
     wire [PORTS-1:0] members = |urgent && !(overdue && |normal) ? URGENT : ~URGENT;
-    // The port served last is not in `later`. Therefore req_i can replace `asking` here, which
-    // saves one input per port.
+    // The port that was served last is not in `later`, so req_i can be used here instead of
+    // `asking`, which saves one input per port.
     wire [PORTS-1:0] first   = req_i & later & members;
     wire [PORTS-1:0] turn    = asking & members;
 
-    // The lowest bit of `first` and of `turn`, and the ports above the chosen one. Written without
-    // a carry chain, because there are few ports.
+    // first_low and turn_low: the lowest bit that is set in `first` and in `turn`; above: the ports
+    // with a higher number than the chosen port. This is written without a carry chain, because
+    // there are few ports.
     reg [PORTS-1:0] first_low, turn_low, above;
     integer i;
     always @* begin
@@ -83,14 +87,15 @@ module npi_select #(
     end
 
 `ifdef FORMAL
-    // Proves that there is at most one grant per clock, only to a requester, within a bounded time.
+    // Proves that there is at most one grant per clock, that only requesters get grants, and that
+    // they get them within the bounds above.
     wire [PORTS-1:0] f_later = later, f_served = served; // for npi_arbiter_proof
     reg past = 1'b0;
     initial assume (rst_i);
 
-    (* anyconst *) reg [PORTS-1:0] me; // any port, one-hot; chosen by the prover
+    (* anyconst *) reg [PORTS-1:0] me; // one port, one-hot, chosen by the prover
     localparam [5:0] N = PORTS;
-    reg  [5:0] waited = 0;             // grants to other ports since the request began to wait
+    reg  [5:0] waited = 0;             // number of grants to other ports since this request began
     reg  [5:0] urgents, bound;
     wire me_asks = |(me & asking);
     integer q;
@@ -118,8 +123,9 @@ module npi_select #(
             waited <= waited + 6'd1;
         if (past && !rst_i) begin
             assert ((grant & (grant - 1'b1)) == 0);   // at most one grant
-            assert ((grant & ~asking) == 0);          // grants only to requesters
-            assert (|grant == (enable_i && |asking)); // no cycle is lost while a port asks
+            assert ((grant & ~asking) == 0);          // only a requester gets a grant
+            // if a port requests, no cycle passes without a grant
+            assert (|grant == (enable_i && |asking));
             assert (!any_o || grant == choice_o);
             assert (any_o == |grant);
             assert ((later & served) == 0 && (ack_o & ~served) == 0);

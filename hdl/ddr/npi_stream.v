@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_stream: turns a memory port (docs/memory.md) into two streams of 64-bit words. One stream
-// reads a buffer in order, and the other one writes a buffer in order, in bursts of 64 bytes. The
-// module reads ahead up to the depth of the port's FIFO.
+// npi_stream: converts a memory port (docs/memory.md) to two streams of 64-bit words. One stream
+// reads a buffer in order; the other writes a buffer in order, in bursts of 64 bytes. The module
+// reads ahead as far as the port's FIFO allows.
 //
-// read_start_i, while read_idle_o is high, starts reading a buffer; valid/take delivers its words.
-// Words of a burst beyond read_words_i, and all words after read_stop_i, are discarded.
-// write_start_i, while write_idle_o is high, starts writing a buffer; valid/ready accepts its
-// words. write_flush_i, high for one clock without valid, completes the current burst with words
-// whose byte enables are 0. write_idle_o is high when all accepted words are acknowledged, so that
-// every later request of any port sees them.
+// read_start_i, while read_idle_o is high, starts to read a buffer; valid/take delivers its words.
+// Words of a burst after the first read_words_i words, and all words after read_stop_i, are
+// discarded. write_start_i, while write_idle_o is high, starts to write a buffer; valid/ready
+// accepts its words. write_flush_i, high for one clock without valid, completes the current burst
+// with words whose byte enables are 0. write_idle_o is high when all accepted words have been
+// acknowledged, so that every later request of any port sees them.
 
 `default_nettype none
 
@@ -47,13 +47,15 @@ module npi_stream #(
     localparam [5:0] BURST = 6'd8, FIFO = 6'd32; // words
     localparam [3:0] SIZE_64_BYTES = 4'd3;
 
-    reg                 request, request_read; // a request waits for its acknowledgement
+    reg                 request, request_read; // a request is waiting for its acknowledgement
     reg [ADDR_BITS-1:6] read_addr, write_addr; // addresses of the next bursts
-    reg [WORD_BITS-1:0] to_ask, to_give;       // words not requested yet; words not delivered to
-                                               // the core yet
-    reg [5:0]           outstanding;           // words requested and not popped yet
-    reg [2:0]           filled;                // words in the current burst
-    reg [2:0]           bursts;                // bursts pushed but not acknowledged, at most 4
+    // number of words that must still be requested, and that must still be delivered to the core
+    reg [WORD_BITS-1:0] to_ask, to_give;
+    // number of words that were requested and have not been popped
+    reg [5:0]           outstanding;
+    reg [2:0]           filled;                // number of words in the current burst
+    // number of bursts that were pushed and have not been acknowledged, at most 4
+    reg [2:0]           bursts;
     reg                 padding;
 
     wire acked_read  = npi_addr_ack_i && request_read;
@@ -100,12 +102,13 @@ module npi_stream #(
             request_read <= 1'b0;
         end
 
-        // The idle signals are registers, and therefore one clock late, because the start of a core
-        // depends on them.
+        // The idle signals come from flip-flops, and are therefore one clock late, because the
+        // start of a core depends on them.
         read_idle_o  <= to_give == {WORD_BITS{1'b0}} && outstanding == 6'd0 &&
             !(request && request_read) && !read_start_i;
         write_idle_o <= filled == 3'd0 && bursts == 3'd0 && !push;
-        // Words and bursts are counted separately, so that no carry chain follows the core's take.
+        // Words and bursts are counted separately, so that the core's take is not followed by a
+        // carry chain.
         outstanding[2:0] <= outstanding[2:0] - {2'd0, npi_rd_pop_o};
         if (acked_read != popped_burst)
             outstanding[5:3] <= acked_read ? outstanding[5:3] + 3'd1 : outstanding[5:3] - 3'd1;
@@ -139,7 +142,8 @@ module npi_stream #(
 
         if (rst_i) begin
             request     <= 1'b0;
-            request_read <= 1'b1; // the same value as while idle, also before npi_init_done_i
+            // the same value as in the idle state, even before npi_init_done_i
+            request_read <= 1'b1;
             to_ask      <= {WORD_BITS{1'b0}};
             to_give     <= {WORD_BITS{1'b0}};
             outstanding <= 6'd0;
@@ -153,22 +157,24 @@ module npi_stream #(
 
 `ifdef FORMAL
     // Proves that requests follow the rules of docs/memory.md, and that the core receives exactly
-    // its words. The port has two FIFOs of 32 words and a controller that acknowledges at any time.
+    // its words. In this proof the port has two FIFOs of 32 words, and a controller that may
+    // acknowledge at any time.
     reg       past = 1'b0;
-    reg [5:0] f_pushed;         // words in the write FIFO
-    reg [5:0] promised;         // words of acknowledged reads, not popped yet
-    reg [5:0] there;            // promised words that are in the read FIFO
-    reg [6:0] f_owed;           // words of acknowledged writes that are still in the write FIFO
+    reg [5:0] f_pushed;         // number of words in the write FIFO
+    reg [5:0] promised;         // number of words of acknowledged reads that have not been popped
+    reg [5:0] there;            // number of these words that are in the read FIFO
+    // number of words of acknowledged writes that are still in the write FIFO
+    reg [6:0] f_owed;
     (* anyseq *) wire may_move, may_come;
     wire      moved = may_move && f_owed != 7'd0;
     wire      came  = may_come && there != promised;
-    // The core takes words only when they are offered, starts only when the stream is idle, and
-    // flushes without a word.
+    // Assumptions: the core takes a word only when it is offered, starts only when the stream is
+    // idle, and does not flush together with a word.
     reg [WORD_BITS-1:0] f_left; // number of words that the core may still take
-    reg [2:0] f_begun;          // words sent since the burst began
-    reg [ADDR_BITS-1:6] f_read, f_write; // addresses of the next bursts, after a start
+    reg [2:0] f_begun;          // number of words that were sent since the burst began
+    reg [ADDR_BITS-1:6] f_read, f_write; // addresses of the next bursts since the start
     reg       f_reads, f_writes;
-    reg       f_ready;          // the port was ready since the reset
+    reg       f_ready;          // high if the port has been ready since the reset
     initial assume (rst_i);
     always @* begin
         assume (!npi_addr_ack_i || npi_addr_req_o);
@@ -176,7 +182,8 @@ module npi_stream #(
         assume (npi_wr_almost_full_i == (f_pushed == 6'd32));
         assume (npi_init_done_i || !f_ready);
     end
-    always @* if (!rst_i) begin // idle_proof proves these for the streams of cores.
+    // For the streams of the cores, idle_proof proves these assumptions.
+    always @* if (!rst_i) begin
         core_takes:   assume (!read_take_i || read_valid_o);
         core_reads:   assume (!read_start_i || (read_idle_o && !read_stop_i));
         core_writes:  assume (!write_start_i || (write_idle_o && !write_valid_i && !write_flush_i));
@@ -211,8 +218,8 @@ module npi_stream #(
         end
     end
     always @* if (!rst_i && past) begin
-        // By the rules of docs/memory.md, no FIFO overflows or is popped when empty, and the words
-        // of a write precede its request.
+        // As the rules of docs/memory.md demand, no FIFO overflows or is popped when empty, and the
+        // words of a write are pushed before its request.
         assert (!npi_wr_push_o || f_pushed != 6'd32);
         assert (!npi_rd_pop_o || there != 6'd0);
         assert (promised <= 6'd32 && !(npi_addr_req_o && npi_rnw_o && promised > 6'd24));
@@ -224,21 +231,22 @@ module npi_stream #(
         assert ({1'b0, f_pushed} == f_owed + {1'b0, bursts, 3'd0} + {4'd0, filled});
         assert (bursts <= 3'd4 && f_owed <= 7'd32);
         assert (!write_idle_o || (filled == 3'd0 && bursts == 3'd0));
-        // The core receives exactly as many words as it requested; all requested words arrive.
+        // The core receives exactly the number of words that it requested, and all requested words
+        // arrive.
         assert (to_give == f_left);
         assert (!read_valid_o || f_left != {WORD_BITS{1'b0}});
         assert (to_ask == {WORD_BITS{1'b0}} || to_give >= to_ask);
-        // While words are still to be requested, all outstanding words belong to the core.
+        // As long as words must still be requested, all outstanding words are for the core.
         assert (to_ask == {WORD_BITS{1'b0}} ||
                 {1'b0, to_give} == {1'b0, to_ask} + {{(WORD_BITS - 5){1'b0}}, outstanding});
         assert (f_pushed <= 6'd32);
         assert (!padding || filled != 3'd0);
         assert (!npi_addr_req_o || npi_rnw_o || bursts != 3'd0);
         assert (request_read || f_ready);
-        // Bursts follow each other from the base address of the buffer.
+        // The bursts follow each other, beginning at the base address of the buffer.
         assert (!f_reads || read_addr == f_read);
         assert (!f_writes || write_addr == f_write);
-        // A padding word writes nothing.
+        // A padding word has no byte enables, so it writes nothing.
         assert (!npi_wr_push_o || npi_wr_be_o == 8'd0 || (write_valid_i && write_ready_o));
         cover (read_take_i && f_left == {{(WORD_BITS - 1){1'b0}}, 1'b1} && npi_addr_req_o &&
                !npi_rnw_o);
@@ -252,7 +260,7 @@ module npi_stream #(
         assert (npi_addr_req_o && $stable(npi_rnw_o) && $stable(npi_size_o));
         assert ($stable(npi_addr_o));
     end
-    // Idle is reported at most one clock late.
+    // The idle signals rise at most one clock late.
     always @(posedge clk_i) if (past && !rst_i && !$past(rst_i)) begin
         assert (write_idle_o || $past(filled != 3'd0 || bursts != 3'd0 || npi_wr_push_o));
         assert (read_idle_o ||

@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: MIT
 --
--- npi_stream_pkg: component declaration of the Verilog module npi_stream, for cores in VHDL.
+-- npi_stream_pkg: declares the Verilog module npi_stream as a component, for cores in VHDL.
 
 library ieee;
 use ieee.std_logic_1164.all;

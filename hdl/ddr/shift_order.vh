@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// shift_order: macros for counters with 2**BITS states in the order of a shift register.
+// shift_order: macros for counters with 2**BITS states that count in the order of a shift register.
 //
-// If only the states matter and not their numeric order, such a counter takes one to four LUTs in
-// all, instead of one per bit. BITS is 2..24. The order begins with 0, 1 and ends with the highest
-// bit alone.
+// Such a counter needs one to four LUTs in total, instead of one per bit. It can be used if only
+// the number of states matters, not their numeric order. BITS is 2..24. The order begins with 0, 1
+// and ends with the state in which only the highest bit is set.
 
-// SHIFT_TAPS is a constant: the taps of Xilinx XAPP052; the order adds state 0 to their 2**BITS - 1
-// states.
+// SHIFT_TAPS is a constant: the taps from Xilinx XAPP052. With these taps a shift register has
+// 2**BITS - 1 states; the order here also includes the state 0.
 `define SHIFT_TAPS(BITS) \
     ((BITS) == 5  ? 24'h000014 : \
      (BITS) == 8  ? 24'h0000B8 : \
@@ -35,7 +35,8 @@
                  ^(`SHIFT_TAPS(BITS) & {{24-(BITS){1'b0}}, from}) ^ !(|from[(BITS)-2:0])}; \
     endfunction
 
-// SHIFT_NUMBERS declares place_of(number) and number_of(from), for constants and proofs.
+// SHIFT_NUMBERS declares the functions place_of(number) and number_of(from), for constants and
+// proofs.
 `define SHIFT_NUMBERS(place_of, number_of, after, BITS) \
     function [(BITS)-1:0] place_of; \
         input integer number; \

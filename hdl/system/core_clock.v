@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// core_clock: generates a clock with the frequency of clk_i * MULTIPLY / DIVIDE, not faster than
-// clk_i; on Xilinx FPGAs with a DCM_CLKGEN.
+// core_clock: generates a clock with the frequency clk_i * MULTIPLY / DIVIDE, which is at most that
+// of clk_i. On Xilinx FPGAs it uses a DCM_CLKGEN.
 //
-// It is unrelated to clk_i: crossings go through hdl/cdc. In simulation its edges are at edges of
-// clk_i, so a fractional ratio holds on average, as for a clock with jitter.
+// The generated clock has no fixed phase to clk_i, so signals cross through hdl/cdc. In simulation
+// its edges coincide with edges of clk_i, so a fractional ratio is reached only on average, as with
+// a clock that has jitter.
 
 `default_nettype none
 
@@ -16,7 +17,7 @@ module core_clock #(
     output wire clk_o
 );
 `ifdef VERILATOR
-    reg [9:0] phase; // phase of half a clock, in units of 1 / DIVIDE
+    reg [9:0] phase; // phase in half clocks, in units of 1 / DIVIDE
     reg       level;
     assign clk_o = level;
     initial {phase, level} = 11'd0;

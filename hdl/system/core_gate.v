@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
 //
-// core_gate: gates the clock of a core: with GATED, the clock stops 16 clocks after the core became
-// idle.
+// core_gate: gates the clock of a core. With GATED, the clock stops 16 clocks after the core has
+// become idle.
 //
-// The 16 clocks let the pipelines of an idle core drain. On Xilinx FPGAs the gate is a BUFGCE. Its
-// enable comes from flip-flops of clk_i and a few LUTs.
+// During these 16 clocks the pipelines of an idle core become empty. On Xilinx FPGAs the gate is a
+// BUFGCE, and its enable comes from flip-flops of clk_i and a few LUTs.
 
 `default_nettype none
 
 module core_gate #(
-    parameter GATED = 0 // 1: gate the clock; 0: pass it on without logic
+    parameter GATED = 0 // 1: the clock is gated; 0: it is passed on without any logic
 ) (
     input  wire clk_i,
     input  wire rst_i,
-    input  wire access_i, // high while the core's slot is accessed
-    input  wire idle_i,   // promise of the core: without an access, no register changes later than
-                          // 16 clocks from now
+    input  wire access_i, // high during an access to the core's slot
+    // high if the core guarantees that without an access, no register changes later than 16 clocks
+    // from now
+    input  wire idle_i,
     output wire clk_o
 );
     generate
@@ -23,14 +24,14 @@ module core_gate #(
             assign clk_o = clk_i;
             wire unused = &{1'b0, rst_i, access_i, idle_i, 1'b0};
         end else begin : g_gate
-            reg  [4:0] rest; // clocks since the core became idle, at most 16
+            reg  [4:0] rest; // number of clocks since the core became idle, up to 16
             wire       active = rst_i || access_i || !idle_i;
             (* keep *) wire run; // kept, because core_pins.ucf refers to this net by its name
             assign     run    = active || !rest[4];
             always @(posedge clk_i)
                 rest <= active ? 5'd0 : rest + {4'd0, !rest[4]};
 `ifdef VERILATOR
-            reg open; // sampled before the rising edge of the clock, as in the BUFGCE
+            reg open; // sampled before the rising edge of the clock, as in a BUFGCE
             reg ungated;
             initial ungated = $test$plusargs("ungated") != 0; // for comparisons
             always_latch
@@ -38,13 +39,14 @@ module core_gate #(
                     open = run;
             assign clk_o = clk_i && (open || ungated);
 `elsif FORMAL
-            // In proofs the gated clock has a single edge, when the gate has closed.
+            // In proofs the gated clock has a single edge, at the time at which the gate closes.
             reg closed;
             always @(posedge clk_i)
                 closed <= !run;
             assign clk_o = !run && !closed;
-            // The gate is open while the core is active and for 16 clocks after that, then closed.
-            reg [4:0] since = 5'd16; // clocks since the core was active
+            // The gate is open while the core is active and for 16 clocks after that; then it is
+            // closed.
+            reg [4:0] since = 5'd16; // number of clocks since the core was last active
             wire f_active = rst_i || access_i || !idle_i;
             reg past = 1'b0;
             initial assume (rst_i);

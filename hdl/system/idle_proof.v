@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// idle_proof: proves that gating the clock of the core CORE in a slot (core_gate.v) has no effect;
-// only for the prover.
+// idle_proof: proves that gating the clock of the core CORE in a slot (core_gate.v) changes
+// nothing; only for the prover.
 //
-// When the gate closes, no register of the core takes another value, whatever the inputs are.
-// Gating is therefore invisible to the core. The core clock is `closes` here: idle_registers.v
-// adds this assertion for each flip-flop with this clock.
+// The proof shows that at the time at which the gate closes, no register of the core would take
+// another value at the next clock, whatever the inputs are. Therefore the core behaves the same
+// with and without gating. The core's clock is the signal `closes` here; idle_registers.v adds this
+// assertion for each flip-flop with this clock.
 
 `default_nettype none
 
@@ -24,7 +25,7 @@ module idle_proof (
     always @(posedge clk_i)
         cover (closes);
 
-    `CORE u_core ( // the pins of the core are unconstrained
+    `CORE u_core ( // all other pins of the core are unconstrained
         .clk_i(closes), .rst_i(rst_i),
         .bus_valid_i(bus_valid_i), .bus_write_i(bus_write_i), .bus_addr_i(bus_addr_i),
         .bus_wdata_i(bus_wdata_i), .bus_ready_o(bus_ready_o), .bus_rdata_o(bus_rdata_o),
@@ -35,8 +36,8 @@ module idle_proof (
         .idle_o(idle_o));
 
 `ifdef MEMORY
-    // The port acknowledges only requests, and returns requested words. Its outputs are stable
-    // while no word is on its way. It becomes ready once, permanently.
+    // Assumptions: the port acknowledges only requests and returns only requested words. Its
+    // outputs do not change while no word is on its way. Once it is ready, it stays ready.
     reg        ready = 1'b0;
     reg [6:0]  promised; // words
     reg [63:0] word;

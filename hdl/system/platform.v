@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// platform: the part that all other blocks of the chip connect to: the processor's FSMC bridge, the
+// platform: the blocks that connect all other blocks of the chip: the processor's FSMC bridge, the
 // register bus with SLOTS slots, and the memory controller with PORTS ports.
 //
-// Memory port 0 belongs to the bridge. The ports of slots and of memory ports 1 and up are packed:
-// slot s has bits s, 4s+3..4s and 32s+31..32s (docs/bus.md, docs/memory.md).
+// Memory port 0 belongs to the bridge. The signals of the slots, and of memory ports 1 and up, are
+// packed: slot s has bits s, 4s+3..4s and 32s+31..32s (docs/bus.md, docs/memory.md).
 
 `default_nettype none
 
 module platform #(
     parameter             SLOTS     = 3, // number of slots, 1 to 64
     parameter             PORTS     = 2, // number of memory ports, 2 to 8
-    parameter [PORTS-1:0] READ_FIFO = 0  // one bit per memory port: the port needs a FIFO for read
-                                         // words
+    // one bit per memory port: 1 if the port needs a FIFO for read words
+    parameter [PORTS-1:0] READ_FIFO = 0
 ) (
     input  wire                 clk_i,
     input  wire                 rst_i,

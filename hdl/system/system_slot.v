@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// system_slot: slot 0, with the chip's identity, interrupt lines, the DDR3 page, bus errors and the
-// cycle count.
+// system_slot: implements slot 0, with the chip's identity, the interrupt lines, the DDR3 page, bus
+// errors and the cycle count.
 //
-// hdl/system/system.regs.json lists the registers.
+// hdl/system/system.regs.json describes the registers.
 
 `default_nettype none
 
 module system_slot #(
-    parameter SLOTS  = 3,         // number of populated slots, including this one
+    parameter SLOTS  = 3,         // number of slots in use, including this one
     parameter CLK_HZ = 100000000, // Hz
-    parameter [32*SLOTS-1:0] CONTRACTS = {SLOTS{32'd0}} // hashes of the register maps, slot 0 first
+    // hash of each slot's register map, slot 0 first
+    parameter [32*SLOTS-1:0] CONTRACTS = {SLOTS{32'd0}}
 ) (
     `include "slot_ports.vh"
     // interrupt lines of slots SLOTS-1..1, and the interrupt line to the processor
@@ -19,10 +20,10 @@ module system_slot #(
     // FSMC bridge
     output wire [5:0]       page_o,         // DDR3 address bits 31..26
     input  wire             access_error_i, // one cycle
-    input  wire             error_memory_i, // the error happened in an access to memory, and is
-                                            // reported as register address 0x3FF
-    input  wire [9:0]       error_addr_i,   // address of the register whose access failed, if the
-                                            // error is not of memory
+    // the error belongs to an access to memory; it is reported with the register address 0x3FF
+    input  wire             error_memory_i,
+    // address of the register whose access failed; unused for a memory error
+    input  wire [9:0]       error_addr_i,
     input  wire             error_write_i,
     input  wire             late_i
 );
@@ -33,7 +34,7 @@ module system_slot #(
     reg [63:0] cycles;
     reg [9:0]  error_addr;
     reg        error_write;
-    reg [31:0] contract;      // register contract hash of the requested slot
+    reg [31:0] contract;      // hash of the register map of the slot that software selected
     wire [63:0] lines = {{(64-SLOTS){1'b0}}, slot_irq_i, own_irq};
     wire [31:0] scratch;
 
@@ -51,8 +52,8 @@ module system_slot #(
 
     assign irq_o = |lines;
 
-    // hash of the slot, looked up when the slot number is written, so that a read comes from a
-    // register
+    // hash of the slot whose number is being written; it is stored then, so that a read returns a
+    // flip-flop
     reg [31:0] asked;
     integer    s;
     always @* begin
@@ -67,8 +68,8 @@ module system_slot #(
             cycles_high_latched <= cycles[63:32];
         if (contract_write)
             contract <= asked;
-        // The first error is stored until its event has been cleared. An error in the clock in
-        // which the event is cleared counts as a new one.
+        // The first error is stored until software clears its event. An error in the clock in which
+        // the event is cleared counts as a new first error.
         if (access_error_i && (!error_open || clearing)) begin
             error_addr  <= error_memory_i ? 10'h3FF : error_addr_i;
             error_write <= error_write_i;
@@ -84,8 +85,9 @@ module system_slot #(
 
     wire unused = &{1'b0, scratch, 1'b0};
 `ifdef FORMAL
-    // Registers: formal.system_regs. Without an access only the cycle count changes, by n in n
-    // clocks, which the simulator adds at once (testbench/sim/quiet_span.cpp).
+    // The registers themselves are proven in formal.system_regs. Without an access only the cycle
+    // count changes, by n in n clocks. The simulator relies on this when it adds n at once
+    // (testbench/sim/quiet_span.cpp).
     reg past = 1'b0;
     (* anyseq *) reg begins; // a span
     reg [63:0] then;
@@ -117,7 +119,7 @@ module system_slot #(
             assert ({cycles, cycles_high_latched, error_addr, error_write} == 0);
             assert (contract == CONTRACTS[31:0]);
         end else if (past && !rst_i) begin
-            // The reported location belongs to the oldest error since the event was last clear.
+            // The reported address belongs to the first error since the event was cleared.
             if ($past(access_error_i && (!error_open || clearing)))
                 assert ({error_addr, error_write} ==
                         $past({error_addr_i | {10{error_memory_i}}, error_write_i}));
@@ -127,7 +129,7 @@ module system_slot #(
             assert (cycles_high_latched == $past(
                 bus_valid_i && !bus_write_i && bus_addr_i == SYSTEM_CYCLES_LO ?
                 cycles[63:32] : cycles_high_latched));
-            // The hash of a slot; 0 if the slot does not exist.
+            // The hash of the selected slot; 0 if this slot does not exist.
             if ($past(bus_valid_i && bus_write_i && bus_addr_i == SYSTEM_CONTRACT))
                 assert (contract ==
                         ((CONTRACTS >> {$past(bus_wdata_i[5:0]), 5'd0}) & 32'hFFFFFFFF));

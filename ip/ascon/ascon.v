@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ascon: Ascon-AEAD128 and Ascon-Hash256 (NIST SP 800-232) for buffers in DDR3; one round per
-// clock. Registers: ascon.regs.json. Page: README.md.
+// ascon: computes Ascon-AEAD128 and Ascon-Hash256 (NIST SP 800-232) for buffers in DDR3, with one
+// round per clock. Registers: ascon.regs.json. Page: README.md.
 //
 // State, key and message are processed in 64-bit words. Byte n of memory is in bits 8n+7..8n, as in
 // the standard.
@@ -12,52 +12,58 @@ module ascon (
     `include "slot_ports.vh"
     `include "memory_ports.vh"
     output wire        irq_o,
-    output wire        idle_o // no job is in progress
+    output wire        idle_o // high while no job is in progress
 );
     `include "ascon_regs.vh"
 
-    // Initial values, sections 4 and 5 of the standard. Their fields are version, numbers of
-    // rounds, bits of the tag or digest, and rate.
+    // Initial values by sections 4 and 5 of the standard. They contain the version, the numbers of
+    // rounds, the size of the tag or digest in bits, and the rate.
     localparam [63:0] IV_AEAD = 64'h00001000_808C0001, IV_HASH = 64'h00000801_00CC0002;
     localparam [3:0]  TWELVE_ROUNDS = 4'd0, EIGHT_ROUNDS = 4'd4, LAST_ROUND = 4'd11;
-    localparam [1:0]  ASSOCIATED = 2'd0, MESSAGE = 2'd1, WIPE = 2'd2; // kinds of data processed
+    // kind of data that a pass processes
+    localparam [1:0]  ASSOCIATED = 2'd0, MESSAGE = 2'd1, WIPE = 2'd2;
     localparam [3:0]  WAIT_FOR_START = 4'd0, ROUNDS = 4'd1, FIRST_WORDS = 4'd2, ADD_KEY = 4'd3,
                       LOAD_SIZE = 4'd4, SEPARATE = 4'd5, LOAD_TARGET = 4'd6, LOAD_SOURCE = 4'd7,
                       WORD = 4'd8, FINAL_KEY = 4'd9, LOAD_TAG = 4'd10, TAG_WORD = 4'd11,
                       DIGEST = 4'd12, FLUSH = 4'd13, DRAIN = 4'd14, CLEAR = 4'd15;
 
-    reg [3:0]   state, after;   // after: the state that follows the rounds
-    // One flag for each of the states ROUNDS, WORD, LOAD_SOURCE, LOAD_TAG, TAG_WORD and
-    // WAIT_FOR_START (idle). They are flip-flops because of their fan-out. busy is !idle.
+    reg [3:0]   state, after;   // after: state that follows when the rounds are done
+    // Flags: one for each of the states ROUNDS, WORD, LOAD_SOURCE, LOAD_TAG, TAG_WORD and
+    // WAIT_FOR_START (idle). They are flip-flops because of their high fan-out. busy is !idle.
     reg         in_rounds, in_word, in_source, in_tag, in_tag_word, idle, busy;
-    reg         keyed, from_memory; // keyed: the operand is a word of the key; from_memory: it is a
-                                    // word from memory
-    reg         deciphers;          // the operand is ciphertext
+    // keyed: the operand is a word of the key; from_memory: the operand is a word from memory
+    reg         keyed, from_memory;
+    // the operand replaces the word of the state, because it is ciphertext
+    reg         deciphers;
     reg [1:0]   pass;
     reg         decrypt, hash;
-    reg [319:0] s;              // Ascon's words S4 .. S0; 0 while idle, except that S4 and S3 may
-                                // hold the nonce
+    // state of Ascon, S4 .. S0; 0 while idle, except that S4 and S3 may hold the nonce
+    reg [319:0] s;
     reg [127:0] key;
-    reg [2:0]   key_words, nonce_words; // 32-bit words of the key and of the nonce written so far,
-                                        // 0 to 4
-    reg         key_came;       // a word of the key was written; key_words counts it one clock
-                                // later
+    // number of 32-bit words of the key, and of the nonce, that have been written, 0 to 4
+    reg [2:0]   key_words, nonce_words;
+    // high one clock after a word of the key was written; key_words increases at its end
+    reg         key_came;
     reg [3:0]   round;
     reg [23:0]  left;           // bytes left
-    reg         few, none;      // in state WORD: few: fewer than eight bytes are left; none: no
-                                // bytes are left, and the word consists of padding
-    reg [1:0]   index;          // index of the word in its block, tag or digest; in ADD_KEY and
-                                // FINAL_KEY 1 or 2: half of the key
+    // flags in state WORD. few: fewer than eight bytes are left; none: no byte is left, so the word
+    // is only padding
+    reg         few, none;
+    // index of the word in its block, tag or digest; in ADD_KEY, and in FINAL_KEY with 1 or 2: half
+    // of the key
+    reg [1:0]   index;
     reg         differs, valid, aborted, wipe;
-    reg         clear, acting;  // clear: s becomes 0; acting: a clear or a command takes effect,
-                                // and bus accesses wait
-    reg [5:0]   bad;            // one bit per setting, as in put_job: it is misaligned or too long
+    // clear: s becomes 0; acting: a clear or a command takes effect, and bus accesses must wait
+    reg         clear, acting;
+    // one bit per register, in the order of put_job: its value is misaligned or too large
+    reg [5:0]   bad;
 
     // ---- registers ----
     wire        control, put_key, nonce, ready, drained, done, refused;
-    wire [4:0]  command;        // value written to CONTROL, one clock later
-    wire [5:0]  put_job;        // one bit per write to AD_SIZE, SIZE, AD_BASE, SOURCE, TARGET, TAG
-    wire [31:0] setting;        // register that the current state reads
+    wire [4:0]  command;        // value written to CONTROL, delayed by one clock
+    // write pulses of AD_SIZE, SIZE, AD_BASE, SOURCE, TARGET and TAG, in this order
+    wire [5:0]  put_job;
+    wire [31:0] setting;        // value of the register that the current state reads
     reg  [2:0]  wanted;
 
     ascon_regs u_registers (
@@ -78,8 +84,8 @@ module ascon (
         .source_write_o(put_job[3]), .target_write_o(put_job[4]), .tag_write_o(put_job[5]),
         .busy_i(!idle), .ram_addr_i(wanted), .ram_o(setting));
 
-    // Commands come from registers, one clock after their write, because FORGET drives 448
-    // flip-flops. No bus access can happen in between.
+    // Commands pass through flip-flops, because FORGET drives 448 flip-flops. They take effect one
+    // clock after their write, and no bus access can take place in between.
     wire start   = idle && |command[2:0] && command[4:3] == 2'd0;
     wire aead    = !command[ASCON_CONTROL_HASH_LSB];
     wire go      = start && bad == 6'd0 && (!aead || (key_words[2] && nonce_words[2]));
@@ -89,7 +95,7 @@ module ascon (
     assign refused = start && !go;
     assign bus_ready_o = ready && !acting;
 
-    // the wiped message is overwritten with zeros
+    // clears the state; `drained` also ends the pass that overwrites a message with zeros
     wire clears  = (go && !aead) || forget || (idle && abort) || drained;
     always @(posedge clk_i) begin
         clear   <= rst_i || clears;
@@ -106,19 +112,20 @@ module ascon (
 
     wire        read_valid, read_idle, write_ready, write_idle;
     wire [63:0] read_data;
-    reg         both_idle; // the streams were idle one clock ago. No state reads this in the clock
-                           // after a start or a word, when it would be wrong
+    // high if both streams were idle one clock ago; it is wrong in the clock after a start or a
+    // word, but no state reads it then
+    reg         both_idle;
     wire [23:0] words = in_tag ? 24'd2 : {3'd0, left[23:3]} + {23'd0, |left[2:0]};
 
-    // Byte enables of this word: all eight bytes, or only the remaining ones. The padding adds a 1
-    // bit after them.
+    // Byte enables of this word: all eight bytes, or only the bytes that are left. A 1 bit, the
+    // padding, follows the last byte.
     wire        last = in_word && few;
     wire [7:0]  be   = last ? ~(8'hFF << left[2:0]) : 8'hFF;
     wire [63:0] pad  = last ? 64'd1 << {left[2:0], 3'd0} : 64'd0;
     wire [63:0] mask = {{8{be[7]}}, {8{be[6]}}, {8{be[5]}}, {8{be[4]}},
                         {8{be[3]}}, {8{be[2]}}, {8{be[1]}}, {8{be[0]}}};
 
-    reg  writes; // this pass writes results; set before its first word
+    reg  writes; // high if this pass writes its results to memory; set before the first word
     wire reads  = !pass[1] && !none;
     wire step   = in_word && (!reads || read_valid) && (!writes || none || write_ready);
     wire tag_step    = in_tag_word && (decrypt ? read_valid : write_ready);
@@ -140,10 +147,10 @@ module ascon (
     );
     assign idle_o         = idle && both_idle && read_idle && write_idle;
 
-    // ---- 320-bit state: each clock performs a round, or adds an operand to one word ----
-    // The operand is a word of the message, the key, the nonce or a constant. While decrypting, the
-    // added value replaces the word of the state by the ciphertext. The value is kept as a net of
-    // its own, which saves 72 LUTs.
+    // ---- 320-bit state: each clock performs a round, or adds an operand to one word ---- The
+    // operand is a word of the message, the key, the nonce or a constant. While decrypting, the
+    // ciphertext replaces the word of the state, which is done by choosing the added value. This
+    // value is a separate net, which saves 72 LUTs.
     wire        use_iv   = state == FIRST_WORDS && index == 2'd0;
     wire [63:0] operand  = (from_memory ? read_data : 64'd0) | (busy ? 64'd0 : {2{bus_wdata_i}}) |
                            (keyed && index[0] ? key[63:0] : 64'd0) |
@@ -154,12 +161,12 @@ module ascon (
     wire        second   = index[0] && !hash;
     wire [63:0] chosen   = in_tag_word ? (second ? s[319:256] : s[255:192])
                                        : second ? s[127:64] : s[63:0];
-    // Encrypted or decrypted bytes, a word of the tag or its difference from the expected tag, or a
-    // word of the digest.
+    // Result: encrypted or decrypted bytes, a word of the tag or its difference from the expected
+    // tag, or a word of the digest.
     wire [63:0] sum      = chosen ^ operand;
     (* keep *) wire [63:0] added    = ((deciphers ? sum : operand) & mask) ^ pad;
 
-    // Each bit of `takes` adds `added` to one half of a 64-bit word of s.
+    // Each bit of `takes` selects one half of a 64-bit word of s, to which `added` is added.
     wire absorbs = step && !pass[1];
     wire [9:0] takes = {{2{(state == ADD_KEY && index[1]) || state == SEPARATE}} |
                             {put_nonce && nonce_words[1:0] == 2'd3,
@@ -221,7 +228,8 @@ module ascon (
                 round   <= TWELVE_ROUNDS;
                 index   <= 2'd0;
                 after   <= FIRST_WORDS;
-                enter(aead ? FIRST_WORDS : CLEAR); // hashing needs no nonce
+                // hashing begins with a state of 0, so CLEAR removes a nonce
+                enter(aead ? FIRST_WORDS : CLEAR);
                 differs <= 1'b0;
                 valid   <= 1'b0;
                 aborted <= 1'b0;
@@ -255,8 +263,8 @@ module ascon (
             end
             LOAD_TARGET: if (both_idle)
                 enter(pass == WIPE ? WORD : LOAD_SOURCE);
-            // The stream has been idle since LOAD_TARGET or since the start, so LOAD_SOURCE needs
-            // no wait.
+            // No wait is needed in LOAD_SOURCE, because the stream has been idle since LOAD_TARGET
+            // or since the start.
             LOAD_SOURCE: enter(pass == ASSOCIATED && left == 24'd0 ? SEPARATE : WORD);
             WORD: if (step) begin
                 left  <= last ? 24'd0 : left - 24'd8;
@@ -339,8 +347,8 @@ module ascon (
     end
 
 `ifdef FORMAL
-    // Invariants for formal.idle_ascon. The flags agree with the state. The stream is idle while
-    // there is no job, and before the first LOAD_SOURCE.
+    // Invariants for formal.idle_ascon: the flags agree with the state, and the stream is idle
+    // while there is no job and before the first LOAD_SOURCE.
     (* hierconn *) wire [23:0] \u_stream.to_give ; // signals of u_stream
     (* hierconn *) wire [5:0]  \u_stream.outstanding ;
     (* hierconn *) wire [2:0]  \u_stream.filled , \u_stream.bursts ;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// ascon_round: one round of Ascon's permutation (NIST SP 800-232, section 3), combinational. The
-// words of the state are bits 63..0 (S0) to 319..256 (S4).
+// ascon_round: computes one round of Ascon's permutation (NIST SP 800-232, section 3),
+// combinationally. The words of the state are bits 63..0 (S0) to 319..256 (S4).
 
 `default_nettype none
 
 module ascon_round (
     input  wire [319:0] state_i,
-    input  wire [3:0]   round_i, // index of the round, 0..11; a permutation of 8 rounds begins with
-                                 // 4
+    // index of the round, 0..11; a permutation of 8 rounds begins with index 4
+    input  wire [3:0]   round_i,
     output wire [319:0] state_o
 );
     function [63:0] right(input [63:0] word, input integer bits);
@@ -19,7 +19,7 @@ module ascon_round (
     wire [63:0] a0 = state_i[63:0],    a1 = state_i[127:64], a3 = state_i[255:192],
         a4 = state_i[319:256];
     wire [63:0] a2 = state_i[191:128] ^ {56'd0, ~round_i, round_i};
-    // Substitution: 64 S-boxes of 5 bits in parallel.
+    // Substitution layer: 64 S-boxes of 5 bits, in parallel.
     wire [63:0] b0 = a0 ^ a4, b1 = a1, b2 = a2 ^ a1, b3 = a3, b4 = a4 ^ a3;
     wire [63:0] c0 = b0 ^ (~b1 & b2), c1 = b1 ^ (~b2 & b3), c2 = b2 ^ (~b3 & b4);
     wire [63:0] c3 = b3 ^ (~b4 & b0), c4 = b4 ^ (~b0 & b1);

@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  *
- * ascon_servant: Cores::Ascon by the core: buffers and registers through the FSMC.
+ * ascon_servant: implements Cores::Ascon with the core: it accesses the core's registers and
+ * buffers through the FSMC.
  */
 #include "ascon_servant.h"
 #include "ascon_regs.h"
 #include "fsmc.h"
 
-#define TIMEOUT_MS 100U /* ms; a message of 1024 bytes takes 2200 clocks */
+#define TIMEOUT_MS 100U /* time-out, ms; a message of 1024 bytes takes 2200 clocks */
 #define KEY_BYTES 16
 
-/* Byte offsets of the buffers from the memory address of the core. */
+/* Byte offsets of the buffers, relative to the core's memory address. */
 #define ASSOCIATED 0U
 #define MESSAGE 1024U
 #define RESULT 2048U
@@ -35,7 +36,7 @@ Hw_Status Ascon_Core_init(Ascon_Core* self, U32 slot, U32 memory, const Hw_Port*
     return HW_OK;
 }
 
-/* Writes a key or a nonce: four words, little-endian. */
+/* Writes a key or a nonce as four little-endian words. */
 static void setFour(const Ascon_Core* self, U32 word, const U8* bytes) {
     int i;
     for (i = 0; i < KEY_BYTES; i += 4)
@@ -48,9 +49,9 @@ static int fits(const Cores_Bytes* bytes) {
     return bytes->size <= ASCON_LIMIT;
 }
 
-/* Returns 1 if the core hangs: an earlier operation has not ended, because the memory does not
- * respond. The core would ignore a new key, nonce or start, and the end of the earlier operation
- * would look like the end of the new one. */
+/* Returns 1 if an earlier operation of the core has not ended, because the memory does not respond.
+ * The core would then ignore a new key, nonce or start, and the end of the earlier operation would
+ * look like the end of the new operation. */
 static int hangs(const Ascon_Core* self) {
     return (FSMC_read(self->core.slot, ASCON_STATUS) & ASCON_STATUS_BUSY_MASK) != 0;
 }
@@ -65,7 +66,8 @@ static Ice_Status run(Ascon_Core* self, U32 control, const Cores_Bytes* associat
     set(self, ASCON_AD_SIZE, associatedSize);
     set(self, ASCON_SIZE, size);
     set(self, ASCON_EVENT,
-        ASCON_EVENT_DONE_MASK | ASCON_EVENT_REFUSED_MASK); /* left by an abandoned operation */
+        /* clears the events that an abandoned operation has left */
+        ASCON_EVENT_DONE_MASK | ASCON_EVENT_REFUSED_MASK);
     self->core.done[DONE] = 0;
     self->core.done[REFUSED] = 0;
     set(self, ASCON_CONTROL, control);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ascon_servant_test: compares Cores::Ascon, computed by the core through the FSMC driver, with the
-// model.
+// ascon_servant_test: compares the results of Cores::Ascon, which the core computes and the FSMC
+// driver transfers, with the model.
 
 #include "Vascon_slot.h"
 #include "core_slot.h"
@@ -13,7 +13,7 @@ extern "C" {
 
 namespace {
 
-// Returns a list of bytes as the sequence type that the servant reads.
+// Converts a list of bytes to the sequence type that the servant reads.
 template <class List> Cores_Bytes bytes(const List& list) {
     return {static_cast<Ice_Int>(list.size()), const_cast<uint8_t*>(list.data())};
 }
@@ -71,7 +71,7 @@ TEST(AsconServant, WhileTheCoreHangsNothingIsTakenForAnAnswer) {
     ASSERT_EQ(Cores_Ascon_setKey(&core.servant, &k, nullptr), ICE_OK);
     slot.memory_.hold(true);
     EXPECT_EQ(Cores_Ascon_hash(&core.servant, &m, &got, nullptr), ICE_TIMEOUT);
-    // The core is still busy with the abandoned message, and would ignore a key or nonce.
+    // The core is still busy with the abandoned message, so it would ignore a key or nonce.
     EXPECT_EQ(Cores_Ascon_setKey(&core.servant, &o, nullptr), ICE_TIMEOUT);
     EXPECT_EQ(Cores_Ascon_forget(&core.servant, nullptr), ICE_TIMEOUT);
     EXPECT_EQ(Cores_Ascon_hash(&core.servant, &m, &got, nullptr), ICE_TIMEOUT);
@@ -81,12 +81,13 @@ TEST(AsconServant, WhileTheCoreHangsNothingIsTakenForAnAnswer) {
     slot.memory_.hold(false);
     slot.bench_.waitFor([&] { return !(slot.bus_.read(ASCON_STATUS) & ASCON_STATUS_BUSY_MASK); },
                         "the core to abort", 1000);
-    // The abandoned message ends after the next call has begun, before the interrupt.
+    // The abandoned message has ended and its event is still set; the next call must not take this
+    // event for its own.
     ASSERT_EQ(Cores_Ascon_seal(&core.servant, &n, &m, &m, &text, &tag, nullptr), ICE_OK);
     auto want = asconEncrypt(key, nonce, message, message);
     EXPECT_EQ(hex(AsconBytes(text.data, text.data + text.size)), hex(want.text));
     EXPECT_EQ(hex(AsconBytes(tag.data, tag.data + tag.size)), hex(want.tag));
-    Hw_Core_interrupt(&core.core); // no interrupt is pending
+    Hw_Core_interrupt(&core.core); // an interrupt without an event must have no effect
     EXPECT_EQ(Cores_Ascon_forget(&core.servant, nullptr), ICE_OK);
     EXPECT_EQ(Cores_Ascon_seal(&core.servant, &n, &m, &m, &text, &tag, nullptr),
               ICE_UNKNOWN_EXCEPTION)

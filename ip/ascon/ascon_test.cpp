@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ascon_test: compares the core and its model with the known answers of Ascon's authors, and the
-// core with the model while the memory stalls.
+// ascon_test: compares the core and its model with the known answers that Ascon's authors
+// published, and compares the core with the model while the memory stalls.
 
 #include "Vascon_slot.h"
 #include "ascon_regs.h"
@@ -20,8 +20,8 @@ protected:
         bus_.write(ASCON_MASK, 3);
         place();
     }
-    // Places the buffers at random addresses, each in a separate quarter of the address space and
-    // at least 64 KiB from the next.
+    // Places each buffer at a random address in a quarter of the address space of its own, at least
+    // 64 KiB from the other buffers.
     void place() {
         uint32_t quarter = random_.next();
         for (auto [word, base] : {std::pair(ASCON_AD_BASE, &adBase_),
@@ -61,7 +61,7 @@ protected:
         EXPECT_EQ(finish(), ASCON_EVENT_DONE_MASK);
         return {memory_.bytes(target_, message.size()), tag()};
     }
-    // Returns false if the core did not accept the tag.
+    // Decrypts; returns false if the core rejected the tag.
     bool decrypt(const AsconKey& nonce, const AsconBytes& associated, const AsconSealed& sealed) {
         memory_.store(adBase_, associated);
         memory_.store(source_, sealed.text);
@@ -130,21 +130,22 @@ TEST_F(AsconTest, HashesTheKnownAnswers) {
 TEST_F(AsconTest, EqualsTheModelForRandomMessages) {
     for (int i = 0; i < 60; ++i) {
         place();
-        bool isSlow = i % 6 == 5; // a memory that is slower than the rounds between two accesses
+        // in some rounds, the memory needs more time for an access than the core for its rounds
+        bool isSlow = i % 6 == 5;
         memory_.setStall(isSlow ? 0.97 : 0.2);
         memory_.setLinger(isSlow ? 0.97 : 0);
         auto key = randomKey(), nonce = randomKey();
         auto associated = random(random_.below(200)), message = random(random_.below(600));
         if (i % 3 == 0)
-            put(ASCON_KEY, randomKey()); // only the last four words written count as the key
+            put(ASCON_KEY, randomKey()); // only the last four words that are written form the key
         put(ASCON_KEY, key);
         auto sealed = encrypt(nonce, associated, message),
              want = asconEncrypt(key, nonce, associated, message);
         ASSERT_EQ(hex(sealed.text), hex(want.text)) << associated.size() << ", " << message.size();
         ASSERT_EQ(hex(sealed.tag), hex(want.tag));
         EXPECT_EQ(memory_.byte(tagBase_ + 16), 0) << "16 bytes, no more";
-        // Changes each bit of the protected data in turn: the tag is then wrong, and the message is
-        // erased.
+        // Changes each bit of the protected data in turn. The core must then reject the tag and
+        // erase the message.
         auto forged = sealed;
         auto forgedAd = associated;
         uint8_t bit = static_cast<uint8_t>(1u << random_.below(8));
@@ -174,7 +175,8 @@ TEST_F(AsconTest, ADigestWaitsForRoomInTheMemorysFifo) {
     sizes(0, message.size());
     auto start = [&] { bus_.write(ASCON_CONTROL, ASCON_CONTROL_HASH_MASK); };
     memory_.setLinger(1);
-    for (int i = 0; i < 4; ++i) { // one burst each; together they fill the 32 words of the FIFO
+    // each start writes one burst; four bursts fill the 32 words of the FIFO
+    for (int i = 0; i < 4; ++i) {
         start();
         ASSERT_EQ(finish(), ASCON_EVENT_DONE_MASK);
     }
@@ -191,8 +193,8 @@ TEST_F(AsconTest, ADigestWaitsForRoomInTheMemorysFifo) {
 
 TEST_F(AsconTest, CountsSizesOfUpTo16MiB) {
     put(ASCON_KEY, sixteen(0));
-    // If the core ignored bits of a size, the message would be empty, or would be processed without
-    // reading it.
+    // If the core ignored the upper bits of a size, it would see an empty message and not read any
+    // data.
     auto goesOn = [&](uint32_t how) {
         uint64_t before = memory_.reads();
         put(ASCON_NONCE, sixteen(1));
@@ -253,7 +255,7 @@ TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
         << "three words of a nonce";
     bus_.write(ASCON_NONCE, 7);
     EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_DONE_MASK);
-    // A nonce that was begun is discarded.
+    // A nonce that was written only in part is discarded.
     sizes(0, 5);
     memory_.store(source_, counted(9, 5));
     bus_.write(ASCON_NONCE, 0x12345678);
@@ -264,7 +266,8 @@ TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
     bus_.write(ASCON_CONTROL, ASCON_CONTROL_ABORT_MASK);
     EXPECT_EQ(hex(encrypt(sixteen(1), {}, counted(9, 5)).text),
               hex(asconEncrypt(sixteen(2), sixteen(1), {}, counted(9, 5)).text));
-    // A nonce may follow immediately; a start and an abort in one write have no effect.
+    // A new nonce may follow an abort immediately. If start and abort are written together, neither
+    // has an effect.
     for (uint32_t how :
          {ASCON_CONTROL_ABORT_MASK, ASCON_CONTROL_ABORT_MASK | ASCON_CONTROL_ENCRYPT_MASK}) {
         put(ASCON_NONCE, sixteen(5));
@@ -301,8 +304,8 @@ TEST_F(AsconTest, SettingsWrittenBehindTheStartAreIgnored) {
     for (int clocks = 0; clocks < 300; clocks += 7) {
         place();
         auto sealed = asconEncrypt(key, nonce, {}, random(300));
-        sealed.tag[clocks % 16] ^= 1; // the core reads TARGET again, to overwrite the decrypted
-                                      // data
+        // with a wrong tag, the core reads TARGET again, to overwrite the decrypted data
+        sealed.tag[clocks % 16] ^= 1;
         memory_.store(source_, sealed.text);
         memory_.store(tagBase_, sealed.tag);
         sizes(0, sealed.text.size());
@@ -354,7 +357,7 @@ TEST_F(AsconTest, SpeedWhenTheMemoryKeepsUp) {
     double hashed = 2048.0 / static_cast<double>(clocksOf(ASCON_CONTROL_HASH_MASK, 4096) -
                                                  clocksOf(ASCON_CONTROL_HASH_MASK, 2048));
     std::printf("Ascon-AEAD128 %.3f bytes a clock, Ascon-Hash256 %.3f\n", sealed, hashed);
-    EXPECT_GE(sealed, 1.6); // 16 bytes take 8 rounds and one clock per word
+    EXPECT_GE(sealed, 1.6); // 16 bytes take 8 rounds and two additional clocks
     EXPECT_GE(hashed, 8.0 / 13 - 0.001);
 }
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Runs ascon's part of a mission: the core seals a report and opens it, and detects a forged
-one."""
+"""Runs the part of a mission for the core ascon: the core encrypts a report and decrypts it, and
+rejects a forged report."""
 import os
 
 
 def fly(log, proxy, report):
-    import Cores  # made by loadSlice
+    import Cores  # module that loadSlice generates from Ascon.ice
 
     ascon = Cores.AsconPrx.uncheckedCast(proxy("ascon"))
     nonce = os.urandom(16)
@@ -23,7 +23,7 @@ def fly(log, proxy, report):
     if valid or opened:
         raise RuntimeError("ascon: a forged report was opened")
     digest = log.call("ground -> UAV", "ascon.hash(nothing)", lambda: ascon.hash(b""))
-    # The first known answer of the standard's authors.
+    # The first known answer that the standard's authors published.
     if bytes(digest).hex() != "0b3be5850f2f6b98caf29f8fdea89b64a1fa70aa249b8f839bd53baa304d92b2":
         raise RuntimeError("ascon: the digest of nothing is %s" % bytes(digest).hex())
     log.say("ascon: sealed, opened, and a forged bit found")

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// known_answers: inputs of the tests, and the known answers of NIST SP 800-232. A test writes all
-// its answers in the format of the published file; the text must have the SHA-256 of that file.
+// known_answers: provides inputs for tests, and the known answers of NIST SP 800-232. A test writes
+// all its answers in the format of the published file; the SHA-256 of this text must be that of the
+// published file.
 
 #pragma once
 
@@ -12,7 +13,7 @@
 #include <openssl/sha.h>
 #include <string>
 
-// Keys, messages and their hexadecimal digits.
+// Return data that counts up from `first` (messages, keys), and the hexadecimal digits of data.
 inline AsconBytes counted(uint8_t first, size_t size) {
     AsconBytes bytes(size);
     for (size_t i = 0; i < size; ++i)
@@ -35,7 +36,7 @@ template <class Bytes> std::string hex(const Bytes& bytes) {
     return text;
 }
 
-// SHA-256 of two files of github.com/ascon/ascon-c: crypto_aead/asconaead128,
+// SHA-256 of two files in github.com/ascon/ascon-c: crypto_aead/asconaead128,
 // LWC_AEAD_KAT_128_128.txt (1089 answers) and crypto_hash/asconhash256, LWC_HASH_KAT_128_256.txt
 // (1025 answers).
 constexpr char aeadFile[] = "BBBC34692FE05E5FDA0A3B025585622AB3E3747495E5E3655B29AAE8C2A4BD33";
@@ -47,8 +48,8 @@ inline std::string sha256(const std::string& text) {
     return hex(digest);
 }
 
-// Returns the text of the file of AEAD answers. `seal` returns the ciphertext followed by its tag,
-// for the key 00 01 .., the nonce 10 11 .. and its arguments.
+// Returns the text of the published file of AEAD answers, computed by `seal`. `seal` uses the key
+// 00 01 .. and the nonce 10 11 .., and returns the ciphertext followed by the tag.
 inline std::string aeadAnswers(const std::function<AsconBytes(const AsconBytes& associated,
                                                               const AsconBytes& message)>& seal) {
     std::string text;

@@ -3,8 +3,9 @@
 // camera: writes frames from a parallel sensor port into three buffers in DDR3, and offers complete
 // frames to another core. Registers: camera.regs.json. Page: README.md.
 //
-// frame_valid_o offers the newest frame, in buffer frame_index_o, to another core. A frame taken
-// with frame_take_i is not overwritten until the next one is taken.
+// While frame_valid_o is high, the newest frame is available in buffer frame_index_o. The other
+// core takes this frame with frame_take_i. The frame is then not overwritten until that core takes
+// the next one.
 
 `default_nettype none
 
@@ -12,11 +13,11 @@ module camera (
     `include "slot_ports.vh"
     `include "memory_ports.vh"
     output wire        irq_o,
-    // interface of the core that uses the frames
+    // to the core that uses the frames
     output wire        frame_valid_o,
     output wire [1:0]  frame_index_o,
     input  wire        frame_take_i,
-    // sensor, in the clock domain pclk_i
+    // sensor pins, in the clock domain pclk_i
     input  wire        pclk_i,
     input  wire        vsync_i,
     input  wire        href_i,
@@ -29,18 +30,20 @@ module camera (
                      FINISH = 3'd4, WAIT_FOR_MEMORY = 3'd5;
 
     reg [2:0]  state;
-    reg        capturing, listening; // capturing: state is CAPTURE; listening: the state accepts
-                                     // tokens
-    reg        stopping;             // STOP was written: no further frame is captured
-    reg        whole;                // the frame that is ending, or has ended, is complete
+    // capturing: state is CAPTURE; listening: the state accepts tokens
+    reg        capturing, listening;
+    reg        stopping;             // STOP was written, so no further frame is captured
+    reg        whole;                // the frame that is ending or has just ended is complete
     reg        again;                // the next frame has already begun
-    reg [8:0]  width, words;         // words per line, and number of the current word, starting at
-                                     // 1
+    // number of words per line, and number of the current word, starting with 1
+    reg [8:0]  width, words;
     reg [11:0] height, y;
-    reg [2:0]  x;                    // index of the next pixel in its word
-    reg        room;                 // the current line is not full yet
-    reg        last_word, last_line; // one clock late: words == width; y + 1 == height
-    reg [31:0] base, stride;         // address of buffer 1, and distance of the buffers, bytes
+    reg [2:0]  x;                    // index of the next pixel in its word of eight pixels
+    reg        room;                 // the current line still has space for pixels
+    // results of words == width and of y + 1 == height, delayed by one clock
+    reg        last_word, last_line;
+    // address of buffer 1, and distance between the buffers, in bytes
+    reg [31:0] base, stride;
     reg [15:0] frames, dropped;
     reg [55:0] pixels;               // pixels of the incomplete word, the newest in the upper bits
     reg        has_newest;
@@ -55,7 +58,7 @@ module camera (
     async_fifo #(.WIDTH(11), .LOG2(5)) u_fifo (
         .write_clk_i(pclk_i), .push_i(push), .data_i(token_in), .full_o(full),
         .read_clk_i(clk_i), .pop_i(fetch), .data_o(token_out), .empty_o(waits));
-    // A register holds the next token, because the logic after it has long paths.
+    // A flip-flop holds the next token, because the logic that uses it has long paths.
     reg [10:0] token;
     reg        has_token;
     wire       fetch = !waits && (!has_token || pop);
@@ -91,7 +94,8 @@ module camera (
         .frames_i(frames), .dropped_i(dropped));
 
     wire start = set_start && state == OFF;
-    // The settings are checked in the clock of START; the result is used one clock later.
+    // The settings are checked in the clock of START; the state machine uses the result one clock
+    // later.
     reg  asked, good;
     always @(posedge clk_i) begin
         asked <= start && !rst_i;
@@ -102,7 +106,7 @@ module camera (
 
     // ---- memory ----
     wire        write_ready, write_idle;
-    // Buffers 1..3 lie at base, base + stride, base + 2 * stride.
+    // Buffers 1..3 begin at base, base + stride and base + 2 * stride.
     wire [31:0] write_base = base + (writing == 2'd2 ? stride :
                                      writing == 2'd3 ? {stride[30:0], 1'b0} : 32'd0);
     wire        no_data, read_idle;
@@ -117,18 +121,18 @@ module camera (
         .write_valid_i(eighth), .write_data_i({token[7:0], pixels}), .write_be_i(8'hFF),
         .write_ready_o(write_ready), .write_flush_i(state == FINISH), .write_idle_o(write_idle));
 
-    // ---- frames ----
-    // Tokens wait while a buffer is selected and while a frame is finished. If they wait until the
-    // FIFO is full, tokens are lost, which is reported. Any token, not only a pixel, waits while a
-    // word of eight pixels could not be written: the kind of a token is known too late to make a
-    // difference.
+    // ---- frames ---- Tokens wait in the FIFO while a buffer is selected and while a frame is
+    // finished. If the FIFO becomes full, tokens are lost, which is reported. While a word of eight
+    // pixels cannot be written, every kind of token waits, not only a pixel, because the kind is
+    // decoded too late to decide this.
     wire ready  = x != 3'd7 || write_ready;
     assign pop  = has_token && listening && ready;
     wire begins = pop && starts;
     wire token_in_frame = has_token && capturing && ready;
     wire bad    = lost || (is_pixel && !room) || (ends_line && room) || starts;
     wire last   = ends_line && last_line;
-    wire kept   = state == WAIT_FOR_MEMORY && write_idle && whole; // the whole frame is in memory
+    // the whole frame has been written to memory
+    wire kept   = state == WAIT_FOR_MEMORY && write_idle && whole;
     camera_buffers u_buffers (
         .clk_i(clk_i), .rst_i(rst_i), .active_i(state != OFF), .kept_i(kept),
         .writing_o(writing), .newest_o(newest), .offered_o(offered), .take_i(frame_take_i)
@@ -148,8 +152,9 @@ module camera (
         events    <= 7'd0;
         last_word <= words == width;
         last_line <= y + 12'd1 == height;
-        // A line end also shifts a byte in. It does no harm, because the next pixels push that byte
-        // out; without this, 56 enables would depend on the kind of the token.
+        // A line end also shifts a byte in. The following pixels push this byte out again, so it
+        // has no effect. Otherwise the enables of 56 flip-flops would depend on the kind of the
+        // token.
         if (capturing && has_token && x != 3'd7)
             pixels <= {token[7:0], pixels[55:8]};
         if (stop && state != OFF)
@@ -175,12 +180,12 @@ module camera (
                     enter(OFF);
                 else if (begins)
                     enter(WAIT_FOR_BUFFER);
-                if (pop && ends_line) // the event is reported only once per frame
+                if (pop && ends_line) // this event is reported only once per frame
                     whole <= 1'b0;
                 events[CAMERA_EVENT_LONG_FRAME_LSB] <= pop && ends_line && whole;
             end
-            WAIT_FOR_BUFFER: begin // A buffer is selected in this clock; the previous frame is in
-                                   // memory.
+            // A buffer is selected in this clock; the previous frame is completely in memory.
+            WAIT_FOR_BUFFER: begin
                 x     <= 3'd0;
                 y     <= 12'd0;
                 words <= 9'd1;

@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: MIT
 //
-// camera_buffers: keeps track of the three buffers, 1..3: one is being written, one contains the
-// newest complete frame, and one belongs to another core.
+// camera_buffers: assigns roles to the three buffers 1..3: one is being written, one contains the
+// newest complete frame, and one is used by another core.
 
 `default_nettype none
 
 module camera_buffers (
     input  wire       clk_i,
     input  wire       rst_i,
-    input  wire       active_i,  // capture is on; otherwise no frame is offered
-    // the frame being written is complete in memory; it becomes the newest and is offered
+    input  wire       active_i,  // capturing is on; while it is off, no frame is offered
+    // the frame in buffer writing_o is completely in memory; it becomes the newest frame and is
+    // offered
     input  wire       kept_i,
     output reg  [1:0] writing_o,
     output reg  [1:0] newest_o,
     output reg        offered_o,
-    input  wire       take_i     // the other core takes the newest buffer and returns the one it
-                                 // had
+    // the other core takes the newest frame and gives back the buffer that it used before
+    input  wire       take_i
 );
-    reg [1:0] used; // buffer of the other core
+    reg [1:0] used; // buffer that the other core uses
 
     wire       taken    = offered_o && take_i;
     wire [1:0] reserved = taken ? newest_o : used;
@@ -25,7 +26,8 @@ module camera_buffers (
     always @(posedge clk_i) begin
         if (kept_i) begin
             newest_o  <= writing_o;
-            writing_o <= writing_o ^ reserved; // the remaining one of the buffers 1, 2 and 3
+            // the only buffer that is neither being written nor reserved
+            writing_o <= writing_o ^ reserved;
         end
         offered_o <= kept_i || (offered_o && !taken && active_i);
         used      <= reserved;
@@ -38,11 +40,11 @@ module camera_buffers (
     end
 
 `ifdef FORMAL
-    // whole: one bit per buffer: it contains a complete frame. The bit is set by kept_i, and
-    // cleared when the next frame begins in the buffer.
+    // whole: one bit per buffer, high if the buffer contains a complete frame. kept_i sets the bit;
+    // the start of the next frame in the buffer clears it.
     reg       past = 1'b0;
     reg [3:1] whole = 3'b000;
-    reg       has = 1'b0;  // the other core has taken a buffer
+    reg       has = 1'b0;  // high if the other core has taken a buffer
     reg [1:0] held = 2'd0; // buffer that the other core has taken
     always @(posedge clk_i) begin
         past <= 1'b1;
@@ -65,8 +67,8 @@ module camera_buffers (
             // The three roles always belong to three different buffers.
             assert (writing_o != 2'd0 && newest_o != 2'd0 && used != 2'd0 && writing_o != newest_o);
             assert (writing_o != used && (!offered_o || newest_o != used));
-            // The other core's buffer and the offered buffer are never written, and both are
-            // complete.
+            // The buffer of the other core and the offered buffer are never written, and both
+            // contain complete frames.
             assert (!has || (held == used && held != writing_o && whole[held]));
             assert (!offered_o || whole[newest_o]);
             assert (!whole[writing_o]);

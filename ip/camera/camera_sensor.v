@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
 //
 // camera_sensor: converts the signals of a parallel sensor port into tokens, in the clock domain of
-// the sensor. The tokens go into an async_fifo.
+// the sensor, and sends them to an async_fifo.
 //
-// A token has 11 bits: LOST (earlier tokens were lost because the FIFO was full), kind, pixel.
-// While the FIFO is full, pixels are lost; a frame start or line end waits for room until the next
-// frame start or line end.
+// A token has 11 bits: LOST, kind, pixel. LOST means that earlier tokens were lost because the FIFO
+// was full. While the FIFO is full, pixels are lost. A frame start or line end waits until there is
+// room; it is lost only if the next frame start or line end comes first.
 
 `default_nettype none
 
 module camera_sensor (
-    // pins: sampled at the rising edge of the pixel clock
+    // pins, which are sampled at the rising edge of the pixel clock
     input  wire        pclk_i,
     input  wire        vsync_i, // high between frames
-    input  wire        href_i,  // high while data_i has pixels of a line
+    input  wire        href_i,  // high while data_i is a pixel of a line
     input  wire [7:0]  data_i,
     // tokens
     output wire        push_o,
@@ -26,8 +26,8 @@ module camera_sensor (
     reg [7:0] data;
     reg       owes_line_end, owes_frame_start, lost;
 
-    // This domain has no reset: the registers follow the pins of the sensor, and only complete
-    // frames are used.
+    // This clock domain has no reset: after a few clocks the registers follow the pins of the
+    // sensor, and only complete frames are used.
     initial begin
         {vsync, vsync_before, href, href_before} = 4'd0;
         {owes_line_end, owes_frame_start, lost}  = 3'd0;
@@ -35,7 +35,7 @@ module camera_sensor (
 
     wire line_end    = owes_line_end || (href_before && !href);
     wire frame_start = owes_frame_start || (vsync_before && !vsync);
-    // A pixel cannot wait, so it is sent before a waiting line end or frame start.
+    // A pixel cannot wait, so it is sent before a line end or frame start that is waiting.
     wire [1:0] kind  = href ? PIXEL : line_end ? LINE_END : FRAME_START;
     wire       any   = href || line_end || frame_start;
 

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * camera_servant: implements Cores::Camera with the registers of the core, accessed through the
- * FSMC; gives the position of the frames to other servants (Hw_Frames).
+ * camera_servant: implements Cores::Camera with the registers of the core, which it accesses
+ * through the FSMC. It also tells other servants where the frames are (Hw_Frames).
  */
 #include "camera_servant.h"
 #include "camera_regs.h"
 #include "fsmc.h"
 
-#define STOP_READS 1000 /* limit of reads of STATUS; a pending burst ends within one read */
+/* maximum number of times that STATUS is read; a burst in progress ends within one read */
+#define STOP_READS 1000
 
 static U32 get(const Camera_Core* self, U32 word) {
     return FSMC_read(self->core.slot, word);
@@ -23,8 +24,9 @@ Hw_Status Camera_Core_init(Camera_Core* self, U32 slot, U32 memory, const Hw_Por
     if (status != HW_OK)
         return status;
     self->core.memory = memory;
-    set(self, CAMERA_MASK, 0); /* The core counts frames itself, and no task waits for a frame, so
-                                * all interrupts are masked. */
+    /* All interrupts are masked, because the core counts frames itself and no task waits for a
+     * frame. */
+    set(self, CAMERA_MASK, 0);
     Cores_Camera_init(&self->servant);
     return HW_OK;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * camera_servant: implements Cores::Camera (Camera.ice) with the camera core in a slot. The
- * processor never handles pixels.
+ * processor itself never handles pixels.
  */
 #pragma once
 

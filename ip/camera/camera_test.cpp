@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// camera_test: tests the core with a sensor whose clock is independent and jitters, with a memory
-// that stalls, and with every kind of damaged frame.
+// camera_test: tests the core with a sensor whose clock is independent and has jitter, with a
+// memory that stalls, and with all kinds of damaged frames.
 
 #include "Vcamera_slot.h"
 #include "bench.h"
@@ -18,8 +18,8 @@ constexpr int width = 40, height = 12;
 class CameraTest : public ::testing::Test {
 protected:
     CameraTest() {
-        // Time advances in half periods of the fabric clock. The edges of the pixel clock are 1 to
-        // 3 half periods apart, and fall before or after the fabric clock's edges.
+        // Time advances in half periods of the fabric clock. Edges of the pixel clock are 1 to 3
+        // half periods apart, and come before or after the edges of the fabric clock.
         bench_.addModel([this] { edge(); }, [this] { edge(); });
         bench_.reset();
         bus_.write(CAMERA_MASK, 0x7F);
@@ -45,7 +45,7 @@ protected:
         wait_ = 1 + static_cast<int>(random_.below(slowest_));
         auto& top = bench_.top();
         top.pclk_i = !top.pclk_i;
-        if (!top.pclk_i) { // a sensor changes its pins at the falling edge
+        if (!top.pclk_i) { // a sensor changes its pins at the falling edge of the pixel clock
             auto pins = sensor_.next();
             top.vsync_i = pins.vsync;
             top.href_i = pins.href;
@@ -53,7 +53,7 @@ protected:
         }
     }
     std::vector<uint8_t> picture() { return random_.items<uint8_t>(width * height); }
-    // Waits until the sensor has sent all its frames and the core has processed them; returns the
+    // Waits until the sensor has sent all its frames and the core has processed them. Returns the
     // events.
     uint32_t drain() {
         for (int i = 0; i < 200000 && !sensor_.isIdle(); ++i)
@@ -126,8 +126,8 @@ TEST_F(CameraTest, FramesMayBeAsWideAndAsHighAsTheRegistersSay) {
 }
 
 TEST_F(CameraTest, FramesAreCountedModulo65536) {
-    // Frames follow each other as fast as the core can drop them: each frame has no lines and is
-    // ended by the start of the next.
+    // The frames follow each other as fast as the core can discard them: a frame has no lines, and
+    // the start of the next frame ends it.
     slowest_ = 1;
     sensor_ = SensorModel({4, 2});
     start();
@@ -139,7 +139,7 @@ TEST_F(CameraTest, FramesAreCountedModulo65536) {
     }
     EXPECT_EQ(bus_.read(CAMERA_FRAMES), 0u);
     stop();
-    // Complete frames follow each other as closely as the memory bursts and the FIFO allow.
+    // Complete frames follow each other as closely as bursts to memory and the FIFO allow.
     configure(8, 1);
     sensor_ = SensorModel({16, 1});
     memory_.setStall(0);
@@ -197,15 +197,15 @@ TEST_F(CameraTest, AMemoryThatIsTooSlowIsToldAndTheNextFrameIsRight) {
     start();
     memory_.hold(true);
     sensor_.addFrame(picture(), width, height);
-    sensor_.addFrame(picture(), width, height); // this frame begins, and its loss cannot be
-                                                // reported yet
+    // the core sees the start of this frame, but cannot report yet that it is lost
+    sensor_.addFrame(picture(), width, height);
     drain();
     memory_.hold(false);
     uint32_t events = drain();
     EXPECT_EQ(bus_.read(CAMERA_FRAMES), 0u) << events;
     auto pixels = picture();
-    sensor_.addFrame(picture(), width, height); // ends the frame that the lost lines left
-                                                // incomplete
+    // its start ends the frame that is incomplete because lines were lost
+    sensor_.addFrame(picture(), width, height);
     sensor_.addFrame(pixels, width, height);
     events |= drain();
     EXPECT_TRUE(events & CAMERA_EVENT_OVERFLOW_MASK);
@@ -238,19 +238,19 @@ TEST_F(CameraTest, TheFrameThatAnotherCoreHasIsNotOverwritten) {
     }
 }
 
-// In one of the clocks that are tried, the next frame is delivered. The taken frame must be
-// complete, and must stay complete until the next frame is taken.
+// The next frame is completed in a different clock in each of the runs. The frame that was taken
+// must be complete, and must not change until the next frame is taken.
 TEST_F(CameraTest, AnotherCoreTakesAFrameInAnyClock) {
     constexpr int w = 8, h = 1;
     slowest_ = 1;
     configure(w, h);
     start();
     auto& top = bench_.top();
-    uint32_t held = 0; // address of the taken buffer
+    uint32_t held = 0; // address of the buffer that was taken
     std::vector<uint8_t> pixels;
     for (int frames = 0; frames < 1500; ++frames) {
         sensor_.addFrame(std::vector<uint8_t>(w * h, static_cast<uint8_t>(frames)), w, h);
-        const uint32_t chosen = random_.below(150); // a frame takes about this number of clocks
+        const uint32_t chosen = random_.below(150); // a frame takes about 150 clocks
         for (uint32_t clocks = 0; clocks < 150; ++clocks) {
             top.frame_take_i = clocks == chosen;
             top.eval();
@@ -288,8 +288,9 @@ TEST_F(CameraTest, StopsAndStartsInTheMiddleOfAFrame) {
 TEST_F(CameraTest, RefusesWhatItCannotCapture) {
     auto refused = [&] {
         start();
-        bench_.tick(); // the settings are checked in the clock of START; REFUSED is set in the next
-                       // clock and then stays set
+        // the settings are checked in the clock of START; REFUSED is set one clock later, and stays
+        // set
+        bench_.tick();
         bench_.tick();
         return bus_.takeEvents() == CAMERA_EVENT_REFUSED_MASK && bus_.read(CAMERA_STATUS) == 0;
     };
@@ -330,8 +331,8 @@ TEST_F(CameraTest, APixelEachFabricClockWhenTheMemoryKeepsUp) {
     configure(wide, lines);
     bus_.write(CAMERA_STRIDE, wide * lines);
     sensor_ = SensorModel({60, 1});
-    // Counts the clocks from the first to the last word of each line that is sent to memory, and
-    // the pixels of all words except the first.
+    // Counts, for each line that is sent to memory, the clocks from the first to the last word, and
+    // the pixels of all words but the first.
     uint64_t first = 0, clocks = 0, seen = 0;
     bench_.addModel(
         [&] {

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""Runs camera's part of a mission: starts and stops the core; with a sensor, the vision core
-processes its frames."""
+"""Runs the part of a mission for the core camera: starts and stops the core; if the flight has a
+sensor, the vision core processes the frames."""
 
 import Ice
 
 
 def camera_of(proxy):
-    import Cores  # made by loadSlice
+    import Cores  # module that loadSlice generates from Camera.ice
 
     return Cores.CameraPrx.uncheckedCast(proxy("camera"))
 
@@ -17,7 +17,8 @@ def capture(log, camera, width, height):
 
 
 def prepare(log, proxy, width, height):
-    """Runs before the vision core starts; `width` and `height` are the sensor's size in pixels."""
+    """Prepares the mission before the vision core starts. `width` and `height` are the size of the
+    sensor's frames in pixels."""
     capture(log, camera_of(proxy), width, height)
 
 

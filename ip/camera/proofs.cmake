@@ -1,3 +1,3 @@
 # SPDX-License-Identifier: MIT
-# Proofs of the camera core, read by tests/hdl/formal/CMakeLists.txt.
+# Proofs of the camera core. tests/hdl/formal/CMakeLists.txt reads this file.
 proof(camera_buffers camera_buffers 12)

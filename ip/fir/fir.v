@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// fir: applies the FIR filter (fir_filter.vhd) to a buffer in DDR3; the generated fir_wrapper
-// contains the registers.
+// fir: applies the FIR filter (fir_filter.vhd) to a buffer in DDR3. Its registers are in the
+// generated module fir_wrapper.
 
 `default_nettype none
 
@@ -9,7 +9,7 @@ module fir (
     `include "slot_ports.vh"
     `include "memory_ports.vh"
     output wire        irq_o,
-    output wire        idle_o // no call is in progress
+    output wire        idle_o // high while no call is in progress
 );
     wire        core_rst, set_coefficient, clear, start, unused_shift_start;
     wire [7:0]  index, shift;
@@ -17,11 +17,12 @@ module fir (
     wire [8:0]  count;
 
     reg         busy, refused;
-    // one clock after the request: forget clears the history, put writes a coefficient
+    // requests, delayed by one clock; forget: clears the history; put: writes a coefficient
     reg         forget, put;
     reg         begun, flushed;    // begun: the streams have started; flushed: the last word has
                                    // been flushed
-    // to_send: samples not sent to the filter yet; to_take: results not received yet
+    // to_send: number of samples not yet sent to the filter; to_take: number of results not yet
+    // received
     reg  [8:0]  to_send, to_take;
     reg  [1:0]  place;             // index of the next sample in its word
     reg  [63:0] packed_results;
@@ -34,7 +35,9 @@ module fir (
     wire        sample_ready, result_valid, saturated;
     wire [15:0] result;
     wire        idle    = read_idle && write_idle;
-    wire        go      = busy && !begun && idle; // transfers of an earlier call may be pending
+    // an earlier call may have left transfers in progress, so the start waits until the streams are
+    // idle
+    wire        go      = busy && !begun && idle;
     wire        ended   = begun && to_take == 9'd0;
     wire        flush   = ended && filled == 3'd0 && !flushed;
     wire        sending = to_send != 9'd0 && read_valid;
@@ -43,8 +46,8 @@ module fir (
     wire        written = offer && write_ready;
     wire        room    = !filled[2] || write_ready;
     wire        taken   = result_valid && room;
-    wire [3:0]  here    = written ? 4'd1 : 4'd1 << filled[1:0]; // position of this result in its
-                                                                // word
+    // position of this result in its word, one-hot
+    wire [3:0]  here    = written ? 4'd1 : 4'd1 << filled[1:0];
 
     fir_wrapper u_wrapper (
         `include "slot_connect.vh"
@@ -68,8 +71,8 @@ module fir (
 
     npi_stream #(.ADDR_BITS(32), .WORD_BITS(7)) u_stream (
         `include "memory_connect.vh"
-        .clk_i(clk_i), .rst_i(rst_i), // not core_rst: words that were requested must still be
-                                      // received
+        // not core_rst: words that were requested must be received even after a reset of the core
+        .clk_i(clk_i), .rst_i(rst_i),
         .read_start_i(go && !core_rst), .read_base_i(source[31:6]),
         .read_words_i(to_send[8:2] + {6'd0, |to_send[1:0]}), .read_stop_i(core_rst),
         .read_valid_o(read_valid), .read_data_o(read_data),
@@ -91,7 +94,8 @@ module fir (
             to_send     <= count;
             to_take     <= count;
         end
-        if (go) begin // These are not loaded at `start`, because that signal has a long path.
+        // These registers are loaded at `go`, not at `start`, because `start` has a long path.
+        if (go) begin
             begun       <= 1'b1;
             saturations <= 32'd0;
             place       <= 2'd0;
@@ -129,8 +133,9 @@ module fir (
     wire unused =
         &{1'b0, unused_shift_start, shift[7:5], coefficient[31:18], source[5:0], target[5:0], 1'b0};
 `ifdef FORMAL
-    // For formal.idle_fir: without a call the core contains no samples and no results.
-    (* hierconn *) wire [4:0] \u_filter.full ; // signals of the parts
+    // For formal.idle_fir: while no call is in progress, the core contains no samples and no
+    // results.
+    (* hierconn *) wire [4:0] \u_filter.full ; // signals of the submodules
     (* hierconn *) wire [3:0] \u_wrapper.busy ;
     (* hierconn *) wire [6:0] \u_stream.to_give ;
     reg        past = 1'b0;

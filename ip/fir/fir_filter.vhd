@@ -1,11 +1,11 @@
 -- SPDX-License-Identifier: MIT
 --
--- fir_filter: FIR filter of 16 taps in transposed form, one sample per clock, with coefficients set
--- at run time.
+-- fir_filter: computes a FIR filter of 16 taps in transposed form, one sample per clock, with
+-- coefficients set at run time.
 --
--- Each tap is a multiplier of 18 x 16 bits with a register and an adder with a register: one
--- DSP48A1. result = (sum of coefficient(k) * sample(n - k)) / 2**shift, rounded to nearest, halves
--- up, saturated to 16 bits.
+-- Each tap consists of a multiplier of 18 x 16 bits and an adder, each with a register, and uses
+-- one DSP48A1. result = (sum of coefficient(k) * sample(n - k)) / 2**shift, rounded to nearest,
+-- halves up, saturated to 16 bits.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -15,7 +15,7 @@ entity fir_filter is
   port (
     clk_i               : in  std_logic;
     rst_i               : in  std_logic;
-    -- settings; a coefficient applies to the samples after its write
+    -- settings; a coefficient applies to the samples that arrive after its write
     coefficient_write_i : in  std_logic;
     coefficient_index_i : in  std_logic_vector(3 downto 0);
     coefficient_i       : in  std_logic_vector(17 downto 0);
@@ -30,7 +30,7 @@ entity fir_filter is
     result_valid_o      : out std_logic;
     result_ready_i      : in  std_logic;
     result_o            : out std_logic_vector(15 downto 0);
-    saturated_o         : out std_logic  -- this result was saturated
+    saturated_o         : out std_logic  -- high if this result was saturated
   );
 end entity;
 
@@ -43,13 +43,13 @@ architecture rtl of fir_filter is
 
   signal coefficients : coefficients_t;
   signal products     : products_t;
-  signal sums         : sums_t; -- sums(0) is the newest result, sums(TAPS) is always 0
-  -- the sum, shifted by a multiple of 8, with one more bit for rounding
+  signal sums         : sums_t; -- sums(0) becomes the next result; sums(TAPS) is always 0
+  -- the sum, shifted by a multiple of 8, with one additional bit for rounding
   signal coarse       : signed(SUM_BITS downto 0);
   signal scaled       : signed(SUM_BITS downto 0); -- shifted
   signal result       : signed(15 downto 0);
   signal saturated    : std_logic;
-  -- stages that contain a value: products, sums, coarse, scaled, result
+  -- one bit per pipeline stage that contains a value: products, sums, coarse, scaled, result
   signal full         : std_logic_vector(1 to 5);
   signal step         : std_logic;
 begin
@@ -99,9 +99,9 @@ begin
         coarse <= shift_right(sums(0) & '0', to_integer(unsigned(shift_i(4 downto 3)) & "000"));
         scaled <= shift_right(coarse, to_integer(unsigned(shift_i(2 downto 0))));
         rounded := shift_right(scaled, 1) + signed'("0" & scaled(0));
-        -- The value fits into 16 bits if all higher bits equal its sign bit. (This is not written
-        -- as a comparison, because GHDL 5 converts comparisons of more than 32 bits with a negative
-        -- integer wrongly.)
+        -- The value fits into 16 bits if all its higher bits are equal to its sign bit. This is not
+        -- written as a comparison of integers, because GHDL 5 converts a comparison of more than 32
+        -- bits with a negative integer incorrectly.
         overflow := '0';
         for b in 16 to SUM_BITS loop
           overflow := overflow or (rounded(b) xor rounded(15));

@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: MIT
 --
--- fir_tb: compares the results of the VHDL filter with the model's results (vectors.txt), with gaps
+-- fir_tb: compares the results of the VHDL filter with those of the model (vectors.txt), with gaps
 -- in the input and stalls of the output.
 
 library ieee;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// fir_test: compares the core, called through its generated servant with a memory that stalls, with
-// the model.
+// fir_test: compares the core with the model. The core is called through its generated servant, and
+// its memory stalls.
 
 #include "Vfir_slot.h"
 #include "core_slot.h"
@@ -61,7 +61,8 @@ TEST_F(FirCore, TheAnswerToAnImpulseIsTheCoefficients) {
     for (int k = 0; k < 16; ++k)
         core_.setCoefficient(static_cast<Ice_Byte>(k), 100 * k - 800);
     for (int k = 16; k < 256; ++k)
-        core_.setCoefficient(static_cast<Ice_Byte>(k), 999); // an invalid index has no effect
+        // an index that does not exist has no effect
+        core_.setCoefficient(static_cast<Ice_Byte>(k), 999);
     std::vector<Ice_Short> impulse(20, 0);
     impulse[0] = 1;
     auto answer = filter(impulse);
@@ -114,7 +115,7 @@ TEST_F(FirCore, WhatIsGivenUpLeavesTheMemoryPortInOrder) {
     Random random(testSeed());
     auto list = random.items<Ice_Short>(256);
     for (int clocks = 1; clocks < 190; clocks += 7) {
-        // Acts like the servant after a time-out: start, then reset of the core.
+        // Does the same as the servant after a time-out: starts the core, and resets it later.
         filter(list);
         core_.bus_.write(FIR_CONTROL, 1u << 3);
         for (int i = 0; i < clocks; ++i)
@@ -129,14 +130,14 @@ TEST_F(FirCore, WhatIsGivenUpLeavesTheMemoryPortInOrder) {
 
 TEST_F(FirCore, ACountWrittenBehindTheStartDoesNotChangeTheCall) {
     Random random(testSeed());
-    const uint32_t results = 512; // byte offset of the results, after the samples
+    const uint32_t results = 512; // byte offset of the results; the samples are in front of them
     for (int clocks = 10; clocks < 100; clocks += 7) {
         set(16, random);
         filter(random.items<Ice_Short>(256));
         core_.bus_.write(FIR_CONTROL, 1u << 3);
         for (int i = 0; i < clocks; ++i)
             core_.tick();
-        // The next call waits until the words requested by this call have arrived.
+        // The next call must wait until the words that this call requested have arrived.
         core_.bus_.write(FIR_CONTROL, 1u << 31);
         core_.bus_.write(FIR_CONTROL, 1u << 3);
         core_.bus_.write(FIR_FILTER_IN0, 8);
@@ -144,15 +145,15 @@ TEST_F(FirCore, ACountWrittenBehindTheStartDoesNotChangeTheCall) {
                              20000);
         core_.bus_.write(FIR_EVENT, ~0u);
         core_.posted_ = 0;
-        for (uint32_t i = 0; i < 512; ++i) // the reset has cleared the coefficients
+        // all results are 0, because the reset has cleared the coefficients
+        for (uint32_t i = 0; i < 512; ++i)
             ASSERT_EQ(core_.memory_.byte(core_.memoryAt_ + results + i), 0) << i;
     }
 }
 
 TEST_F(FirCore, OneSampleAClockWhenTheMemoryKeepsUp) {
     core_.memory_.setStall(0);
-    // Compares a long block with a short one; the time in which the driver copies data is not
-    // counted.
+    // Compares a long block with a short one, so that the time for copying data is not counted.
     auto clocksOf = [&](size_t count) {
         filter(std::vector<Ice_Short>(count, 1));
         uint64_t before = core_.bench_.cycles();

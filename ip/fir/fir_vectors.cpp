@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// fir_vectors: writes random coefficients and samples, with the model's results, for the VHDL test
-// bench.
-// Usage: fir_vectors FOLDER SEED. Writes FOLDER/vectors.txt, which contains for each round the
-// shift, the 16 coefficients, the number of samples, and one line "sample result" per sample.
+// fir_vectors: writes random coefficients and samples, and the results of the model, for the VHDL
+// test bench. Usage: fir_vectors FOLDER SEED. Writes FOLDER/vectors.txt. For each round the file
+// contains the shift, the 16 coefficients, the number of samples, and one line "sample result" per
+// sample.
 
 #include "fir_model.h"
 #include "random.h"

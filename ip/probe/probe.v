@@ -3,18 +3,18 @@
 // probe: records changes of the chip's signals in a ring in DDR3, around a trigger
 // (ip/probe/README.md).
 //
-// An entry of the ring is the value of all signals and the clock of their last change. Nothing is
-// stored while no signal changes. An entry has WORDS words of 64 bits:
+// An entry of the ring consists of the values of all signals and the clock in which they changed.
+// Nothing is stored while no signal changes. An entry has WORDS words of 64 bits:
 //   word 0, bits 31..0    low bits of cycles_i, two clocks after the change
 //   word 0, bit 32        1: changes before this one were lost
-//   word 0, bits 63..33   the first bits of signals_i; the others follow in word 1 and up
+//   word 0, bits 63..33   the first bits of signals_i; word 1 and the following contain the others
 // Signals may change in every clock, so a FIFO of 512 entries precedes the memory.
 
 `default_nettype none
 
 module probe #(
-    parameter        WORDS  = 2,         // 64-bit words per change: 1, 2 or 4, for 31, 95 or 223
-                                         // signals
+    // number of 64-bit words per change: 1, 2 or 4, for 31, 95 or 223 signals
+    parameter        WORDS  = 2,
     parameter        CLK_HZ = 100000000, // Hz
     parameter [31:0] NAMES  = 32'd0      // hash of the signals' names and widths
 ) (
@@ -37,12 +37,12 @@ module probe #(
     wire [14:0] after;
     wire        edge_only, set_arm, stop;
 
-    // ---- signals: sampled by the probe's registers, so that each signal gets one more load and no
-    // logic ----
+    // ---- signals: flip-flops of the probe sample them, so each signal gets one additional load
+    // and no logic ----
     reg [WIDTH-1:0] now, last;
-    reg             changed;      // last differs from its previous value
-    reg             fits, fitted; // fits: last meets the trigger condition; fitted: its previous
-                                  // value did
+    reg             changed;      // `last` differs from its value one clock earlier
+    // fits: `last` meets the trigger condition; fitted: `last` met it one clock earlier
+    reg             fits, fitted;
     always @(posedge clk_i) begin
         now     <= signals_i;
         last    <= now;
@@ -53,16 +53,17 @@ module probe #(
 
     // ---- capture ----
     reg                 running, draining, done, triggered, wrapped;
-    reg                 owed;  // an entry is due although no signal changed: the first entry, and
-                               // the one after a loss
+    // an entry must be written although no signal changed: the first entry, or the entry after a
+    // loss
+    reg                 owed;
     reg                 lost;
-    reg                 half;  // cycles_i[31] at the last entry; an entry is written when it
-                               // changes
+    // cycles_i[31] at the last entry; when it changes, an entry is written even without a change
+    reg                 half;
     reg [LOG2_RING-1:0] next, trigger, left;
 
     wire full, empty, pop, room, stream_idle;
-    // Clocks, up to 7, for which the FIFO has been empty at the end of a capture. A word needs two
-    // clocks to pass the FIFO, and write_idle_o is valid two clocks after a flush.
+    // Number of clocks, up to 7, for which the FIFO has been empty at the end of a capture. A word
+    // needs two clocks to pass the FIFO, and write_idle_o is valid two clocks after a flush.
     reg  [2:0] settled;
     wire arm    = set_arm && !running && !draining;
     wire ended  = triggered && left == {LOG2_RING{1'b0}};
@@ -98,8 +99,8 @@ module probe #(
         end
         if (hit) begin
             triggered <= 1'b1;
-            trigger   <= next; // index of the entry of this clock or, if that entry is lost, of the
-                               // next entry
+            // index of the entry of this clock; if that entry is lost, of the next entry
+            trigger   <= next;
             left      <= after[LOG2_RING-1:0];
         end
         if (running && (ended || stop)) begin
@@ -143,7 +144,7 @@ module probe #(
     wire [31:0] unused_addr;
     wire        unused_valid, unused_read_idle;
     wire [63:0] unused_data;
-    // The stream's address wraps around at the end of the ring.
+    // The address of the stream returns to the beginning at the end of the ring.
     npi_stream #(.ADDR_BITS(PROBE_LOG2_BYTES), .WORD_BITS(4)) u_stream (
         .clk_i(clk_i), .rst_i(rst_i),
         .read_start_i(1'b0), .read_base_i({(PROBE_LOG2_BYTES - 6){1'b0}}), .read_words_i(4'd0),

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
  * probe_servant: implements Probes::Probe with the registers of the core and its ring in DDR3,
- * accessed through the FSMC.
+ * which it accesses through the FSMC.
  */
 #include "probe_servant.h"
 #include "fsmc.h"
 #include "probe_regs.h"
 
-/* limit of reads of STATUS; emptying the FIFO takes less than a few hundred reads */
+/* maximum number of times that STATUS is read; the FIFO is empty after a few hundred reads */
 #define STOP_READS 10000
 
 static U32 get(const Probe_Core* self, U32 word) {
@@ -30,7 +30,7 @@ Hw_Status Probe_Core_init(Probe_Core* self, U32 slot, U32 memory, const Hw_Port*
     if (memory & ((1U << PROBE_LOG2_BYTES) - 1U))
         return HW_UNALIGNED;
     self->core.memory = memory;
-    set(self, PROBE_MASK, 0); /* no interrupts: callers poll the state */
+    set(self, PROBE_MASK, 0); /* all interrupts are masked, because callers poll the state */
     set(self, PROBE_BASE, memory);
     Probes_Probe_init(&self->servant);
     return HW_OK;

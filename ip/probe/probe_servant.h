@@ -7,7 +7,7 @@
 #include "Probe.h"
 #include "hw_core.h"
 
-#define PROBE_READ_BYTES 4096 /* greatest number of bytes in a reply */
+#define PROBE_READ_BYTES 4096 /* largest number of bytes in a reply */
 
 typedef struct Probe_Core {
     Probes_Probe servant;

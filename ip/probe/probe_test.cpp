@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// probe_test: compares the probe's captures, through its servant, with the test's signals, clock by
-// clock.
+// probe_test: compares the probe's captures, clock by clock, with the signals that the test
+// applied; the probe is called through its servant.
 
 #include "Vprobe_1.h"
 #include "Vprobe_4.h"
@@ -31,7 +31,7 @@ protected:
         slot_.bench_.addModel([] {}, [this] { drive(); });
         EXPECT_EQ(Probe_Core_init(&core_, coreSlot, coreMemory, &slot_.port, &slot_), HW_OK);
     }
-    // Sets the signals of the next clock: on average a few bits change in one of `quiet_` clocks.
+    // Sets the signals for the next clock. On average, a few bits change in one of `quiet_` clocks.
     void drive() {
         auto& top = slot_.bench_.top();
         ++cycles_;
@@ -67,8 +67,8 @@ protected:
         bool gap;
         Value value;
     };
-    // Returns the changes in the ring, oldest first, with complete clock counts computed from their
-    // low 32 bits.
+    // Returns the changes in the ring, oldest first. Computes their complete clock counts from the
+    // recorded low 32 bits.
     std::vector<Change> capture(const Probes_State& s) {
         std::vector<Ice_Byte> bytes;
         auto read = [&](int first, int end) {
@@ -90,15 +90,16 @@ protected:
             for (unsigned i = 0; i < c.value.size(); ++i)
                 c.value[i] = w[i + 1] >> 1 | (i + 2 < 2 * words ? w[i + 2] << 31 : 0);
             c.value.back() &= 0x7FFFFFFFu;
-            // The first change is at most 2^31 clocks from the first signal.
+            // The first change in the ring is at most 2^31 clocks after the first clock of the
+            // test.
             const uint64_t last = all.empty() ? given_.begin()->first : all.back().clock;
             c.clock = last + static_cast<uint32_t>(c.clock - last);
             all.push_back(c);
         }
         return all;
     }
-    // Checks that each clock from the first change to the last has the value that the test applied;
-    // clocks after a loss are not checked.
+    // Checks that in each clock from the first change to the last, the recorded value is the one
+    // that the test applied. Clocks after a loss are not checked.
     void expectGiven(const std::vector<Change>& all, bool loses = false) {
         unsigned found = 0;
         for (size_t i = 0; i < all.size(); ++i) {
@@ -146,7 +147,7 @@ TYPED_TEST(ProbeTest, StoresWhatWasThereBeforeAndAfterTheTrigger) {
 }
 
 TYPED_TEST(ProbeTest, ALevelThatIsThereTriggersAtOnce) {
-    ASSERT_EQ(this->arm(0, 0, false, 4), ICE_OK); // the last burst is not full
+    ASSERT_EQ(this->arm(0, 0, false, 4), ICE_OK); // the last burst to memory is not full
     auto s = this->finish();
     EXPECT_EQ(s.trigger, 0);
     EXPECT_EQ(s.next, 5);
@@ -154,7 +155,7 @@ TYPED_TEST(ProbeTest, ALevelThatIsThereTriggersAtOnce) {
 }
 
 TYPED_TEST(ProbeTest, AnEdgeIsNoLevel) {
-    this->quiet_ = 1u << 31; // signals change only when the test calls
+    this->quiet_ = 1u << 31; // signals change only when the test sets them
     auto become = [&](uint32_t value) {
         this->value_[0] = value;
         for (int i = 0; i < 50; ++i)
@@ -170,12 +171,13 @@ TYPED_TEST(ProbeTest, AnEdgeIsNoLevel) {
     EXPECT_EQ(this->finish().trigger, 3);
 }
 
-// No test detects whether `settled` in probe.v stops at 7 or wraps around: the capture would end up
-// to 7 clocks later, and a second flush has no effect.
+// No test can detect whether `settled` in probe.v stops at 7 or wraps around: the capture would
+// only end up to 7 clocks later, and flushing a second time has no effect.
 TYPED_TEST(ProbeTest, TheRingKeepsTheNewest) {
     this->quiet_ = 2 * this->words;
     ASSERT_EQ(this->arm(0, 1, true, static_cast<int>(this->ring) - 100),
-              ICE_OK); // mask 0: the condition is always met, so its edge never occurs
+              // with mask 0 the condition is always met, so it has no edge and never triggers
+              ICE_OK);
     for (unsigned i = 0; i < this->ring * 3 * this->words; ++i)
         this->slot_.tick();
     EXPECT_EQ(this->state().phase, Probes_armed);
@@ -200,12 +202,12 @@ TYPED_TEST(ProbeTest, SaysWhereChangesWereLost) {
     EXPECT_EQ(all.size(), 2001u);
     this->expectGiven(all, true);
     EXPECT_FALSE(all[512].gap);
-    for (size_t i = 0; i < 512; ++i) // the capacity of the FIFO
+    for (size_t i = 0; i < 512; ++i) // number of entries in the FIFO
         ASSERT_EQ(all[i + 1].clock - all[i].clock <= 3, true) << i;
 }
 
 TYPED_TEST(ProbeTest, CountsOnWhereTheClockCountTurnsRound) {
-    this->quiet_ = 1u << 31; // no signal changes
+    this->quiet_ = 1u << 31; // no signal changes by itself
     this->cycles_ = 0x7FFFFF00;
     ASSERT_EQ(this->arm(0, 0, false, 2), ICE_OK);
     for (int i = 0; i < 1000; ++i)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// idle_rules: assumptions of formal.idle_vision: while no frame is processed, the core requests
-// nothing, and its count of outstanding words is correct.
+// idle_rules: assumptions of formal.idle_vision: while no frame is being processed, the core makes
+// no memory requests, and its count of outstanding words is correct.
 
     (* hierconn *) wire [1:0] \u_core.state , \u_core.u_memory.state ;
     (* hierconn *) wire [5:0] \u_core.u_memory.outstanding ;

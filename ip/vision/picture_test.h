@@ -8,7 +8,8 @@
 #include <algorithm>
 #include <vector>
 
-// Returns noise, flat areas, and bright and dark squares, which have corners of every kind.
+// Returns a frame with noise, flat areas, and bright and dark squares; the squares have corners of
+// every kind.
 inline std::vector<uint8_t> picture(int width, int height, Random& random) {
     std::vector<uint8_t> pixels(static_cast<size_t>(width * height));
     for (auto& p : pixels)

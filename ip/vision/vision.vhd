@@ -1,6 +1,7 @@
 -- SPDX-License-Identifier: MIT
 --
--- vision: FAST-9 corners of a grey-scale frame in DDR3, one pixel a clock (ip/vision/README.md).
+-- vision: finds the FAST-9 corners of a grey-scale frame in DDR3, with one pixel per clock
+-- (ip/vision/README.md).
 --
 -- Registers: ip/vision/vision.regs.json.
 
@@ -22,7 +23,8 @@ entity vision is
     bus_rdata_o          : out std_logic_vector(31 downto 0);
     bus_error_o          : out std_logic;
     irq_o                : out std_logic;
-    idle_o               : out std_logic; -- no frame is being processed or awaited
+    -- high while the core neither processes a frame nor waits for one
+    idle_o               : out std_logic;
     -- frames that another core offers, in buffers 1..3 (used with MODE.FOLLOW)
     frame_valid_i        : in  std_logic := '0';
     frame_index_i        : in  std_logic_vector(1 downto 0) := "00";
@@ -50,8 +52,8 @@ entity vision is
 end entity;
 
 architecture rtl of vision is
-  -- Steps from the newest pixel of a window until its score is at the output of vision_fast;
-  -- vision_suppress adds two.
+  -- SCORE_DELAY is the number of steps from the newest pixel of a window to its score at the output
+  -- of vision_fast. KEPT_DELAY is the number of steps through vision_suppress.
   constant SCORE_DELAY : natural := 5;
   constant KEPT_DELAY  : natural := 2;
 
@@ -60,13 +62,13 @@ architecture rtl of vision is
 
   -- registers
   signal set_threshold : std_logic_vector(7 downto 0);
-  -- vision_memory loads these at START.
+  -- vision_memory loads these addresses at START.
   signal frame_base, result_base : std_logic_vector(31 downto 0);
   signal frame_stride  : std_logic_vector(31 downto 0);
   signal follow        : std_logic;
   signal busy, done, done_pending, refused : std_logic;
-  signal taken         : std_logic_vector(1 downto 0); -- buffer of the last frame; 0: the frame was
-                                                       -- at FRAME_BASE
+  -- buffer that contained the last frame; 0 means that it was at FRAME_BASE
+  signal taken         : std_logic_vector(1 downto 0);
   signal set_width, set_height, set_result_max : std_logic_vector(15 downto 0);
   signal found, stored : unsigned(15 downto 0);
   -- settings of the current frame, loaded at START
@@ -76,37 +78,39 @@ architecture rtl of vision is
   signal cycles        : unsigned(31 downto 0);
   signal aborted, stop : std_logic;
   -- Commands take effect one clock after their write, so that the address decoder and the frame
-  -- control are not on one path. Writes to other registers in between intentionally do not affect
-  -- this frame.
+  -- control are not on the same path. Other registers that are written in this clock must not
+  -- affect the frame that is starting.
   signal start, abort  : std_logic;
-  signal written       : std_logic; -- a register was written, so size_ok is outdated
-  signal size_ok       : std_logic; -- result of the check of the registers, one clock ago
+  -- a register was written in the last clock, so size_ok is not up to date
+  signal written       : std_logic;
+  signal size_ok       : std_logic; -- result of the check of the registers in the previous clock
   signal idle, offered, accept : std_logic;
-  signal go            : std_logic; -- one clock after `accept`; the settings are loaded until then
+  signal go            : std_logic; -- one clock after `accept`; until then the settings are loaded
   signal first_pixel, memory_base : std_logic_vector(31 downto 0);
 
-  -- stream: x is the column of the pixel being taken, and lines_left the number of lines including
-  -- the current one. score_x, score_y and kept_x, kept_y are the positions of the score that enters
-  -- vision_suppress and of the score that leaves it
+  -- stream: x is the column of the pixel that is being taken. lines_left is the number of lines
+  -- that are left, including the current one. (score_x, score_y) is the position of the score that
+  -- enters vision_suppress, (kept_x, kept_y) that of the score that leaves it
   signal x             : unsigned(9 downto 0);
   signal lines_left    : unsigned(15 downto 0);
   signal score_x, kept_x : unsigned(9 downto 0);
   signal score_y, kept_y : unsigned(16 downto 0);
-  signal fill          : unsigned(3 downto 0); -- number of steps since the start; counts only up to
-                                               -- the first kept score
+  -- number of steps since the start; it stops when the first score has left vision_suppress
+  signal fill          : unsigned(3 downto 0);
   signal take, real_pixel, pixel_valid, pixel_take, last : std_logic;
   signal streaming     : std_logic; -- state = STREAM and not stop
-  -- `step` is `take` one clock later. Everything after the window advances with this register,
-  -- which has a whole clock for its fan-out.
+  -- `step` is `take`, delayed by one clock. All logic after the window advances with this
+  -- flip-flop; because of its high fan-out it needs a whole clock.
   signal step          : std_logic;
-  signal decide        : std_logic; -- a copy of step with a small fan-out, for all decisions
+  -- a copy of `step` with a small fan-out; all decisions use this copy
+  signal decide        : std_logic;
   signal step_x        : unsigned(9 downto 0);
   signal pixel, step_pixel : std_logic_vector(7 downto 0);
   signal window        : std_logic_vector(391 downto 0);
   signal raw_score, score, centre_score : unsigned(11 downto 0);
   signal kept, is_corner, record_ready, record_push, quiet : std_logic;
-  -- kept_y was inside the frame one step ago. The delay matters only in the first column of a line,
-  -- where all scores are 0.
+  -- high if kept_y was inside the frame one step ago. The delay matters only in the first column of
+  -- a line, in which all scores are 0.
   signal in_frame      : std_logic;
   signal data          : std_logic_vector(63 downto 0);
   signal frame_x, frame_y : unsigned(15 downto 0);
@@ -151,8 +155,8 @@ begin
   done    <= quiet when state = DRAIN else '0';
   refused <= ((start and idle) or offered) and not size_ok;
 
-  -- The next frame starts only after the results of the last frame have been read. Software shows
-  -- this by clearing DONE.
+  -- The next frame starts only when the results of the last frame have been read. Software
+  -- indicates this by clearing DONE.
   offered <= follow and frame_valid_i and not written and not done_pending
              and idle;
   idle   <= '1' when state = WAIT_FOR_START and go = '0' else '0';
@@ -190,10 +194,10 @@ begin
 
   -- ---- stream ----
 
-  -- After the last line of the frame, lines are generated: their scores are 0, but they push the
-  -- last corners out of the pipeline. A record may be pushed one step after record_ready_o has
-  -- fallen, but two records never follow in successive steps: of two successive scores
-  -- vision_suppress keeps at most one. It keeps the first only if the first is not less than the
+  -- After the last line of the frame, the core generates additional lines. Their scores are 0; they
+  -- push the last corners out of the pipeline. A record may be pushed one step after record_ready_o
+  -- has fallen, but never in two steps in a row. This is certain because vision_suppress keeps at
+  -- most one of two successive scores: it keeps the first only if the first is not less than the
   -- second, and the second only if the second is greater.
   take       <= streaming and (pixel_valid or not real_pixel) and record_ready;
   pixel_take <= streaming and pixel_valid and real_pixel and record_ready;
@@ -201,7 +205,7 @@ begin
   taking : process (clk_i)
   begin
     if rising_edge(clk_i) then
-      step   <= take; -- no reset, otherwise synthesis would merge step and decide
+      step   <= take; -- without a reset, because with one, synthesis would merge step and decide
       decide <= take;
       step_x <= x;
       step_pixel <= pixel and (7 downto 0 => real_pixel);
@@ -226,16 +230,17 @@ begin
     end if;
   end process;
 
-  -- A score is valid only from column 6 and line 6 of the stream on: before, its window would
-  -- contain pixels of the end of the previous line.
+  -- A score is valid only in columns and lines of the stream with a number of at least 6. In other
+  -- places its window would contain pixels from the end of the previous line.
   score <= raw_score when score_x >= 6 and score_y >= 6 and score_y < resize(height, 17) and
                           fill >= SCORE_DELAY else to_unsigned(0, 12);
 
-  -- Centre of the window in frame coordinates: three columns and three lines before the position of
-  -- the kept score.
+  -- Centre of the window in coordinates of the frame: three columns and three lines before the
+  -- position of the kept score.
   frame_x     <= resize(kept_x, 16) - 3;
   frame_y     <= resize(kept_y, 16) - 3;
-  -- The block RAMs contain lines of an older frame until the first lines have passed.
+  -- The block RAMs still contain lines of an earlier frame until the first lines of this frame have
+  -- passed.
   is_corner   <= decide and kept and in_frame when fill = SCORE_DELAY + KEPT_DELAY else '0';
   record_push <= is_corner when stored < result_max else '0';
   data        <= x"00000" & std_logic_vector(centre_score) &
@@ -314,13 +319,14 @@ begin
     end if;
   end process;
 
-  -- The centre is one line and one column before the score that entered vision_suppress KEPT_DELAY
-  -- steps ago.
+  -- The score that leaves vision_suppress is that of the centre: one line and one column before the
+  -- score that entered KEPT_DELAY steps ago.
   kept_position : process (clk_i)
   begin
     if rising_edge(clk_i) then
       if go = '1' then
-        -- Position of the first centre, one column before (0, -1), written as unsigned numbers.
+        -- The first centre is one column before (0, -1), which is the last column of line -2. The
+        -- numbers are unsigned.
         kept_x <= last_column;
         kept_y <= to_unsigned(131070, 17); -- -2
       elsif decide = '1' and fill = SCORE_DELAY + KEPT_DELAY then

@@ -1,12 +1,13 @@
 -- SPDX-License-Identifier: MIT
 --
--- vision_fast: computes the FAST-9 score of the pixel in the centre of the window: 0 if it is not a
--- corner.
+-- vision_fast: computes the FAST-9 score of the pixel in the centre of the window; the score is 0
+-- if the pixel is not a corner.
 --
--- The 16 pixels of the circle of radius 3 are brighter (> centre + threshold), darker (< centre -
--- threshold) or neither. Nine consecutive brighter, or nine consecutive darker, pixels make a
--- corner. Its score is the sum, over all pixels of that kind, of their distance beyond the
--- threshold. The score is valid three steps after the window.
+-- Each of the 16 pixels on the circle of radius 3 is brighter (> centre + threshold), darker (<
+-- centre - threshold) or neither. Nine consecutive brighter pixels, or nine consecutive darker
+-- pixels, make a corner. The score of a corner is a sum over all brighter, or over all darker,
+-- pixels; each pixel adds the amount by which its difference from the centre exceeds the threshold.
+-- The score is valid three steps after the window.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -17,14 +18,15 @@ entity vision_fast is
     clk_i       : in  std_logic;
     step_i      : in  std_logic;
     threshold_i : in  unsigned(7 downto 0);
-    window_i    : in  std_logic_vector(391 downto 0); -- as output by vision_window
+    -- window in the format of vision_window's output
+    window_i    : in  std_logic_vector(391 downto 0);
     score_o     : out unsigned(11 downto 0)
   );
 end entity;
 
 architecture rtl of vision_fast is
   type coordinates_t is array (0 to 15) of integer range 0 to 6;
-  -- Coordinates of the circle, clockwise, starting above the centre.
+  -- Positions of the pixels on the circle, clockwise, starting above the centre.
   constant CIRCLE_X : coordinates_t := (3, 4, 5, 6, 6, 6, 5, 4, 3, 2, 1, 0, 0, 0, 1, 2);
   constant CIRCLE_Y : coordinates_t := (0, 0, 1, 2, 3, 4, 5, 6, 6, 6, 5, 4, 3, 2, 1, 0);
 

@@ -2,8 +2,8 @@
 --
 -- vision_memory: reads the frame pixel by pixel, and writes the records, through one memory port.
 --
--- A read is a burst of 128 bytes; at most two reads are outstanding. A record is a write of one
--- word; waiting records are written before further reads.
+-- A read is a burst of 128 bytes; at most two reads are outstanding. A record is written as one
+-- word. A record that is waiting is written before the next read.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -13,21 +13,21 @@ entity vision_memory is
   port (
     clk_i          : in  std_logic;
     rst_i          : in  std_logic;
-    -- frame control is idle; the addresses are loaded in each clock until start
+    -- frame control is idle; while it is idle, the addresses are loaded in each clock
     idle_i         : in  std_logic;
-    start_i        : in  std_logic;                     -- high for one clock: the first clock in
-                                                        -- which idle_i is low
-    stop_i         : in  std_logic;                     -- no further reads; words that arrive later
-                                                        -- are dropped
+    -- high in the first clock in which idle_i is low
+    start_i        : in  std_logic;
+    -- ends reading; words that arrive later are discarded
+    stop_i         : in  std_logic;
     frame_base_i   : in  std_logic_vector(31 downto 0);
     result_base_i  : in  std_logic_vector(31 downto 0);
-    quiet_o        : out std_logic;                     -- no transfer is pending
+    quiet_o        : out std_logic;                     -- high while no transfer is pending
     -- pixels
     pixel_valid_o  : out std_logic;
     pixel_o        : out std_logic_vector(7 downto 0);
     pixel_take_i   : in  std_logic;
-    -- a record; allowed only if record_ready_o was 1 one clock ago, and never in two successive
-    -- clocks
+    -- a record; it may be pushed only if record_ready_o was high one clock ago, and never in two
+    -- successive clocks
     record_push_i  : in  std_logic;
     record_i       : in  std_logic_vector(63 downto 0);
     record_ready_o : out std_logic;
@@ -49,13 +49,14 @@ end entity;
 architecture rtl of vision_memory is
   type state_t is (WAIT_FOR_WORK, WAIT_FOR_READ, WAIT_FOR_WRITE);
   signal state       : state_t;
-  signal active      : std_logic;              -- high between start and stop
+  signal active      : std_logic;              -- high from start to stop
   signal read_addr   : unsigned(31 downto 7);
   signal write_addr  : unsigned(31 downto 3);
-  signal outstanding : unsigned(5 downto 0);   -- words requested and not yet popped
+  -- number of words that were requested and have not been popped
+  signal outstanding : unsigned(5 downto 0);
   signal word        : std_logic_vector(63 downto 0);
-  signal left        : std_logic_vector(7 downto 0); -- one bit for each byte of `word` that has not
-                                                     -- been taken yet
+  -- one bit for each byte of `word` that has not been taken yet
+  signal left        : std_logic_vector(7 downto 0);
   signal slot        : std_logic_vector(63 downto 0); -- a record that waits to be written
   signal slot_full   : std_logic;
   signal pushed      : std_logic;
@@ -122,7 +123,8 @@ begin
         word <= x"00" & word(63 downto 8);
         left <= '0' & left(7 downto 1);
       end if;
-      -- `word` may be loaded with invalid data: only `left` shows whether the port had a word.
+      -- `word` may be loaded with invalid data, because this does not depend on whether the port
+      -- has a word; `left` shows how many bytes are valid.
       if refill = '1' then
         word <= npi_rd_data_i;
       end if;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * vision_servant: implements HwProcessingEngine with the registers of the vision core, accessed
- * through the FSMC.
+ * vision_servant: implements HwProcessingEngine with the registers of the vision core, which it
+ * accesses through the FSMC.
  */
 #include "vision_servant.h"
 #include "fsmc.h"
@@ -37,7 +37,9 @@ Hw_Status Vision_Core_init(Vision_Core* self, U32 slot, U32 memory, const Hw_Por
 
 void Vision_Core_interrupt(Vision_Core* self) {
     set(self, VISION_MODE,
-        0); /* Each start takes one frame, because another frame would overwrite these records. */
+        /* Stops following the camera after one frame, because a further frame would overwrite these
+         * records. */
+        0);
     Hw_Core_interrupt(&self->core);
 }
 
@@ -47,7 +49,8 @@ U32 Vision_Core_poll(Vision_Core* self, U32 nowMs) {
     return HW_NEVER;
 }
 
-/* Inserts a corner into the list: strongest first; equal ones stay in scan order. */
+/* Inserts a corner into the list, which is sorted by strength, strongest first. Corners of equal
+ * strength stay in scan order. */
 static void insert(Vision_Core* self, const Autopilot_Feature* f) {
     Ice_Int at = self->bestCount;
     if (at == VISION_BEST) {
@@ -79,7 +82,7 @@ static void readResults(Vision_Core* self) {
     }
 }
 
-/* Waits for the current frame, if any. */
+/* Waits until the frame that is being processed has ended, if there is such a frame. */
 static Ice_Status finishFrame(Vision_Core* self) {
     const Hw_Port* port = self->core.port;
     U32 errorsBefore = port->busErrors(self->core.context);
@@ -90,8 +93,8 @@ static Ice_Status finishFrame(Vision_Core* self) {
             !self->core.done[REFUSED]) {
             set(self, VISION_MODE, 0);
             set(self, VISION_CONTROL, VISION_CONTROL_ABORT_MASK);
-            /* A hung core stays busy. A core that only waits for a frame of the camera becomes
-             * idle. */
+            /* If the core hangs, it stays busy. If it only waits for a frame of the camera, the
+             * abort makes it idle. */
             self->busy = (get(self, VISION_STATUS) & VISION_STATUS_BUSY_MASK) != 0;
             return ICE_TIMEOUT;
         }
@@ -100,7 +103,7 @@ static Ice_Status finishFrame(Vision_Core* self) {
         return ICE_UNKNOWN_EXCEPTION;
     readResults(self);
     if (port->busErrors(self->core.context) != errorsBefore)
-        return ICE_UNKNOWN_EXCEPTION; /* the core hangs: the result is invalid */
+        return ICE_UNKNOWN_EXCEPTION; /* the core hangs, so there is no valid result */
     port->frames->processed((U32)self->found);
     return ICE_OK;
 }

@@ -1,19 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
  * vision_servant: implements HwProcessingEngine (sw/vehicle/Autopilot.ice) with the vision core in
- * a slot; it has the functions of a generated servant (docs/hw-mapping.md).
+ * a slot. It offers the same functions as a generated servant (docs/hw-mapping.md).
  */
 #pragma once
 
 #include "Autopilot.h"
 #include "hw_core.h"
 
-#define VISION_BEST 64 /* greatest number of features in a result, as in Autopilot.ice */
+#define VISION_BEST 64 /* largest number of features in a result, as in Autopilot.ice */
 
 typedef struct Vision_Core {
     Autopilot_HwProcessingEngine servant;
     Hw_Core core;
-    U8 busy; /* a frame has begun, and its result has not been read */
+    U8 busy; /* 1 if a frame was started and its result has not been read */
     Ice_Int found, cycles, bestCount;
     Autopilot_Feature best[VISION_BEST];
 } Vision_Core;

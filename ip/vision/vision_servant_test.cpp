@@ -25,7 +25,7 @@ void frameProcessed(U32 corners) {
 }
 Hw_Frames frames;
 
-// Waits as the application does: on one semaphore for all events.
+// Waits like the application, which uses one semaphore for all events.
 int waitForAny(void* context, U32, U32 ms) {
     auto& slot = *static_cast<CoreSlot<Vvision_slot>*>(context);
     for (U32 i = 0; i < ms * coreClocksOfMs && !slot.posted_; ++i)
@@ -35,7 +35,8 @@ int waitForAny(void* context, U32, U32 ms) {
 const Hw_Port port = {waitForAny, CoreSlot<Vvision_slot>::post, CoreSlot<Vvision_slot>::nowMs,
                       countBusErrors, &frames};
 
-constexpr int width = 64, height = 48, threshold = 5; // more corners than a result has room for
+// the picture has more corners than fit into a result
+constexpr int width = 64, height = 48, threshold = 5;
 
 class VisionServant : public ::testing::Test {
 protected:
@@ -117,7 +118,8 @@ TEST_F(VisionServant, TakesTheCamerasFramesWhereThereIsOne) {
         ASSERT_EQ(start(), ICE_OK);
         top.frame_index_i = static_cast<uint8_t>(buffer);
         top.frame_valid_i = 1;
-        ASSERT_EQ(result(), ICE_OK); // another frame is offered, but each start takes only one
+        // the camera offers another frame, but each start processes only one frame
+        ASSERT_EQ(result(), ICE_OK);
         expectCorners();
     }
 }

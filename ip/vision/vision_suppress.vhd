@@ -1,10 +1,11 @@
 -- SPDX-License-Identifier: MIT
 --
--- vision_suppress: keeps a score only if it is the greatest in its 3 x 3 neighbourhood; other
--- scores become 0.
+-- vision_suppress: keeps a score only if it is the greatest in its neighbourhood of 3 x 3; all
+-- other scores become 0.
 --
--- Of equal neighbours the first in scan order is kept. The result for a score appears one line and
--- one column after the score entered; kept_o then belongs to the previous score in the line above.
+-- Of neighbours with equal scores, the first one in scan order is kept. The result for a score
+-- appears when the score one line and one column later has entered, because the whole neighbourhood
+-- must be known. kept_o then belongs to that earlier score.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -16,15 +17,16 @@ entity vision_suppress is
     step_i  : in  std_logic;
     x_i     : in  unsigned(9 downto 0);  -- column of the score that enters
     score_i : in  unsigned(11 downto 0);
-    score_o : out unsigned(11 downto 0); -- score of the centre, two steps after it entered
+    -- score of the centre, two steps after the last score of its neighbourhood entered
+    score_o : out unsigned(11 downto 0);
     kept_o  : out std_logic
   );
 end entity;
 
 architecture rtl of vision_suppress is
   type ram_t is array (0 to 1023) of std_logic_vector(23 downto 0);
-  type row_t is array (0 to 2) of unsigned(11 downto 0); -- column 0 is the oldest
-  type window_t is array (0 to 2) of row_t;              -- row 0 is the oldest
+  type row_t is array (0 to 2) of unsigned(11 downto 0); -- column 0 is the oldest column
+  type window_t is array (0 to 2) of row_t;              -- row 0 is the oldest row
   signal ram   : ram_t;
   signal above : std_logic_vector(23 downto 0);
   signal score : unsigned(11 downto 0);

@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: MIT
 --
--- vision_tb: compares the records of the VHDL core with the model's records, with a memory that
+-- vision_tb: compares the records of the VHDL core with those of the model, with a memory that
 -- stalls.
 
 library ieee;
@@ -16,7 +16,7 @@ architecture test of vision_tb is
   constant WIDTH  : natural := 64;
   constant HEIGHT : natural := 40;
   constant THRESHOLD : natural := 20;
-  constant RESULTS : natural := 8192; -- byte address; the frame is at 0
+  constant RESULTS : natural := 8192; -- byte address of the records; the frame is at 0
   type bytes_t is array (0 to 16383) of std_logic_vector(7 downto 0);
 
   signal clk : std_logic := '0';
@@ -51,7 +51,8 @@ begin
     variable memory : bytes_t := (others => x"00");
     variable pushed : std_logic_vector(63 downto 0);
     variable read_at, left : natural := 0;
-    variable next_at, next_left : natural := 0; -- address and length of a second burst that waits
+    -- address and remaining words of a second burst, which waits
+    variable next_at, next_left : natural := 0;
     variable random : natural := 1;
     variable l : line;
     variable n, x, y, score : integer;
@@ -73,7 +74,7 @@ begin
       popped := npi_pop = '1';
       acked := npi_req = '1' and npi_ack = '0' and random mod 3 /= 0 and
                (npi_rnw = '0' or next_left = 0);
-      if npi_ack = '1' then -- this edge ends the request
+      if npi_ack = '1' then -- the request ends at this edge
         if npi_rnw = '1' then
           if left = 0 then
             read_at := address;

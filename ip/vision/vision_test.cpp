@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// vision_test: compares the core, converted to Verilog, with its model, with a memory that stalls.
+// vision_test: compares the core, as converted to Verilog, with its model, while the memory stalls.
 
 #include "Vvision_slot.h"
 #include "bench.h"
@@ -160,8 +160,9 @@ TEST_F(VisionTest, FollowsAnotherCoresFramesAndWaitsForItsReader) {
         bench_.tick();
         EXPECT_FALSE(top.frame_take_o) << "taken once";
         bench_.waitFor([&] { return top.irq_o; }, "the core's interrupt", 100000);
-        for (int i = 0; i < 50; ++i) { // the next frame is offered, but the results of the current
-                                       // frame have not been read
+        // the next frame is offered, but it must not start, because the results of the current
+        // frame have not been read
+        for (int i = 0; i < 50; ++i) {
             EXPECT_FALSE(top.frame_take_o);
             bench_.tick();
         }

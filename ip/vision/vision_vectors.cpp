@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// vision_vectors: writes a random picture and the model's records, for the VHDL test bench.
-// Usage: vision_vectors FOLDER SEED. Writes FOLDER/picture.txt (one pixel per line) and
+// vision_vectors: writes a random picture and the records that the model computes, for the VHDL
+// test bench. Usage: vision_vectors FOLDER SEED. Writes FOLDER/picture.txt (one pixel per line) and
 // FOLDER/records.txt (one line "x y score" per record).
 
 #include "random.h"

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// chip: top level for ISE: connects soc (from EDIF), the memory controller that MIG generates, and
-// the pads.
+// chip: top level for ISE, which connects soc (from EDIF), the memory controller that MIG
+// generates, and the pads.
 //
-// This is a template. `mig` and its ports have the names that MIG 3.x gives a core called "mig" for
-// the MCB of bank 3 with one 64-bit port (UG388). c3_clk0 is the 100 MHz user clock that MIG
-// derives from sys_clk_i. ROWS is the number of address lines of the memory: 13 for 1 Gbit, 14 for
-// 2 Gbit (x16).
+// This is a template. `mig` and its ports have the names that MIG 3.x gives to a core called "mig"
+// for the MCB of bank 3 with one 64-bit port (UG388). c3_clk0 is the user clock of 100 MHz that MIG
+// generates from sys_clk_i. ROWS is the number of address lines of the memory: 13 for 1 Gbit, 14
+// for 2 Gbit (x16).
 
 `default_nettype none
 

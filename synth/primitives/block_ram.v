@@ -1,35 +1,36 @@
 // SPDX-License-Identifier: MIT
 //
-// block_ram: models of RAMB16BWER and RAMB8BWER (Xilinx UG383, Spartan-6 Block RAM): two ports on
-// one array, each with its width. For simulation of netlists.
+// block_ram: models of RAMB16BWER and RAMB8BWER (Xilinx UG383, Spartan-6 Block RAM) for the
+// simulation of netlists: one array with two ports, each with its own width.
 //
 // A port reads and writes at its clock edge while EN is high. If one port reads the address that
-// the other port writes at the same edge, the read data is invalid (UG383, "Conflict Avoidance"),
-// unless the writer is READ_FIRST: in the model, half of the bits then differ from the old data,
-// and half from the new data. Output registers (DO_REG) and collisions of ports with different
-// clocks are not modelled.
+// the other port writes at the same edge, the read data is invalid unless the writing port is
+// READ_FIRST (UG383, "Conflict Avoidance"). In this model invalid data differs in half of the bits
+// from the old data, and in the other half from the new data. Output registers (DO_REG) and
+// collisions of ports with different clocks are not modelled.
 `default_nettype none
 
 module block_ram #(
-    parameter integer ADDR_BITS = 14, // bits of the address of one bit: 14 for 16 Kbit, 13 for 8
-                                      // Kbit
-    parameter integer WIDTH_A = 36,   // bits of a word: 0 (unused), 1, 2, 4, 9, 18 or 36
+    // width of the address of a bit: 14 for 16 Kbit, 13 for 8 Kbit
+    parameter integer ADDR_BITS = 14,
+    // width of a word, bits: 0 (unused port), 1, 2, 4, 9, 18 or 36
+    parameter integer WIDTH_A = 36,
     parameter integer WIDTH_B = 36,
-    parameter MODE_A = "WRITE_FIRST", // output of a port during a write
+    parameter MODE_A = "WRITE_FIRST", // what a port outputs during a write
     parameter MODE_B = "WRITE_FIRST",
-    parameter [35:0] START_A = 36'd0, // outputs after configuration: {parity, data}
+    parameter [35:0] START_A = 36'd0, // output of each port after configuration: {parity, data}
     parameter [35:0] START_B = 36'd0,
     parameter [35:0] RESET_A = 36'd0, // output after a reset
     parameter [35:0] RESET_B = 36'd0,
-    parameter PRIORITY_A = "CE",      // "CE": a reset needs EN; "SR": it is independent of EN
+    parameter PRIORITY_A = "CE",      // "CE": a reset needs EN; "SR": a reset does not need EN
     parameter PRIORITY_B = "CE",
     parameter [(1 << ADDR_BITS) - 1:0]     INIT   = 0,
-    parameter [(1 << ADDR_BITS) / 8 - 1:0] INIT_P = 0 // parity, one bit per byte
+    parameter [(1 << ADDR_BITS) / 8 - 1:0] INIT_P = 0 // parity bits, one bit per byte
 ) (
     input  wire                 clk_a_i,
     input  wire                 en_a_i,
     input  wire                 rst_a_i,
-    input  wire [3:0]           we_a_i,  // one bit per byte of the word
+    input  wire [3:0]           we_a_i,  // byte enables of the word
     input  wire [ADDR_BITS-1:0] addr_a_i,
     input  wire [35:0]          data_a_i, // {parity, data}
     output reg  [35:0]          data_a_o,
@@ -42,13 +43,13 @@ module block_ram #(
     input  wire [35:0]          data_b_i,
     output reg  [35:0]          data_b_o
 );
-    // Number of data bits of a word, without parity.
+    // Returns the number of data bits of a word, without parity.
     function integer data_bits(input integer width);
         data_bits = width >= 9 ? width / 9 * 8 : width;
     endfunction
     localparam integer DATA_A = data_bits(WIDTH_A), DATA_B = data_bits(WIDTH_B);
 
-    // Rows of 32 bits with parity, the widest word.
+    // The memory is stored as rows of 32 bits with parity, the widest word.
     localparam integer ROWS = 1 << (ADDR_BITS - 5);
     reg [35:0] rows [0:ROWS-1];
     integer i;
@@ -59,7 +60,7 @@ module block_ram #(
         data_b_o = START_B;
     end
 
-    // Bits of a row that a word with these byte enables writes.
+    // Returns the bits of a row that are written by a word with these byte enables.
     function [35:0] mask(input integer width, input [4:0] place, input [3:0] we);
         reg [31:0] data;
         reg [3:0]  parity;
@@ -80,7 +81,7 @@ module block_ram #(
         taken = {row[35:32] >> place[4:3], row[31:0] >> place};
     endfunction
 
-    // A port that is not used has no address.
+    // The address of a port that is not used is 0.
     wire [ADDR_BITS-6:0] row_a = WIDTH_A == 0 ? 0 : addr_a_i[ADDR_BITS-1:5];
     wire [ADDR_BITS-6:0] row_b = WIDTH_B == 0 ? 0 : addr_b_i[ADDR_BITS-1:5];
     wire [4:0]  place_a = addr_a_i[4:0] & ~(DATA_A[4:0] - 5'd1);
@@ -89,7 +90,8 @@ module block_ram #(
     wire [35:0] mask_b  = WIDTH_B == 0 || !en_b_i ? 36'd0 : mask(WIDTH_B, place_b, we_b_i);
     wire [35:0] new_a   = (rows[row_a] & ~mask_a) | (placed(place_a, data_a_i) & mask_a);
     wire [35:0] new_b   = (rows[row_b] & ~mask_b) | (placed(place_b, data_b_i) & mask_b);
-    // Bits that the other port overwrites at the same edge, so that this port reads invalid data.
+    // Bits that the other port overwrites at the same edge, so that this port would read invalid
+    // data.
     wire [35:0] lost_a  = row_a == row_b && MODE_B != "READ_FIRST" ? mask_b : 36'd0;
     wire [35:0] lost_b  = row_a == row_b && MODE_A != "READ_FIRST" ? mask_a : 36'd0;
     wire [35:0] wrong_a = (~rows[row_a] & 36'h555555555) | (~new_b & 36'haaaaaaaaa);

@@ -2,7 +2,8 @@
 //
 // bench: provides clock, reset and bounded waits for a Verilated module with clk_i and rst_i.
 //
-// Set inputs after tick() and read outputs before it: the outputs are stable when tick() returns.
+// Read outputs before you call tick() and set inputs after it; when tick() returns, the outputs are
+// stable.
 
 #pragma once
 
@@ -21,8 +22,9 @@ public:
     Bench()
         : context_(new VerilatedContext), observer_(*context_), top_(new Module(context_.get())) {}
     ~Bench() {
-        // The scopes of a module unregister at this thread's context. Sets this bench's context,
-        // because the thread's context may belong to a bench that no longer exists.
+        // The destructor of a Verilated module removes the module's scopes from the context of the
+        // current thread. That context may belong to a bench that no longer exists, so this bench
+        // first makes its own context the thread's context.
         Verilated::threadContextp(context_.get());
         top_->final();
         observer_.finish();
@@ -43,8 +45,8 @@ public:
     // edges of clk_i.
     void addClock(std::function<void()> half) { half_ = std::move(half); }
 
-    // Runs one clock cycle: settles, lets the models sample, rising edge, lets the models drive,
-    // falling edge, settles.
+    // Runs one clock cycle: settles the module, samples with the models, raises the clock, drives
+    // with the models, lowers the clock, and settles the module again.
     void tick() {
         top_->eval();
         for (auto& model : models_)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_master: drives the register bus of a module whose slave ports are as in docs/bus.md.
+// bus_master: drives the register bus of a module that has the slave ports of docs/bus.md.
 
 #pragma once
 
@@ -13,7 +13,7 @@ public:
     struct Answer {
         uint32_t data;
         bool error;
-        unsigned cycles; // clocks from valid to ready, at least 1
+        unsigned cycles; // number of clocks from valid to ready, at least 1
     };
 
     Answer transfer(bool write, unsigned word, uint32_t data) {
@@ -21,7 +21,8 @@ public:
         top.bus_write_i = write;
         top.bus_addr_i = static_cast<uint8_t>(word);
         top.bus_wdata_i = data;
-        bench_.tick(); // the address arrives one clock before valid, which is low between transfers
+        // the address is set one clock before valid rises; valid is low between two transfers
+        bench_.tick();
         top.bus_valid_i = 1;
         uint64_t start = bench_.cycles();
         bench_.waitFor([&] { return top.bus_ready_o; },
@@ -35,7 +36,7 @@ public:
     }
     uint32_t read(unsigned word) { return transfer(false, word, 0).data; }
     void write(unsigned word, uint32_t data) { transfer(true, word, data); }
-    // Returns the events of the slot and clears them.
+    // Returns the pending events of the slot, and clears them in the slot.
     uint32_t takeEvents() {
         const uint32_t events = read(1);
         write(1, events);
@@ -43,7 +44,7 @@ public:
     }
 
 private:
-    // limit for ready, clocks: the TIMEOUT of an adapter plus one (docs/bus.md)
+    // limit for the wait for ready, clocks: the TIMEOUT of an adapter (docs/bus.md) plus one
     static constexpr unsigned slowest = 256;
     Bench<Module>& bench_;
 };

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// core_slot: a core behind its generated wrapper in slot 5, for the FSMC driver and a generated
-// servant: the driver's port, the interrupt, the wait (docs/hw-mapping.md).
+// core_slot: connects a core and its generated wrapper, in slot 5, to the FSMC driver and a
+// generated servant. It provides the driver's port, the interrupt and the waits
+// (docs/hw-mapping.md).
 
 #pragma once
 
@@ -22,15 +23,17 @@ extern "C" {
 }
 
 constexpr U32 coreSlot = 5;
-#ifdef CORE_CLK_HZ // defined for cores with that parameter
+#ifdef CORE_CLK_HZ // defined only for cores that have the parameter CLK_HZ
 constexpr U32 coreClocksOfMs = CORE_CLK_HZ / 1000;
 #else
-constexpr U32 coreClocksOfMs = 100; // small, so that time-outs expire soon
+// number of core clocks in a millisecond; small, so that time-outs expire soon
+constexpr U32 coreClocksOfMs = 100;
 #endif
-// byte address in DDR3 of the core's buffers, as the driver uses it
+// byte address of the core's buffers in DDR3, as the driver uses it
 constexpr U32 coreMemory = 0x01000000;
 
-// Status of a call that neither succeeded nor threw one of its exceptions.
+// Reports the status of a call that failed for another reason than one of the operation's own
+// exceptions.
 class CoreError : public std::runtime_error {
 public:
     explicit CoreError(Ice_Status status)
@@ -41,7 +44,7 @@ private:
     Ice_Status status_;
 };
 
-// The DDR3 at the core's memory port, if the core has one.
+// Models the DDR3 memory at the core's memory port, if the core has such a port.
 template <class Module, class = void> class CoreMemory {
 public:
     explicit CoreMemory(Bench<Module>&) {}
@@ -57,8 +60,8 @@ public:
     explicit CoreMemory(Bench<Module>& bench) : NpiMemory<Module>(bench, 0.2, testSeed()) {}
 };
 
-// Clock of a core with a separate clock domain, in addition to the chip's 100 MHz; its edges lie
-// between the edges of the chip's clock.
+// Clock of a core with a separate clock domain, in addition to the chip's 100 MHz. The edges of
+// this clock lie between the edges of the chip's clock.
 #ifndef CORE_OWN_HZ
 #define CORE_OWN_HZ 24000000u
 #endif
@@ -129,8 +132,9 @@ public:
             throw exception;
         hw_check(status);
     }
-    // Polls until an operation that is answered later has ended, as the firmware's task does: after
-    // the core's interrupt, or some milliseconds after the requested time.
+    // Polls until a deferred operation has ended. Like the task of the firmware, it polls after
+    // each interrupt of the core, and a few milliseconds after the time that the operation
+    // requested.
     void hw_finish(U32 operation) {
         Hw_Status status = HW_OK;
         U32 next = HW_NEVER;
@@ -154,12 +158,13 @@ public:
     CoreMemory<Module> memory_{bench_};
     BusMaster<Module> bus_{bench_};
     Hw_Core* core_ = nullptr;
-    // interrupt function of the servant; if it is empty, Hw_Core_interrupt is used
+    // interrupt function of the servant; Hw_Core_interrupt is used if this function is empty
     std::function<void()> interrupt_;
-    // called before each register access, to simulate that another task runs
+    // function that is called before each register access, to simulate another task that runs in
+    // between
     std::function<void()> beforeAccess_;
     U32 posted_ = 0;
-    U32 memoryAt_ = coreMemory; // address of the buffers for the core: the value of MEMORY
+    U32 memoryAt_ = coreMemory; // address of the core's buffers: the value of the register MEMORY
     uint64_t started_ = 0, waitedClocks_ = 0;
     unsigned errors_ = 0;
 
@@ -168,7 +173,7 @@ private:
     U32 inMemory(U32 address) const { return address - ddr - coreMemory + memoryAt_; }
     U32 access(bool isWrite, U32 address, U32 value) {
         if (address < control || address >= control + 0x1000)
-            return 0; // this address belongs to the FSMC's own registers
+            return 0; // an address outside the control window belongs to the FSMC's own registers
         U32 word = (address - control) / 4;
         if (beforeAccess_)
             beforeAccess_();

@@ -39,7 +39,7 @@ inline void putString(Bytes& m, const std::string& s) {
     m.insert(m.end(), s.begin(), s.end());
 }
 
-// Returns the body of a request, which starts with the identity.
+// Returns the body of a request; the body starts with the identity of the object.
 inline Bytes requestBody(const std::string& object, const std::string& operation, uint8_t minor = 1,
                          const Bytes& parameters = {}, const std::string& facet = "",
                          uint8_t mode = 0) {
@@ -63,7 +63,7 @@ inline Bytes request(uint32_t id, const Bytes& body) {
     return message(IceHeader::Request, m);
 }
 
-// Returns a request; id 0 means one-way.
+// Returns a complete request; id 0 makes it a one-way request.
 inline Bytes request(uint32_t id, const std::string& object, const std::string& operation,
                      const Bytes& parameters, const std::string& facet = "", uint8_t minor = 1) {
     return request(id, requestBody(object, operation, minor, parameters, facet));

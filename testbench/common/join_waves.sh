@@ -16,7 +16,8 @@ function next_line() {
     more = (getline line < program) > 0
     if (more && line ~ /^#/) { time = substr(line, 2) + 0; next_line() }
 }
-function told_until(end) { # prints lines of the program up to this time
+# prints the lines of the program's waveform up to this time; a negative time prints all lines
+function told_until(end) {
     while (more && (end < 0 || time <= end)) {
         if (time > now) print "#" (now = time)
         print line

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // link_program: offers the functions that a link layer calls (Link_Port) as virtual functions. A
-// class with a link derives from LinkProgram, overrides the functions that it needs, and configures
-// the link with linkPort() and linkProgram().
+// class that uses a link derives from LinkProgram, overrides the functions that it needs, and
+// passes linkPort() and linkProgram() to the link's configuration.
 
 #pragma once
 
@@ -40,7 +40,8 @@ protected:
     // Sends a frame. Returns whether there was room.
     virtual bool transmit(const U8* frame, U32 size) = 0;
     virtual U32 random() = 0;
-    // Accepts a message. Returns false if the link must deliver it again later.
+    // Accepts a message from the link. If it returns false, the link must deliver the message again
+    // later.
     virtual bool take(int channel, const U8* data, U32 size) {
         (void)channel, (void)data, (void)size;
         return true;

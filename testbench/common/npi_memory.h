@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // npi_memory: models the memory at one NPI port (docs/memory.md), with random stalls, for tests of
-// single blocks. It checks the rules for the requester, and throws if one is broken.
+// single blocks. It checks that the requester obeys the rules of NPI, and throws an exception if a
+// rule is broken.
 
 #pragma once
 
@@ -36,10 +37,11 @@ public:
         return list;
     }
     void setStall(double stall) { stall_ = stall; }
-    // Holds all requests, like a memory that hangs.
+    // Holds back all requests while `held` is true, like a memory that hangs.
     void hold(bool held) { held_ = held; }
-    // Sets the probability per cycle that a word of an acknowledged write stays in the write FIFO,
-    // as in a memory that is busy with other ports. With 0, the word leaves at the acknowledgement.
+    // Sets the probability per cycle that a word stays in the write FIFO although its write has
+    // been acknowledged, as in a memory that is busy with other ports. With 0, all words leave the
+    // FIFO at the acknowledgement.
     void setLinger(double linger) { linger_ = linger; }
     uint64_t reads() const { return reads_; }
     uint64_t writes() const { return writes_; }
@@ -49,7 +51,8 @@ private:
 
     struct Word {
         uint64_t data;
-        uint8_t extra; // byte enables of a written word; index in the transfer of a read word
+        // in a write: byte enables of the word; in a read: index of the word in its transfer
+        uint8_t extra;
     };
 
     [[noreturn]] static void broken(const std::string& what) {
@@ -101,7 +104,7 @@ private:
             isRead_ = top_.npi_rnw_o;
             size_ = top_.npi_size_o;
         } else if (ack_) {
-            take(); // the acknowledgement is given at this edge
+            take(); // the memory acknowledges the request at this edge
         }
         waiting_ = isNew;
         ack_ = isNew && !held_ && !random_.chance(stall_);
@@ -113,7 +116,7 @@ private:
         if (size_ > 5)
             broken("size " + std::to_string(size_));
         unsigned words = 1u << size_;
-        // a line read may start with any word of the line
+        // a line read may start at any word of the cache line
         bool lineRead = isRead_ && (size_ == 1 || size_ == 2);
         if (address_ % (lineRead ? 8 : words * 8))
             broken("address not aligned to its size");
@@ -141,7 +144,8 @@ private:
                     bytes_[address_ + 8 * w + b] = static_cast<uint8_t>(word.data >> (8 * b));
         }
         if (linger_ > 0)
-            lingering_ += words; // the words count against the room of every later request
+            // these words still occupy the write FIFO and reduce the space for later requests
+            lingering_ += words;
     }
 
     uint64_t load(uint32_t address) const {

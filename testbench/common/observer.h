@@ -2,10 +2,10 @@
 //
 // observer: records a Verilated model in special builds. It writes a waveform with -DTRACE=ON (file
 // WAVE, from clock WAVE_FROM to WAVE_TO), and coverage data with -DCOVERAGE=ON (folder
-// COVERAGE_DIR). In other builds it only holds the number of the clock.
+// COVERAGE_DIR). In other builds it only counts the clock cycles.
 //
-// The environment variable CDC_SEED, a number, adds random delays to the model's synchronisers
-// (hdl/cdc/cdc_random.vh). The delays depend on CDC_SEED and SEED only.
+// If the environment variable CDC_SEED contains a number, the model's synchronisers get random
+// delays (hdl/cdc/cdc_random.vh). The delays depend only on CDC_SEED and SEED.
 
 #pragma once
 
@@ -36,7 +36,8 @@ public:
         context_.traceEverOn(true);
 #endif
     }
-    // Ends the recording. Call this before the model is destroyed, because it owns the counters.
+    // Ends the recording. Call this before the model is destroyed, because the coverage counters
+    // are part of the model.
     void finish() {
 #ifdef ICESOC_TRACE
         if (wave_)
@@ -45,7 +46,9 @@ public:
 #ifdef ICESOC_COVERAGE
         if (const char* folder = std::getenv("COVERAGE_DIR")) {
             std::string file = std::string(folder) + "/XXXXXX.dat";
-            close(mkstemps(file.data(), 4)); // a unique name; process ids repeat in a long run
+            // mkstemps makes a unique name; a process id would not, since process ids repeat in a
+            // long run
+            close(mkstemps(file.data(), 4));
             context_.coveragep()->write(file.c_str());
         }
 #endif
@@ -57,7 +60,9 @@ public:
 #ifdef ICESOC_TRACE
         if (window_.file.empty() || clock < window_.from || clock > window_.to)
             return;
-        if (!wave_) { // a later model overwrites the file, because a test fails in its last model
+        // each model of a test overwrites the file, so that it shows the last model, in which the
+        // test failed
+        if (!wave_) {
             wave_.reset(new VerilatedFstC);
             top.trace(wave_.get(), 99);
             wave_->open(window_.file.c_str());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// random: a small generator (xorshift64*) that returns the same numbers on every machine, and the
-// seed of a test.
+// random: provides a small random generator (xorshift64*) that returns the same numbers on every
+// machine, and reads the seed of a test.
 
 #pragma once
 
@@ -36,7 +36,8 @@ private:
     uint64_t state_;
 };
 
-// Returns the environment variable SEED, which repeats a run, or `fallback` if it is not set.
+// Returns the environment variable SEED, with which a run can be repeated; returns `fallback` if
+// SEED is not set.
 inline uint64_t testSeed(uint64_t fallback = 1) {
     const char* seed = std::getenv("SEED");
     return seed && *seed ? std::strtoull(seed, nullptr, 0) : fallback;

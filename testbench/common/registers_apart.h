@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// registers_apart: checks that each register of a third-party core keeps a different value, if the
-// register can be written. This finds lost writes. It also finds a wrong address unit (words
-// instead of bytes, or the reverse), because two neighbouring addresses then access one register.
-// If a core has fewer registers than addresses, its registers repeat at a distance, which is
-// correct.
+// registers_apart: checks that each writable register of a third-party core keeps a value of its
+// own. This finds lost writes. It also finds a wrong address unit (words instead of bytes, or bytes
+// instead of words), because two neighbouring addresses then access the same register. If a core
+// has fewer registers than addresses, several addresses may access one register at a regular
+// distance; this is not an error.
 //
-// The test prints one note for each register: whether the value could be read back. It prints
-// another note if the core is active without a call, with the signals that change
-// (icesoc.regress.ctest prints notes).
+// For each register, the test prints a note that reports whether the value could be read back. It
+// prints another note, with the names of the signals that change, if the core is active although
+// nothing calls it (icesoc.regress.ctest prints notes).
 
 #pragma once
 
@@ -26,7 +26,8 @@ extern "C" {
 #include "hw_registers.h"
 }
 
-// True if a slot has the output idle_o, which reports that the clock of the slot may stop.
+// Returns the slot's output idle_o, which is high if the clock of the slot may stop; returns false
+// if the slot has no such output.
 template <class Module> auto saysIdle(Module& top, int) -> decltype(bool(top.idle_o)) {
     return top.idle_o;
 }
@@ -34,7 +35,7 @@ template <class Module> bool saysIdle(Module&, long) {
     return false;
 }
 
-// A signal in the state of a model, named by its path in the slot. state_members.awk generates
+// A signal in the state of a model, with its path in the slot as name. state_members.awk generates
 // V<core>_slot_state.h, which lists the signals of a core.
 struct StateMember {
     template <class Root, class T>
@@ -49,15 +50,16 @@ template <class Root> std::vector<StateMember> stateOf(const Root&) {
     return {};
 }
 
-// Prints a note if the core is active without a call. Only counters should change then: a flight
-// skips clocks in which nothing else changes (docs/simulation.md). The generated test includes the
-// header with the state of the model.
+// Prints a note if the core is active although nothing calls it. In an idle core only counters
+// should change, because a flight skips the clocks in which nothing else changes
+// (docs/simulation.md). The generated test includes the header that describes the state of the
+// model.
 template <class Module> void noteWhetherItRests(Bench<Module>& bench) {
     constexpr unsigned settling = 64, clocks = 1000, named = 3;
     const auto& state = *bench.top().rootp;
     const auto* now = reinterpret_cast<const unsigned char*>(&state);
     const std::vector<StateMember> members = stateOf(state);
-    std::map<std::string, unsigned> movers; // number of clocks in which each signal has changed
+    std::map<std::string, unsigned> movers; // number of clocks in which each signal changed
     for (unsigned i = 0; i < settling; ++i)
         bench.tick();
     unsigned moved = 0;
@@ -90,7 +92,7 @@ void expectRegistersApart(CoreSlot<Module>& slot, const Hw_Register (&table)[N],
                           unsigned pageWord) {
     struct Register {
         const Hw_Register& is;
-        U32 value; // written value; differs for each register
+        U32 value; // value written to the register; different for each register
     };
     auto access = [&](bool isWrite, const Register& r) {
         slot.bus_.write(pageWord, static_cast<U32>(r.is.page));
@@ -99,7 +101,7 @@ void expectRegistersApart(CoreSlot<Module>& slot, const Hw_Register (&table)[N],
     std::vector<Register> hold;
     for (const Hw_Register& is : table) {
         if (is.word < 8)
-            continue; // words 0 to 7 belong to the wrapper, not to the core
+            continue; // words 0 to 7 of a slot are registers of the wrapper, not of the core
         const U32 mask = is.width < 32 ? (1u << is.width) - 1 : ~0u;
         const Register r{is, (0x5A5A0001u + 0x01010101u * static_cast<U32>(&is - table)) & mask};
         const bool refused = access(true, r).error;

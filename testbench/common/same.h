@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// same: compares two sequences in tests. A failure prints the first element that differs, not a
-// part of both sequences: "filter(list) differs at [40]: expected -3, got 7".
+// same: compares two sequences in a test. If they differ, the message shows only the first
+// different element, not the sequences: "filter(list) differs at [40]: expected -3, got 7".
 
 #pragma once
 

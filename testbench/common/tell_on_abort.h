@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// tell_on_abort: prints the state of the models when the program is aborted, as the test runner
-// does with a test that hangs.
+// tell_on_abort: prints the state of all models when the program is aborted. The test runner aborts
+// a test that hangs.
 
 #pragma once
 
@@ -12,11 +12,11 @@
 #include <map>
 #include <string>
 
-// Number of the clock of the model that ran last; failed assertions print it.
+// Clock cycle of the model that ran last; the messages of failed assertions contain it.
 inline uint64_t observedClock = 0;
 
-// Functions that return one line about each live model, by the address of the model. A model
-// removes its entry when it is destroyed.
+// Functions that return one line of text about each existing model; the key is the address of the
+// model. A model removes its function when it is destroyed.
 inline std::map<const void*, std::function<std::string()>> tellers;
 
 inline void tellOnAbort(const void* model, std::function<std::string()> tell) {

@@ -9,14 +9,14 @@
 #include <cstdlib>
 #include <string>
 
-// Returns a number from the environment, or `otherwise` if the variable is not set.
+// Returns an environment variable as a number, or `otherwise` if the variable is not set.
 inline uint64_t environmentNumber(const char* variable, uint64_t otherwise) {
     const char* text = std::getenv(variable);
     return text && *text ? std::strtoull(text, nullptr, 0) : otherwise;
 }
 
 struct WaveWindow {
-    std::string file; // file of the waveform; empty if none is recorded
+    std::string file; // file for the waveform; empty if no waveform is recorded
     uint64_t from = environmentNumber("WAVE_FROM", 0), to = environmentNumber("WAVE_TO", ~0ull);
 
     WaveWindow() {

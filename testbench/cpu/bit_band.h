@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// bit_band: finds the bit that an alias stands for. Each bit of RAM and peripherals has an alias,
-// which is a word (B3.1, TRM 3.7).
+// bit_band: converts a bit-band alias address to the bit that it accesses. Each bit in the bit-band
+// regions of RAM and peripherals has one word as its alias (B3.1, TRM 3.7).
 
 #pragma once
 

@@ -3,10 +3,10 @@
 // cortex_m3: the main loop around libunicorn, and the steps before each instruction.
 //
 // Unicorn calls a hook before every instruction. The hook advances the time, and stops the
-// processor before the instruction when an exception must be entered. So unmasking an interrupt
-// takes effect at the same instruction as on the chip. The hook does not stop within an IT block,
-// because unicorn would lose the state of the block; an interrupt waits there for up to four
-// instructions.
+// processor before the instruction if an exception must be entered. Therefore, when a program
+// unmasks an interrupt, the exception is entered at the same instruction as on the chip. The hook
+// does not stop the processor within an IT block, because unicorn would lose the state of the
+// block; an interrupt then waits for up to four instructions.
 
 #include "cortex_m3.h"
 #include "unicorn_calls.h"
@@ -14,13 +14,14 @@
 #include <cstring>
 
 namespace {
-constexpr uint64_t sleepStep = 1 << 20; // cycles that the rest of the system may skip at once
+// largest number of cycles by which the rest of the system may be advanced at once
+constexpr uint64_t sleepStep = 1 << 20;
 } // namespace
 
 CortexM3::Stop CortexM3::run(bool singleStep) {
     singleStep_ = singleStep;
     stepped_ = breakpointHit_ = false;
-    passBreakpoint_ = true; // do not stop at a breakpoint at the current address
+    passBreakpoint_ = true; // do not stop again at the breakpoint at which the processor stands
     for (;;) {
         if (failure_) {
             auto failure = failure_;
@@ -222,8 +223,8 @@ void CortexM3::sleep() {
     asleep_ = false;
 }
 
-// Advances the time until instructions can be fetched from flash again, or until another event is
-// due.
+// Advances the time until instructions can be fetched from flash again, or until another event must
+// be handled.
 void CortexM3::waitForFlash() {
     while (cycles() < flashFree_ && !stopAsked_ && !resetAsked_ && !failure_)
         passing([&] {
@@ -233,7 +234,8 @@ void CortexM3::waitForFlash() {
     updateAttention();
 }
 
-// Keeps only the four implemented bits of BASEPRI. A write to BASEPRI_MAX is ignored if they are 0.
+// Keeps only the four implemented bits of BASEPRI. A write to BASEPRI_MAX is ignored if these four
+// bits are 0.
 void CortexM3::fixBasepri() {
     constexpr uint8_t basepriMax = 18;
     const uint32_t value = reg(Basepri), kept = value & Exceptions::priorityBits;

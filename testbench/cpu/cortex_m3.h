@@ -21,26 +21,29 @@
 #include <unicorn/unicorn.h>
 #include <vector>
 
-// CpuBus is everything around the processor. Addresses are as the processor sees them.
+// Interface to everything around the processor. Addresses are those that the program uses.
 class CpuBus {
 public:
     virtual ~CpuBus() = default;
-    // Thrown by the bus for a failed access, which becomes a BusFault with this text.
+    // Exception that the bus throws for a failed access. The access becomes a BusFault with this
+    // text.
     class Error : public std::runtime_error {
     public:
         using std::runtime_error::runtime_error;
     };
-    virtual uint32_t read(uint32_t address, unsigned bytes) = 0; // 1, 2 or 4 bytes
+    // `bytes` is the size of the access: 1, 2 or 4
+    virtual uint32_t read(uint32_t address, unsigned bytes) = 0;
     virtual void write(uint32_t address, unsigned bytes, uint32_t value) = 0;
-    // Lets `cycles` of HCLK pass without an access. Not called recursively.
+    // Lets `cycles` of HCLK pass without an access. The model never calls this from within another
+    // call of it.
     virtual void pass(unsigned cycles) = 0;
-    // Lets up to `limit` cycles pass while the processor sleeps, or fewer if an interrupt line
-    // changes. Returns the number of cycles that passed, at least 1.
+    // Lets up to `limit` cycles pass while the processor sleeps; returns earlier if an interrupt
+    // line changes. Returns the number of cycles that passed, at least 1.
     virtual unsigned sleep(unsigned limit) {
         pass(1);
         return limit ? 1 : 0;
     }
-    // Performs a store to flash at this offset.
+    // Handles a store of the program to flash, at this offset in flash.
     virtual void writeFlash(uint32_t, unsigned, uint32_t) {
         throw Error("flash is not written by stores");
     }
@@ -52,7 +55,7 @@ class CortexM3 {
 public:
     struct Config {
         uint32_t flashBase = 0x08000000,
-                 flashBytes = 0x100000; // flash, which is also mapped to address 0
+                 flashBytes = 0x100000; // size of flash; flash can also be read at address 0
         uint32_t ramBase = 0x20000000, ramBytes = 0x20000;
         uint32_t calibration = 15000; // value of SYST_CALIB: ticks of HCLK/8 in a millisecond
     };
@@ -66,47 +69,50 @@ public:
     CortexM3(const CortexM3&) = delete;
     CortexM3& operator=(const CortexM3&) = delete;
 
-    // Read and write flash and RAM, without side effects. Return false if part of the range is not
-    // memory.
+    // Read and write flash and RAM without side effects. They return false if part of the range is
+    // not memory.
     bool readMemory(uint32_t address, void* data, uint32_t bytes) const {
         return memory_.read(address, data, bytes);
     }
     bool writeMemory(uint32_t address, const void* data, uint32_t bytes);
     void loadFlash(uint32_t address, const std::vector<uint8_t>& bytes);
-    // Read and write for a debugger. Memory is accessed directly; registers and windows by bus
-    // accesses, as by the processor.
+    // Read and write on behalf of a debugger. Memory is accessed directly. Registers and windows
+    // are accessed over the bus, as by the processor.
     bool debugRead(uint32_t address, void* data, uint32_t bytes);
     bool debugWrite(uint32_t address, const void* data, uint32_t bytes);
     uint8_t* flash() { return memory_.flash(); }
     // Reports that bytes of flash have changed; called by the bus.
     void flashChanged(uint32_t offset, uint32_t bytes);
-    // Blocks instruction fetches from flash for this many cycles; called by the bus.
+    // Makes instruction fetches from flash wait for this many cycles; called by the bus.
     void stallFlash(uint64_t cycles) { flashFree_ = this->cycles() + cycles; }
     // Returns the word at `address`; 0 if the address is not memory.
     uint32_t word(uint32_t address) const;
 
-    // Performs a power-on or system reset: registers from the vector table; RAM is kept.
+    // Performs a power-on or system reset: loads SP and PC from the vector table, and keeps the
+    // contents of RAM.
     void reset();
-    // Runs until stop(), a breakpoint, or an exception of the bus other than CpuBus::Error.
+    // Runs until stop() is called, a breakpoint is reached, or the bus throws an exception other
+    // than CpuBus::Error.
     enum class Stop { Asked, Breakpoint, Stepped };
     Stop run(bool singleStep = false);
-    // Makes run() also stop (Stop::Stepped) when `instructions()` reaches this count; 0 disables
-    // it. The processor cannot stop within an IT block.
+    // Makes run() also stop, with Stop::Stepped, when `instructions()` reaches this number; 0
+    // disables the limit. Within an IT block the processor cannot stop; it then stops after the
+    // block.
     void setLimit(uint64_t instructions) { limit_ = instructions; }
-    // Returns the latest earlier count of instructions at which the processor could have stopped.
+    // Returns the last earlier instruction count at which the processor could have stopped.
     uint64_t lastStop() const { return boundaries_[0]; }
-    // Makes run() return before the next instruction; called by the bus or a listener.
+    // Makes run() return before the next instruction; called by the bus or by a listener.
     void stop() { stopAsked_ = attention_ = true; }
-    // Requests a reset from outside the processor (such as a watchdog), before the next
-    // instruction.
+    // Requests a reset from outside the processor, for example by a watchdog. It takes effect
+    // before the next instruction.
     void requestReset() { resetAsked_ = attention_ = true; }
 
     // Sets the level of an interrupt line; called by the bus.
     void setInterrupt(unsigned number, bool high);
     void pendInterrupt(unsigned number);
 
-    // Registers: R0..R12, SP, LR, PC, xPSR are 0..16; then MSP, PSP, PRIMASK, BASEPRI, FAULTMASK,
-    // CONTROL.
+    // Register numbers: 0 to 16 are R0..R12, SP, LR, PC and xPSR; then follow MSP, PSP, PRIMASK,
+    // BASEPRI, FAULTMASK and CONTROL.
     enum Register {
         Sp = 13,
         Lr,
@@ -126,21 +132,22 @@ public:
     uint64_t cycles() const { return control_.cycles(); }
     uint64_t instructions() const { return instructions_; }
     uint64_t sleepingCycles() const { return sleeping_; }
-    // Returns the cycles in which the processor waited for accesses to windows.
+    // Returns the number of cycles that the processor has waited for accesses to windows.
     uint64_t busCycles() const { return waited_; }
     bool isLockedUp() const { return lockedUp_; }
     unsigned currentException() const;
     Exceptions& exceptions() { return exceptions_; }
 
-    // Measures the longest time, since this call, in which the masks block interrupts of `priority`
-    // and below.
+    // Starts to measure the longest time for which the mask registers block interrupts of
+    // `priority` and of less urgent priorities.
     void countMasked(uint8_t priority) { masked_.start(priority); }
     const MaskedTime::Longest& longestMasked() const { return masked_.longest(); }
 
     std::set<uint32_t> breakpoints; // breakpoint addresses, with bit 0 clear
     std::string lastFault;          // text of the last fault, for a message to the user
 
-    // Called when an exception is entered or left, and before a system reset is carried out.
+    // Functions that are called when an exception is entered or left, and before a system reset is
+    // carried out.
     struct Listener {
         std::function<void(unsigned number)> entered, left;
         std::function<void()> systemReset;
@@ -164,8 +171,8 @@ private:
     void setSynchronous(uint32_t address, unsigned number, uint32_t cfsrBits, const char* text);
     void clearExclusive();
     void fixBasepri();
-    // True in handlers of HardFault and NMI, and under FAULTMASK: such code runs without the MPU
-    // (B3.5.1).
+    // Returns true in the handlers of HardFault and NMI, and while FAULTMASK is set. The MPU does
+    // not check accesses of such code (B3.5.1).
     bool isMpuOff() const { return exceptions_.runningPriority() < 0; }
     bool isSplit(uint32_t address, unsigned bytes);
     uint32_t readBit(uint32_t address);
@@ -193,7 +200,7 @@ private:
     uc_engine* uc_ = nullptr;
     CpuMemory memory_;
     FlashWrites flashWrites_;
-    Instruction scratch_; // decoded instruction at an address outside flash
+    Instruction scratch_; // decoded instruction, if its address is outside flash
     struct MappedWindow {
         CortexM3* cpu;
         uint32_t base;
@@ -203,11 +210,11 @@ private:
     SystemControl control_{exceptions_, 0};
 
     uint32_t pc_ = 0, executing_ = 0, expected_ = 0, unitEnd_ = 0;
-    // number of instructions in the current IT block that are still to be executed or skipped
+    // number of instructions of the current IT block that must still be executed or skipped
     unsigned skipped_ = 0;
     bool masksChanged_ = false;
-    uint8_t special_ = 0;     // special register of the last MSR
-    bool exclusive_ = false;  // the exclusive monitor may be open
+    uint8_t special_ = 0;     // number of the special register that the last MSR instruction wrote
+    bool exclusive_ = false;  // true if the exclusive monitor may be open
     bool isClearing_ = false; // true while the CLREX that the model inserts is being executed
     bool attention_ = false, stopAsked_ = false, resetAsked_ = false, stepped_ = false,
          breakpointHit_ = false;
@@ -219,10 +226,11 @@ private:
         uint32_t cfsrBits = 0;
         std::string text;
     } synchronous_; // fault that the current instruction caused
-    // The write buffer of one entry (TRM r2p1, 3.5): a pending store to a window.
+    // Write buffer with one entry (TRM r2p1, 3.5): it holds a store to a window until the store is
+    // carried out.
     struct BufferedStore {
         uint32_t address = 0, value = 0;
-        unsigned bytes = 0; // size of the pending store; 0 means that the buffer is empty
+        unsigned bytes = 0; // size of the stored data, bytes; 0 means that the buffer is empty
         uint64_t due = 0;   // cycle count
     } store_;
     std::exception_ptr failure_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// cpu_accesses: loads and stores of CortexM3 outside of RAM, with wait cycles, the store buffer and
-// faults; and accesses by a debugger.
+// cpu_accesses: the part of CortexM3 that handles loads and stores outside of RAM, with wait
+// cycles, the write buffer and faults, and the accesses by a debugger.
 
 #include "bit_band.h"
 #include "cortex_m3.h"
@@ -10,7 +10,7 @@
 #include <cstring>
 
 namespace {
-constexpr unsigned storeCycles = 14; // FSMC cycles for one register word
+constexpr unsigned storeCycles = 14; // number of FSMC cycles of a store of one register word
 
 std::string accessText(uint32_t address, unsigned bytes, const char* what) {
     char text[64];
@@ -24,7 +24,7 @@ unsigned accessSize(uint32_t address, uint32_t bytes) {
 }
 } // namespace
 
-// Adds the time that the last bus access took.
+// Adds the cycles for which the last bus access made the processor wait.
 void CortexM3::passWaited() {
     const unsigned waited = bus_.takeWaited();
     waited_ += waited;
@@ -32,7 +32,8 @@ void CortexM3::passWaited() {
     attention_ = attention_ || exceptions_.deliverable();
 }
 
-// Performs a buffered store. Its fault is imprecise: it is reported late and without an address.
+// Carries out a store from the write buffer. If it fails, the fault is imprecise: it is reported
+// later and without an address.
 template <class Store> void CortexM3::store(uint32_t address, unsigned bytes, Store store) {
     try {
         store();
@@ -56,13 +57,13 @@ void CortexM3::drainStore() {
 template <class Access>
 uint32_t CortexM3::guardedAccess(uint32_t address, unsigned bytes, Access access) {
     if (failure_ || synchronous_.number)
-        return 0; // the processor stops before the next instruction
+        return 0; // after an access that failed, the processor stops before the next instruction
     try {
         uint32_t value = 0;
         if (address >= 0xE0000000) {
             value = access(true);
-            // Writing a system register may make an exception deliverable: DSB and ISB cost nothing
-            // extra.
+            // A write to a system register may allow an exception that was blocked. DSB and ISB
+            // after it take no additional cycles in this model.
             attention_ = attention_ || exceptions_.deliverable() || stopAsked_;
             return value;
         }
@@ -104,8 +105,8 @@ void CortexM3::writeBit(uint32_t address, uint32_t value) {
     }
 }
 
-// Returns whether an unaligned access is split into aligned ones, as in memory. In a device it is
-// unpredictable.
+// Returns true if an unaligned access must be split into aligned accesses, as for memory. An
+// unaligned access to a device is unpredictable, so the model reports it as not modelled.
 bool CortexM3::isSplit(uint32_t address, unsigned bytes) {
     if (address % bytes == 0 || address >= 0xE0000000)
         return false;
@@ -154,7 +155,8 @@ void CortexM3::onWrite(uint32_t address, unsigned bytes, uint32_t value) {
         requestReset();
 }
 
-// Called before libunicorn stores to flash. Only the result of the bus counts.
+// Called before libunicorn stores to flash. The model undoes the store of libunicorn; only the
+// result of the bus counts.
 void CortexM3::onFlashWrite(uint32_t offset, unsigned bytes, uint32_t value) {
     flashWrites_.undo(memory_.flash());
     if (failure_ || synchronous_.number)
@@ -170,7 +172,8 @@ void CortexM3::flashChanged(uint32_t offset, uint32_t bytes) {
 }
 
 bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {
-    drainStore(); // the buffered store must be done first, because RAM is on the same bus
+    // the store in the write buffer must be carried out first, because RAM is on the same bus
+    drainStore();
     if (!control_.isForbidden(address, bytes, write) || synchronous_.number || isMpuOff())
         return false;
     synchronous_ = {MemManage, SystemControl::dataAccess | SystemControl::mmfarValid,
@@ -181,7 +184,7 @@ bool CortexM3::onGuarded(uint32_t address, unsigned bytes, bool write) {
     return true;
 }
 
-// ---- a debugger's accesses outside memory: by word if aligned, else by byte ----
+// ---- accesses of a debugger outside memory: aligned data by word, other data by byte ----
 
 bool CortexM3::debugRead(uint32_t address, void* data, uint32_t bytes) {
     return readMemory(address, data, bytes) ||

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// cpu_exceptions: CortexM3's construction, reset, exception entry and return, faults (ARMv7-M ARM,
-// B1.5).
+// cpu_exceptions: the part of CortexM3 with its construction, reset, exception entry and return,
+// and faults (ARMv7-M ARM, B1.5).
 
 #include "cortex_m3.h"
 #include "unicorn_calls.h"
@@ -10,16 +10,18 @@
 
 namespace {
 
-constexpr unsigned entryCycles = 12, exitCycles = 10, chainCycles = 6; // Cortex-M3 TRM, 5.5 and 5.9
+// cycles of exception entry, return and tail-chaining (Cortex-M3 TRM, 5.5 and 5.9)
+constexpr unsigned entryCycles = 12, exitCycles = 10, chainCycles = 6;
 constexpr uint32_t returnHandler = 0xFFFFFFF1, returnMain = 0xFFFFFFF9, returnProcess = 0xFFFFFFFD;
 constexpr uint32_t thumb = 1u << 24, aligned = 1u << 9, exceptionMask = 0x1FF;
 constexpr uint32_t ifThenMask = 0x0600FC00; // ICI/IT bits of xPSR
-// A page at the end of the FSMC's address range with a CLREX instruction for the model.
+// A page at the end of the FSMC's address range, into which the model puts a CLREX instruction. The
+// model executes this instruction itself.
 constexpr uint32_t clrexPage = 0x9FFFF000, pageBytes = 0x1000;
 constexpr uint16_t clrex[2] = {0xF3BF, 0x8F2F};
 
-// Returns whether the default memory map forbids execution, as it does for devices and system
-// (B3.1, table B3-1).
+// Returns true if the default memory map forbids execution at an address, as it does in the device
+// and system regions (B3.1, table B3-1).
 bool isNeverExecuted(uint32_t address) {
     return (address >= 0x40000000 && address < 0x60000000) || address >= 0xA0000000;
 }
@@ -93,7 +95,7 @@ bool CortexM3::writeMemory(uint32_t address, const void* data, uint32_t bytes) {
     if (address >= config_.ramBase || !readMemory(address, &was, 1) ||
         !readMemory(address + bytes - 1, &was, 1))
         return false;
-    // Writes to flash directly, as a programmer does.
+    // Writes to flash without erasing it first, as a flash programmer does.
     const uint32_t offset = memory_.flashOffset(address);
     std::memcpy(memory_.flash() + offset, data, bytes);
     flashChanged(offset, bytes);
@@ -151,7 +153,8 @@ void CortexM3::reset() {
     updateAttention();
 }
 
-// libunicorn does not see exception entry and return; both close the exclusive monitor.
+// libunicorn does not notice when an exception is entered or left. Both close the exclusive
+// monitor.
 void CortexM3::clearExclusive() {
     if (!std::exchange(exclusive_, false))
         return;
@@ -197,7 +200,7 @@ void CortexM3::enter(unsigned number) {
                         exceptions_.priorityOf(derived) < exceptions_.runningPriority();
         if (!possible)
             control_.reportHardFault(SystemControl::forced);
-        // the stacked frame is lost, as on the chip
+        // the frame on the stack is lost, as on the chip
         number = possible ? derived : unsigned(HardFault);
     }
     setReg(Sp, frame);
@@ -221,7 +224,8 @@ void CortexM3::leave() {
         synchronous_ = {UsageFault, SystemControl::invalidReturn, "wrong EXC_RETURN value"};
         return;
     }
-    if (unsigned next = exceptions_.deliverable()) { // tail-chaining: the frame stays where it is
+    // tail-chaining: the frame remains on the stack for the next exception
+    if (unsigned next = exceptions_.deliverable()) {
         setReg(Lr, how);
         jumpTo(next);
         pass(chainCycles);
@@ -263,7 +267,8 @@ void CortexM3::leave() {
     pass(exitCycles);
 }
 
-// Reports the fault of a buffered store, which becomes pending with its priority.
+// Reports the fault of a buffered store. The fault becomes pending, and is taken according to its
+// priority.
 void CortexM3::reportStoreFault(const std::string& text) {
     char where[40];
     std::snprintf(where, sizeof where, " (a store before 0x%08X)", expected_);
@@ -302,7 +307,8 @@ void CortexM3::onRaised(uint32_t number) {
     uc_emu_stop(uc_);
 }
 
-// For Unicorn, an unknown instruction and a jump to an even address are the same.
+// Sets the fault for an invalid instruction. libunicorn reports an undefined instruction and a jump
+// to an even address in the same way, so xPSR.T is checked here.
 void CortexM3::undefinedAt(uint32_t address) {
     if (!(reg(Xpsr) & thumb)) {
         synchronous_ = {UsageFault, SystemControl::invalidState, "a jump out of Thumb state"};
@@ -344,7 +350,7 @@ void CortexM3::handleRaised() {
         return;
     case Breakpoint:
         pc_ = executing_;
-        breakpointHit_ = true; // stops run(), also without a debugger
+        breakpointHit_ = true; // the breakpoint stops run() even if no debugger is connected
         return;
     case Fetch:
         return fetchFault();
@@ -363,7 +369,7 @@ void CortexM3::handleRaised() {
 }
 
 void CortexM3::handleUnicorn(uc_err error) {
-    if (synchronous_.number) { // the instruction at executing_ caused it
+    if (synchronous_.number) { // the fault was caused by the instruction at executing_
         pc_ = executing_;
         return;
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// cpu_memory: stores the bytes of flash and RAM. Flash can be read at two addresses: its own and 0.
+// cpu_memory: stores the bytes of flash and RAM. Flash can be read at its own address and at
+// address 0.
 
 #pragma once
 
@@ -19,7 +20,7 @@ public:
     bool isFlash(uint32_t address) const {
         return address < flashRange_.bytes || address - flashRange_.base < flashRange_.bytes;
     }
-    // Returns the offset in flash for either of its two addresses.
+    // Returns the offset in flash; `address` may lie in flash itself or in its copy at 0.
     uint32_t flashOffset(uint32_t address) const {
         return address >= flashRange_.base ? address - flashRange_.base : address;
     }

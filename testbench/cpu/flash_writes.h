@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // flash_writes: keeps the decoded instructions of the CPU model's flash, and undoes stores to
-// flash. libunicorn carries out such a store by itself; it is undone, and the bus then applies the
-// write.
+// flash. libunicorn writes such a store directly into flash. This class restores the old bytes; the
+// bus then decides what the store changes.
 
 #pragma once
 
@@ -17,29 +17,30 @@ public:
             i.bytes = 0;
     }
 
-    // Returns the place for the decoded instruction at an offset. If its `bytes` is 0, the caller
-    // must decode the instruction and store it there.
+    // Returns the entry for the decoded instruction at an offset. If `bytes` of the entry is 0, the
+    // caller must decode the instruction and fill the entry.
     Instruction& decodedAt(uint32_t offset) { return decoded_[offset >> 1]; }
-    // Drops the decoded instructions of bytes that have changed.
+    // Discards the decoded instructions of bytes that have changed.
     void changed(uint32_t offset, uint32_t bytes) {
-        // a 32-bit instruction may begin one halfword earlier
+        // the changed bytes may be the second half of a 32-bit instruction, which begins one
+        // halfword earlier
         const uint32_t first = offset >= 2 ? offset / 2 - 1 : 0;
         for (uint32_t at = first; at < (offset + bytes + 1) / 2; ++at) {
             isStale_ = isStale_ || decoded_[at].bytes;
             decoded_[at].bytes = 0;
         }
     }
-    // True if code that libunicorn has translated no longer equals the flash.
+    // Returns true if libunicorn has translated code of flash that has changed since.
     bool isStale() const { return isStale_; }
     void translated() { isStale_ = false; }
 
-    // Saves the old bytes before libunicorn overwrites them.
+    // Saves the old bytes before libunicorn overwrites them with a store.
     void keep(const uint8_t* flash, uint32_t offset, unsigned bytes) {
         Store store{offset, bytes, {}};
         std::memcpy(store.was, flash + offset, bytes);
         stores_.push_back(store);
     }
-    // Restores the bytes that were overwritten.
+    // Restores the saved bytes.
     void undo(uint8_t* flash) {
         if (stores_.empty())
             return;
@@ -54,7 +55,8 @@ private:
         unsigned bytes;
         uint8_t was[8];
     };
-    std::vector<Store> stores_;        // stores of the current instruction
-    std::vector<Instruction> decoded_; // one entry per halfword
+    // bytes that the stores of the current instruction have overwritten
+    std::vector<Store> stores_;
+    std::vector<Instruction> decoded_; // decoded instructions, one entry per halfword of flash
     bool isStale_ = false;
 };

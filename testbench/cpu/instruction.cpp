@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// instruction: decodes length, cycles and kind of the Thumb and Thumb-2 instructions.
+// instruction: determines the length, the cycles and the kind of a Thumb or Thumb-2 instruction.
 
 #include "instruction.h"
 
@@ -16,7 +16,7 @@ Instruction narrowInstruction(uint16_t op) {
         i.cycles = static_cast<uint8_t>(cycles);
         return i;
     };
-    if ((op & 0xFF00) == 0xBF00) { // IT and hints
+    if ((op & 0xFF00) == 0xBF00) { // the IT instruction and the hints (NOP, YIELD, WFE, WFI, SEV)
         if (op & 0xF) {
             i.kind = Instruction::If;
             i.conditional = static_cast<uint8_t>(4 - __builtin_ctz(op & 0xF));
@@ -37,12 +37,13 @@ Instruction narrowInstruction(uint16_t op) {
     case 4:
         return takes(op & 0x0800 ? 2 : 1); // LDR literal
     case 5:
-        return takes(2); // address with a register offset
+        return takes(2); // load or store whose address has a register as offset
     case 6:
     case 7:
     case 8:
     case 9:
-        // address with an immediate offset; a store goes to the write buffer
+        // load or store whose address has an immediate offset; a store takes one cycle, since it
+        // goes to the write buffer
         return takes(op & 0x0800 ? 2 : 1);
     case 12: // LDM, STM
         i.base = static_cast<uint8_t>(op >> 8 & 7);
@@ -60,20 +61,21 @@ unsigned wideCycles(uint16_t first, uint16_t second) {
         return 2;
     if ((first & 0xFE40) == 0xE840) // LDRD, STRD, and exclusive accesses
         return (first & 0x0120) ? 3 : 2;
-    if ((first & 0xFE00) == 0xF800) { // one register is transferred
+    if ((first & 0xFE00) == 0xF800) { // load or store of one register
         bool load = first & 0x0010, registerOffset = !(first & 0x0080) && !(second & 0x0800);
         return load || registerOffset ? 2 : 1;
     }
-    if ((first & 0xFF80) == 0xFB00) // MUL; MLA, MLS
+    if ((first & 0xFF80) == 0xFB00) // MUL takes 1 cycle, MLA and MLS take 2
         return second >> 12 == 15 ? 1 : 2;
-    if ((first & 0xFF80) == 0xFB80) // SMULL, UMULL 3..5; SDIV, UDIV 2..12; SMLAL, UMLAL 4..7
+    // cycles by the TRM: SMULL, UMULL 3..5; SDIV, UDIV 2..12; SMLAL, UMLAL 4..7
+    if ((first & 0xFF80) == 0xFB80)
         return (first & 0x0070) == 0x10 || (first & 0x0070) == 0x30 ? 7 : first & 0x0040 ? 6 : 4;
     return 1;
 }
 
-// Sets the alignment check of LDM, STM, LDRD, STRD, LDREX, STREX and similar instructions. Their
-// offsets are multiples of the alignment, and SP is always aligned, so only the base register needs
-// a check.
+// Sets the alignment that LDM, STM, LDRD, STRD, LDREX, STREX and similar instructions demand. Only
+// the base register has to be checked at run time, because the offsets of these instructions are
+// multiples of the alignment and SP is always aligned.
 void decodeAligned(Instruction& i, uint16_t first, uint16_t second) {
     const bool isTable = (first & 0xFFF0) == 0xE8D0 && (second & 0xFFE0) == 0xF000; // TBB, TBH
     const bool isMultiple = !(first & 0x0040), isDouble = !isMultiple && (first & 0x0120);

@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: MIT
 //
-// instruction: decodes a Thumb-2 instruction as far as the CPU model needs it.
+// instruction: decodes those properties of a Thumb-2 instruction that the CPU model needs.
 
 #pragma once
 
 #include <cstdint>
 
-// A decoded Thumb-2 instruction: length, cycles, and effects that matter to the CPU model. Source:
-// the tables of the ARMv7-M Architecture Reference Manual, chapter A5. A load takes 2 cycles here
-// even if the pipeline would hide one of them. Divisions and long products take the middle of the
-// range in the TRM, because the real number depends on their operands.
+// A decoded Thumb-2 instruction: its length, its cycles, and its effects on the CPU model. Source:
+// the tables of the ARMv7-M Architecture Reference Manual, chapter A5. A load always takes 2 cycles
+// here, although the pipeline can hide one of them. The real duration of a division or long product
+// depends on its operands; this model uses the middle of the TRM's range.
 struct Instruction {
     enum Kind : uint8_t {
         Plain,
-        If,        // IT; the model executes it and the next `conditional` instructions as one unit
+        // IT; the model executes IT together with the next `conditional` instructions, without an
+        // interruption
+        If,
         Sleep,     // WFI
-        Barrier,   // DSB, DMB: wait for the write buffer
+        Barrier,   // DSB or DMB; waits until the write buffer is empty
         Masks,     // CPS or MSR; may change PRIMASK, BASEPRI, FAULTMASK or CONTROL
         Exclusive, // LDREX; opens the exclusive monitor
         Refused    // WFE, SEV, YIELD: not supported, because the model has no event register
@@ -26,10 +28,10 @@ struct Instruction {
     uint8_t cycles = 1;
     uint8_t conditional = 0; // number of conditional instructions after an IT, 1..4
     Kind kind = Plain;
-    // For checking the alignment of an access (A3.2.1): number of the base register, and mask of
-    // the address bits that must be zero.
+    // for the alignment check of an access (A3.2.1): number of the base register, and mask of the
+    // address bits that must be zero
     uint8_t base = noBase, alignment = 0;
-    uint8_t special = 0; // number of the special register of an MSR (SYSm)
+    uint8_t special = 0; // number (SYSm) of the special register that an MSR accesses
 };
 
 // Cycles for refilling the pipeline after a taken branch (P in the TRM, 1 to 3).

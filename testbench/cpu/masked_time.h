@@ -9,11 +9,12 @@
 
 class MaskedTime {
 public:
-    // Longest time since start() during which interrupts of the watched priority and below were
-    // blocked, and the end of this time; both in cycles.
+    // Longest time since start() for which interrupts of the measured priority and of less urgent
+    // ones were blocked, and the time at which this ended; both in cycles.
     struct Longest {
         uint64_t cycles = 0;
-        // address of the instruction that blocked them, and of the instruction that unblocked them
+        // address of the instruction that blocked the interrupts, and of the instruction that
+        // unblocked them
         uint32_t from = 0, to = 0;
     };
 
@@ -23,8 +24,8 @@ public:
         isMasked_ = false;
     }
     void reset() { isMasked_ = false; }
-    // Called after the instruction at `executed` has changed a mask; `next` is the address of the
-    // next instruction.
+    // Called after the instruction at `executed` has changed a mask register; `next` is the address
+    // of the next instruction.
     void update(bool blocksAll, uint32_t basepri, uint64_t cycles, uint32_t executed,
                 uint32_t next) {
         const bool isMasked = blocksAll || (basepri && basepri <= priority_);

@@ -34,8 +34,8 @@ struct PlainCpu {
         cpu.readMemory(image.symbol(name), bytes.data(), image.size(name));
         return bytes.substr(0, std::strlen(bytes.c_str()));
     }
-    // Runs until a breakpoint is reached or `cycleLimit` cycles have passed. Returns the number of
-    // the breakpoint, or -1.
+    // Runs until a BKPT instruction is reached or `cycleLimit` cycles have passed. Returns the
+    // immediate value of the BKPT, or -1 if it did not reach one.
     int run(uint64_t cycleLimit) {
         uint64_t end = cpu.cycles() + cycleLimit;
         bus.limit = [this, end] {

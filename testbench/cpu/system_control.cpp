@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// system_control: models SysTick as the time at which it is due, NVIC and SCB (ARMv7-M ARM, B3.2)
-// as views of the class Exceptions, and the MPU (B3.5) as a list of regions.
+// system_control: models the system registers of a Cortex-M3. SysTick is modelled as the time at
+// which it is next due, NVIC and SCB (ARMv7-M ARM, B3.2) as access to the class Exceptions, and the
+// MPU (B3.5) as a list of regions.
 
 #include "system_control.h"
 #include <cstdio>
@@ -11,8 +12,8 @@ namespace {
 constexpr uint32_t dwt = 0xE0001000, scs = 0xE000E000;
 constexpr uint32_t keyIn = 0x05FA, keyOut = 0xFA05;
 
-// True if the exception has a priority: interrupts, and those of exceptions 4..15 (SHPR1..3) that
-// exist.
+// Returns true if the exception has a configurable priority: all interrupts, and those of the
+// exceptions 4..15 that exist (SHPR1..3).
 bool hasPriority(unsigned number) {
     return number >= FirstInterrupt || (number >= MemManage && number <= UsageFault) ||
            number == SupervisorCall || number == DebugMonitor || number == PendSv ||
@@ -36,24 +37,25 @@ std::string hex(uint32_t value) {
 }
 
 constexpr uint32_t traceEnabled = 1u << 24,
-                   comparators = 4u << 28; // bits of DEMCR (TRCENA) and of DWT_CTRL
+                   // TRCENA in DEMCR, and the number of comparators in DWT_CTRL
+    comparators = 4u << 28;
 
-// Returns whether RASR.AP forbids the access to privileged code: 0 means no access, 5 to 7 mean
-// read only.
+// Returns true if RASR.AP forbids the access to privileged code: AP 0 forbids every access, AP 5 to
+// 7 forbid writes.
 bool forbids(uint32_t rasr, bool write) {
     uint32_t access = rasr >> 24 & 7;
     return access == 0 || (write && access >= 5);
 }
 
-// Returns whether RASR forbids execution: XN, or no access at all.
+// Returns true if RASR forbids execution, either by XN or because the region cannot be read.
 bool forbidsToExecute(uint32_t rasr) {
     return (rasr >> 28 & 1) || forbids(rasr, false);
 }
 
 } // namespace
 
-// Registers that only store the written value. Writing a bit that is not known here is reported as
-// not modelled.
+// Registers that only store the written value. If a program writes a bit that is not listed here,
+// the model reports it as not modelled.
 struct SystemControl::Stored {
     uint32_t at;
     uint32_t SystemControl::* value;
@@ -61,11 +63,11 @@ struct SystemControl::Stored {
     bool clears = false; // true: writing 1 to a bit clears it
 };
 const SystemControl::Stored SystemControl::stored[] = {
-    {0x008, &SystemControl::actlr_, ~0u, ~2u}, // DISDEFWBUF is modelled
-    // the table has 97 vectors, so it is aligned to 512 bytes.
+    {0x008, &SystemControl::actlr_, ~0u, ~2u}, // only the bit DISDEFWBUF is modelled
+    // The vector table has 97 entries, so its address is a multiple of 512.
     {0xD08, &SystemControl::vtor_, 0x3FFFFF80, 0x1FF},
     {0xD10, &SystemControl::scr_, 0, 0x16}, // SLEEPONEXIT, SLEEPDEEP, SEVONPEND
-    // NONBASETHRDENA, USERSETMPEND, traps of unaligned accesses and divisions by zero, BFHFNMIGN
+    // NONBASETHRDENA, USERSETMPEND, UNALIGN_TRP, DIV_0_TRP, BFHFNMIGN
     {0xD14, &SystemControl::ccr_, 0x200, 0x11B},
     {0xD28, &SystemControl::cfsr_, 0, 0, true},
     {0xD2C, &SystemControl::hfsr_, 0, 0, true},
@@ -124,7 +126,8 @@ void SystemControl::write(uint32_t address, unsigned size, uint32_t value) {
             refuse();
         return;
     }
-    // The priority registers and CFSR can also be written by byte (B3.1.1, B3.2.15).
+    // Only the priority registers and CFSR can also be written in parts of 8 or 16 bits (B3.1.1,
+    // B3.2.15).
     const uint32_t at = address - scs;
     const bool priorities = (at >= 0x400 && at < 0x4F0) || (at >= 0xD18 && at < 0xD24);
     const bool status = at >= 0xD28 && at < 0xD2C;
@@ -149,10 +152,10 @@ void SystemControl::controlCycleCounter(uint32_t demcr, uint32_t control) {
 }
 
 bool SystemControl::accessWord(uint32_t address, bool write, uint32_t& value) {
-    const bool isTraced = demcr_ & traceEnabled; // otherwise DWT ignores writes
+    const bool isTraced = demcr_ & traceEnabled; // without TRCENA, DWT ignores writes
     if (address == dwt) {
         if (write && isTraced && (value & 0x0FFFFFFE))
-            return false; // other counters and PC sampling are not modelled
+            return false; // the other counters and PC sampling are not modelled
         if (write && isTraced)
             controlCycleCounter(demcr_, value & 1);
         else if (!write)
@@ -172,7 +175,7 @@ bool SystemControl::accessWord(uint32_t address, bool write, uint32_t& value) {
     if (at >= 0x100 && at < (write ? 0x300 : 0x380)) // ISER, ICER, ISPR, ICPR, IABR
         return accessInterrupts(at - 0x100, write, value);
     if (at >= 0x300 && at < 0x380)
-        return true; // IABR is read only
+        return true; // IABR is read-only, so a write to it is ignored
     if (at >= 0x400 && at < 0x4F0)
         return accessPriorities(FirstInterrupt + at - 0x400, write, value);
     if (at >= 0xD18 && at < 0xD24)
@@ -230,7 +233,8 @@ void SystemControl::setFaultAddress(uint32_t cfsrBits, uint32_t address) {
 
 uint32_t SystemControl::interruptState() const {
     const Exceptions& all = *exceptions_;
-    bool isPending = false; // the bits belong to interrupts
+    // ISRPENDING of ICSR: true if an interrupt is pending (exceptions 0 to 15 do not count)
+    bool isPending = false;
     for (unsigned n = FirstInterrupt; n < Exceptions::count; ++n)
         isPending = isPending || all[n].pending;
     return all.current() | uint32_t(all.activeCount() <= 1) << 11 | all.firstPending() << 12 |
@@ -271,7 +275,7 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
         if (write)
             loadSysTick(given & 0xFFFFFF);
         break;
-    case 0x018: // writing any value clears the counter, which reloads at the next tick
+    case 0x018: // writing any value clears the counter; it is reloaded at the next tick
         shown = currentTicks();
         if (!write)
             break;
@@ -295,23 +299,26 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
     case 0xD0C:
         shown = keyOut << 16 | exceptions_->grouping() << 8;
         if (given >> 16 != keyIn)
-            break; // the write is ignored without the key
+            break; // without the key, the write is ignored
         if (given & 3)
-            return false; // VECTRESET and VECTCLRACTIVE are for debuggers
+            // VECTRESET and VECTCLRACTIVE are reserved for debuggers, so they are not modelled
+            return false;
         exceptions_->setGrouping(given >> 8);
         resetRequested_ = resetRequested_ || (given & 4);
         break;
     case 0xD24:
         shown = handlerState();
         if (write && ((given ^ shown) & 0xFFFF))
-            return false; // writing these bits would change the pending or active state
+            // a program that changes the pending or active state of system exceptions is not
+            // modelled
+            return false;
         for (unsigned number : {MemManage, BusFault, UsageFault})
             if (write)
                 exceptions_->enable(number, given >> (12 + number) & 1);
         break;
     case 0xD3C: // AFSR has no implemented bits
         break;
-    case 0xDFC: // DEMCR; only TRCENA is modelled, the other bits are for debuggers
+    case 0xDFC: // DEMCR; only TRCENA is modelled, because the other bits are for debuggers
         shown = demcr_;
         if (given & ~traceEnabled)
             return false;
@@ -325,7 +332,7 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
     default:
         return false;
     }
-    value = write ? value : shown; // writes to read-only registers are ignored
+    value = write ? value : shown; // a write to a read-only register has no effect
     return true;
 }
 
@@ -354,12 +361,12 @@ bool SystemControl::accessMpu(uint32_t at, bool write, uint32_t& value) {
     if (at >= 0x14) // RBAR and RASR have three aliases
         at = 0xC + (at - 0xC) % 8;
     switch (at) {
-    case 0x0: // TYPE, read only
+    case 0x0: // TYPE, a read-only register
         value = regions << 8;
         return true;
     case 0x4:
-        // Not modelled: the MPU without the default map as background, and the MPU enabled in the
-        // handlers of hard faults and NMI.
+        // Two settings are not modelled: the MPU without the default memory map as background, and
+        // the MPU in the handlers of HardFault and NMI.
         if (write && (value & 1) && (value & 6) != 4)
             return false;
         write ? mpuControl_ = value& 7 : value = mpuControl_;
@@ -375,7 +382,7 @@ bool SystemControl::accessMpu(uint32_t at, bool write, uint32_t& value) {
     case 0xC:
         if (write && (value & 0x10) && (value & 0xF) >= regions)
             return false;
-        if (write && (value & 0x10)) // VALID is set: the low bits contain REGION
+        if (write && (value & 0x10)) // VALID is set, so the low bits contain the region number
             mpuRegion_ = value & 7;
         if (write)
             region_[mpuRegion_].rbar = value & ~0x1Fu;
@@ -417,8 +424,9 @@ void SystemControl::checkRegion(const Region& r) const {
                           ", RASR " + hex(r.rasr));
 }
 
-// Returns the region that applies: the one with the highest number (B3.5.3). A region of at least
-// 256 bytes has eight subregions, which SRD can disable one by one.
+// Returns the region that applies to an address: of all regions that contain it, the one with the
+// highest number (B3.5.3). A region of at least 256 bytes has eight subregions, and SRD can disable
+// each of them.
 const SystemControl::Region* SystemControl::regionAt(uint32_t address) const {
     for (unsigned n = regions; n--;) {
         const Region& r = region_[n];
@@ -434,7 +442,8 @@ const SystemControl::Region* SystemControl::regionAt(uint32_t address) const {
 
 bool SystemControl::hitsGuard(uint32_t start, uint32_t bytes, bool write) const {
     for (uint64_t at = start; at < uint64_t(start) + bytes;
-         at = (at | 0x1F) + 1) { // steps of the smallest region, 32 bytes
+         // checks one address in each 32 bytes, the size of the smallest region
+         at = (at | 0x1F) + 1) {
         const Region* r = regionAt(static_cast<uint32_t>(at));
         if (r && forbids(r->rasr, write))
             return true;

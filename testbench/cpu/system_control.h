@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// system_control: registers of a Cortex-M3's private peripheral bus (0xE0000000): SysTick, NVIC,
-// SCB, MPU, and DWT's cycle counter, as in the ARMv7-M ARM (DDI 0403), chapter B3. An access to a
-// register, bit or value that is not modelled stops the simulation with a message (NotModelled).
+// system_control: models the registers of a Cortex-M3's private peripheral bus (0xE0000000):
+// SysTick, NVIC, SCB, MPU, and DWT's cycle counter, as described in the ARMv7-M ARM (DDI 0403),
+// chapter B3. If a program accesses a register, a bit or a value that is not modelled, the
+// simulation stops with a message (NotModelled).
 
 #pragma once
 
@@ -13,18 +14,19 @@
 #include <string>
 #include <vector>
 
-// Thrown if a program uses a feature of the processor or chip that is not modelled.
+// Exception that is thrown if a program uses a feature of the processor or of the chip that is not
+// modelled.
 class NotModelled : public std::runtime_error {
 public:
     explicit NotModelled(const std::string& what)
         : std::runtime_error("not modelled: " + what + " (docs/simulation.md)") {}
 };
 
-// Exceptions of a Cortex-M3: which of them are pending, active and enabled, and which one may run
-// now.
+// The exceptions of a Cortex-M3: which of them are pending, active and enabled, and which of them
+// the processor must enter next.
 //
-// ARMv7-M Architecture Reference Manual, B1.5. Numbers: 1 Reset .. 15 SysTick, 16 + n is interrupt
-// n.
+// Source: ARMv7-M Architecture Reference Manual, B1.5. Exceptions 1 to 15 are Reset to SysTick;
+// exception 16 + n is interrupt n.
 enum Exception : unsigned {
     NonMaskable = 2,
     HardFault = 3,
@@ -44,18 +46,20 @@ public:
     static constexpr unsigned interrupts = 81;
     static constexpr unsigned count = FirstInterrupt + interrupts;
     static constexpr uint8_t priorityBits = 0xF0; // implemented bits of a priority: the upper four
-    static constexpr int none = 256;              // priority of thread mode
+    // execution priority of thread mode, lower than that of any exception
+    static constexpr int none = 256;
 
     struct State {
         bool pending = false, active = false, enabled = false;
-        // level of the interrupt line; while the line is high, the interrupt becomes pending again
+        // level of the interrupt line; while it is high, the interrupt becomes pending again after
+        // each handler
         bool level = false;
         uint8_t priority = 0;
     };
 
     void reset() { *this = Exceptions(), update(); }
-    // Makes an exception pending, or not. An interrupt with a line that is still high becomes
-    // pending again at once, unless it is active.
+    // Sets or clears the pending state of an exception. An interrupt with a line that is still high
+    // becomes pending again at once, unless it is active.
     void pend(unsigned number, bool pending = true) {
         State& s = states_[number];
         s.pending = pending || (s.level && !s.active);
@@ -69,7 +73,7 @@ public:
         states_[number].priority = priority & priorityBits;
         update();
     }
-    // Sets PRIGROUP, the split of priorities into group and subpriority.
+    // Sets PRIGROUP, which splits a priority into group priority and subpriority.
     void setGrouping(unsigned group) {
         group_ = group & 7;
         update();
@@ -98,10 +102,10 @@ public:
     }
     const State& operator[](unsigned number) const { return states_[number]; }
     unsigned activeCount() const { return static_cast<unsigned>(active_.size()); }
-    // Returns the exception that is running; 0 in thread mode.
+    // Returns the number of the running exception; 0 in thread mode.
     unsigned current() const { return active_.empty() ? 0 : active_.back(); }
 
-    // Sets the processor's masks.
+    // Sets the mask registers of the processor.
     void setMasks(uint32_t primask, uint32_t basepri, uint32_t faultmask) {
         primask_ = primask & 1;
         basepri_ = basepri & priorityBits;
@@ -111,14 +115,17 @@ public:
 
     uint32_t basepri() const { return basepri_; }
 
-    // Returns the exception that must be entered now; 0 if there is none.
+    // Returns the number of the exception that must be entered now; 0 if there is no such
+    // exception.
     unsigned deliverable() const { return bestPriority_ < runningPriority_ ? best_ : 0; }
-    // Returns the current execution priority, including masks; `none` in thread mode without masks.
+    // Returns the current execution priority, raised by the mask registers; `none` in thread mode
+    // without masks.
     int runningPriority() const { return runningPriority_; }
-    // Returns the pending exception that is entered next if BASEPRI and FAULTMASK do not mask it;
-    // otherwise 0.
+    // Returns the most urgent pending exception, or 0 if BASEPRI or FAULTMASK masks it or nothing
+    // is pending.
     unsigned firstPending() const { return bestPriority_ < maskPriority_ ? best_ : 0; }
-    // True if a pending exception ends WFI: it would preempt if PRIMASK were 0 (B1.5.19).
+    // Returns true if a pending exception ends WFI, which means that it would be entered if PRIMASK
+    // were 0 (B1.5.19).
     bool wakes() const { return bestPriority_ < sleepPriority_; }
     int priorityOf(unsigned number) const {
         switch (number) {
@@ -172,44 +179,45 @@ private:
 
 class SystemControl {
 public:
-    // `calibration` is SYST_CALIB.TENMS. On an STM32F2 this is the number of ticks of HCLK/8 in one
-    // millisecond (RM0033, 8.1.2).
+    // `calibration` is the value of SYST_CALIB.TENMS. On an STM32F2 this is the number of ticks of
+    // HCLK/8 in one millisecond (RM0033, 8.1.2).
     SystemControl(Exceptions& exceptions, uint32_t calibration)
         : exceptions_(&exceptions), calibration_(calibration) {}
 
     void reset();
-    // Read and write 32-bit registers; accesses of 8 or 16 bits use a part of a register. Throw
-    // NotModelled.
+    // Read and write 32-bit registers. Accesses of 8 or 16 bits read or write a part of a register.
+    // Both throw NotModelled.
     uint32_t read(uint32_t address, unsigned size);
     void write(uint32_t address, unsigned size, uint32_t value);
 
-    // Lets cycles pass. SysTick becomes pending when its counter reaches zero.
+    // Advances the time by `cycles`. SysTick becomes pending when its counter reaches zero.
     void pass(unsigned cycles) {
         cycles_ += cycles;
         if (cycles_ >= tickDue_)
             tick();
     }
     uint64_t cycles() const { return cycles_; }
-    // Returns the cycles until SysTick becomes pending, at least 1; a large number if SysTick is
-    // off.
+    // Returns the number of cycles until SysTick becomes pending, at least 1; a very large number
+    // if SysTick is off.
     uint64_t untilTick() const { return tickDue_ > cycles_ ? tickDue_ - cycles_ : 1; }
 
     uint32_t vectorTable() const { return vtor_; }
     bool takeResetRequest();
-    // Returns true unless ACTLR.DISDEFWBUF is set.
+    // Returns true if the write buffer is enabled, that is, if ACTLR.DISDEFWBUF is 0.
     bool buffersStores() const { return !(actlr_ & 1u << 1); }
     bool alignsStack() const { return ccr_ & 1u << 9; }
 
-    // Returns whether the MPU forbids a data access to `bytes` at `start`.
+    // Returns true if the MPU forbids a data access to `bytes` bytes at `start`.
     bool isForbidden(uint32_t start, uint32_t bytes, bool write) const {
         return guards_ && hitsGuard(start, bytes, write);
     }
-    // Returns whether the MPU forbids executing the instruction at an address.
+    // Returns true if the MPU forbids the execution of the instruction at an address.
     bool isExecuteNever(uint32_t address) const {
         return address >= neverFrom_ && address <= neverTo_ && hitsExecuteNever(address);
     }
 
-    // Set the fault status for the processor: bits of CFSR and HFSR, and the address of the fault.
+    // Record a fault of the processor: they set bits of CFSR or HFSR, and the address register of
+    // the fault.
     void reportFault(uint32_t cfsrBits) { cfsr_ |= cfsrBits; }
     void reportHardFault(uint32_t hfsrBits) { hfsr_ |= hfsrBits; }
     void setFaultAddress(uint32_t cfsrBits, uint32_t address);
@@ -235,7 +243,8 @@ private:
     bool accessOther(uint32_t offset, bool write, uint32_t& value);
     bool accessMpu(uint32_t offset, bool write, uint32_t& value);
     void tick();
-    // Returns the ticks of SysTick from one zero to the next; 0 if the counter stays at zero.
+    // Returns the number of SysTick's ticks between two zeros of its counter; 0 if the counter
+    // stays at zero.
     uint64_t reload() const { return load_ ? uint64_t(load_) + 1 : 0; }
     void startSysTick(uint64_t ticks);
     void controlSysTick(uint32_t value);
@@ -244,7 +253,7 @@ private:
     void controlCycleCounter(uint32_t demcr, uint32_t control);
     const Region* regionAt(uint32_t address) const;
     void checkRegion(const Region& region) const;
-    // Returns the HCLK cycles per tick; CLKSOURCE selects HCLK or HCLK/8.
+    // Returns the number of HCLK cycles per tick: CLKSOURCE selects HCLK or HCLK/8.
     uint64_t tickUnit() const { return control_ & 4 ? 1 : 8; }
     uint32_t currentTicks() const;
     bool hitsExecuteNever(uint32_t address) const;
@@ -256,7 +265,7 @@ private:
     uint32_t calibration_;
     uint64_t cycles_ = 0, tickDue_ = ~0ull;
     uint32_t control_ = 0, load_ = 0, stoppedAt_ = 0;
-    uint64_t period_ = 0; // ticks from the last load to the next zero
+    uint64_t period_ = 0; // number of ticks from the last reload to the next zero
     bool countFlag_ = false;
     uint32_t actlr_ = 0, vtor_ = 0, scr_ = 0, ccr_ = 0x200, cfsr_ = 0, hfsr_ = 0, mmfar_ = 0,
              bfar_ = 0;
@@ -266,7 +275,7 @@ private:
     bool resetRequested_ = false;
     uint32_t mpuControl_ = 0, mpuRegion_ = 0;
     Region region_[regions];
-    unsigned guards_ = 0; // number of enabled regions with restrictions
-    // lowest and highest address of all execute-never regions together
+    unsigned guards_ = 0; // number of enabled regions that restrict accesses
+    // range of addresses that contains all execute-never regions: lowest and highest address
     uint32_t neverFrom_ = 1, neverTo_ = 0;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// unicorn_calls: the C callbacks of libunicorn, and its names of registers.
+// unicorn_calls: connects CortexM3 with libunicorn: the C callbacks, and libunicorn's names of the
+// registers.
 
 #pragma once
 

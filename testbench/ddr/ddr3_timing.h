@@ -3,9 +3,10 @@
 // ddr3_timing: computes when a DDR3 memory can execute each burst of 8 (BL8), from the state of its
 // banks and rows and from the direction of the previous burst.
 //
-// All times are in clocks of the memory (tCK). Figures: Micron 1Gb DDR3 SDRAM data sheet
+// All times are in memory clocks (tCK). Source of the figures: Micron 1Gb DDR3 SDRAM data sheet
 // (MT41J64M16; 09005aef826aa906), "Speed Bins" and "Electrical Characteristics and AC Operating
-// Conditions", rounded up to clocks of 2.5 ns as its note on tCK demands.
+// Conditions". Times in ns are rounded up to memory clocks of 2.5 ns, as the data sheet's note on
+// tCK demands.
 
 #pragma once
 
@@ -16,7 +17,7 @@ struct Ddr3Part {
     const char* name;
     unsigned rowBytes;   // size of a row (page), bytes: 1024 columns
     unsigned burstBytes; // BL8
-    unsigned cl, cwl;    // read and write latency
+    unsigned cl, cwl;    // read latency (CL) and write latency (CWL)
     unsigned tRCD, tRP, tRAS, tRC;
     unsigned tCCD, tRTP, tWR, tWTR, tRRD, tFAW;
     unsigned tRFC, tREFI;
@@ -31,8 +32,8 @@ constexpr Ddr3Part mt41j64m16{
 
 class Ddr3Timing {
 public:
-    // `refreshLater`: clocks that the controller waits in addition to tRP, between precharging all
-    // banks and a refresh.
+    // `refreshLater`: number of memory clocks that the controller waits, after precharging all
+    // banks and tRP, before a refresh
     explicit Ddr3Timing(const Ddr3Part& part, unsigned refreshLater = 0)
         : part_(part), refreshLater_(refreshLater), nextRefresh_(part.tREFI) {}
 
@@ -47,8 +48,8 @@ public:
         return b.open && b.row == row(address);
     }
 
-    // Places one burst at `at` or later, after all earlier bursts. Returns the clock of its READ or
-    // WRITE command. Opens and closes rows and refreshes as needed.
+    // Executes one burst at `at` or later, after all earlier bursts. Opens and closes rows and
+    // refreshes as needed. Returns the clock of the burst's READ or WRITE command.
     uint64_t access(uint64_t at, bool read, uint32_t address) {
         at = refresh(at);
         Bank& b = banks_[bank(address)];
@@ -79,8 +80,8 @@ public:
         b.open = false;
         b.mayActivate = std::max(b.mayActivate, precharge(b, 0) + part_.tRP);
     }
-    // Refreshes at clock `at` or later, even if no refresh is due. Returns the clock in which the
-    // refresh ends.
+    // Refreshes at clock `at` or later, even if a refresh is not due yet. Returns the clock in
+    // which the refresh ends.
     uint64_t refreshNow(uint64_t at) {
         uint64_t start = at;
         for (Bank& b : banks_) { // precharge all
@@ -125,8 +126,8 @@ private:
         b.mayPrecharge = 0;
     }
 
-    // Executes the refreshes that are due until `at`. After a long idle time only the last of them
-    // can delay an access.
+    // Executes the refreshes that are due before `at`. After a long idle time only the last of them
+    // can still delay an access. Returns the clock from which accesses are possible.
     uint64_t refresh(uint64_t at) {
         if (at < nextRefresh_)
             return at;

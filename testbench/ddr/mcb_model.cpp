@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// mcb_model: the FIFOs of the user port, and the execution of its commands.
+// mcb_model: the part of McbModel with the FIFOs of the user port and the execution of its
+// commands.
 
 #include "mcb_model.h"
 #include <cstring>
@@ -50,7 +51,7 @@ void McbModel::takeCommand() {
     nextEvent_ = std::min(nextEvent_, now_ + timing_.commandWay);
 }
 
-// Moves the words and starts the commands that are due, then computes when the next ones are due.
+// Moves the words and starts the commands that are due, then computes the time of the next event.
 void McbModel::work() {
     pins.calibDone = now_ >= timing_.calibration;
     while (!releases_.empty() && releases_.front().at <= now_) {
@@ -133,7 +134,8 @@ void McbModel::writeBurst(uint32_t address, unsigned words, uint64_t cas) {
     wordsWritten += words;
 }
 
-// Returns `value` with the shorted `lines` at the same level; the low level wins.
+// Returns `value` as it appears on lines that are shorted to each other: if one of the shorted
+// `lines` is low, all of them are low.
 static uint32_t joined(uint32_t value, uint32_t lines) {
     return lines && (value & lines) != lines ? value & ~lines : value;
 }

@@ -3,21 +3,22 @@
 // mcb_model: a 64-bit user port of the Spartan-6 memory controller block (UG388), and the DDR3 that
 // it controls.
 //
-// The user port has a command FIFO of 4, data FIFOs of 64 words, and the flags of the real port.
-// If the real port sets an error flag or loses data, the model also throws McbError, so that a test
-// fails:
-//   a command while the FIFO is full (the real one ignores it), or before calibration is done
+// The user port has a command FIFO of 4, data FIFOs of 64 words, and the flags of the real port. In
+// these cases the real port sets an error flag or loses data; the model does the same and also
+// throws McbError, so that a test fails:
+//   a command while the FIFO is full (the real port ignores it), or before calibration is done
 //   an address that is not a multiple of 8, or beyond the memory
 //   a write command before its words are in the FIFO (wr_underrun, wr_error)
 //   a word written to the full write FIFO (ignored), or read from the empty read FIFO (rd_error)
 //   a word that arrives from the memory while the read FIFO is full (rd_overflow)
 //
-// The port executes commands one after another, in bursts of 8, on a memory of 16 bits at DDR3-800
-// (ddr3_timing.h). The memory has four clocks per clock of the design, which is 100 MHz. By Xilinx
-// AR36413, a write and an activate wait until the data of the previous read ends; otherwise a row
-// is opened as soon as the previous burst has its command. Addresses are ROW_BANK_COLUMN, MIG's
-// default. Two constants (Timing) estimate the path through the FIFOs, both clock crossings and the
-// PHY, because UG388 gives the read latency as a range that depends on the configuration.
+// The port executes commands one after another, in bursts of 8, on a 16-bit memory at DDR3-800
+// (ddr3_timing.h). The memory has four clocks per clock of the design, which runs at 100 MHz.
+// According to Xilinx AR36413, a write and an activate wait until the data of the previous read has
+// ended. In all other cases a row is opened as soon as the command of the previous burst has been
+// given. Addresses are ROW_BANK_COLUMN, MIG's default. Two constants (Timing) are estimates of the
+// path through the FIFOs, both clock crossings and the PHY, because UG388 only gives a range for
+// the read latency, which depends on the configuration.
 
 #pragma once
 
@@ -32,7 +33,7 @@ public:
     using std::runtime_error::runtime_error;
 };
 
-// A first-in first-out of fixed capacity (a power of two) without allocation.
+// A FIFO of fixed capacity (a power of two) that allocates no memory.
 template <class T, size_t capacity> class Ring {
     static_assert((capacity & (capacity - 1)) == 0, "a power of two");
 
@@ -42,7 +43,7 @@ public:
     bool full() const { return size() == capacity; }
     T& front() { return items_[tail_ % capacity]; }
     const T& front() const { return items_[tail_ % capacity]; }
-    // Adds an item. The caller must have checked that there is room.
+    // Adds an item. The caller must have checked that the FIFO is not full.
     void push(const T& item) { items_[head_++ % capacity] = item; }
     void pop() { ++tail_; }
 
@@ -54,15 +55,15 @@ private:
 class McbModel {
 public:
     static constexpr unsigned commandDepth = 4, dataDepth = 64;
-    static constexpr unsigned memoryClocks = 4; // memory clocks per clock of the design
-    // Duration of a start, clocks: 200 us in reset, 500 us until CKE (JESD79-3, 3.3.1), and an
-    // estimate of 300 us for the calibration.
+    static constexpr unsigned memoryClocks = 4; // number of memory clocks per clock of the design
+    // Duration of a real start, clocks of the design: 200 us in reset, 500 us until CKE (JESD79-3,
+    // 3.3.1), and an estimated 300 us for the calibration.
     static constexpr unsigned startClocks = 100'000;
 
-    // Pins of the user port; the design's side is set before cycle().
+    // Pins of the user port. The design's outputs must be set before cycle() is called.
     struct Pins {
         bool cmdEn = false, wrEn = false, rdEn = false;
-        // wrMask: 1 means that the byte is not written; cmdBl: number of words minus 1
+        // wrMask: a bit of 1 means that the byte is not written; cmdBl: number of words minus 1
         uint8_t cmdInstr = 0, cmdBl = 0, wrMask = 0;
         uint32_t cmdByteAddr = 0;
         uint64_t wrData = 0;
@@ -76,18 +77,20 @@ public:
 
     // Durations of the parts of an access, in clocks of the design.
     struct Timing {
-        // duration of the calibration, clocks; a real start takes startClocks
+        // duration of the calibration, clocks of the design; short for tests (a real start takes
+        // startClocks)
         unsigned calibration = 64;
-        unsigned commandWay = 6; // clocks between cmd_en and the command on the memory bus
-        unsigned dataWay = 5;    // clocks between the last word of a burst and rd_empty
+        unsigned commandWay = 6; // number of clocks from cmd_en to the command on the memory bus
+        // number of clocks from the last word of a burst on the memory bus to the end of rd_empty
+        unsigned dataWay = 5;
     };
 
     explicit McbModel(size_t bytes = size_t(128) << 20) : McbModel(bytes, Timing()) {}
     McbModel(size_t bytes, Timing timing)
         : memory_(bytes), timing_(timing), device_(mt41j64m16, refreshLater) {}
 
-    // Computes one clock cycle: takes the design's inputs at the edge, then sets its outputs after
-    // the edge.
+    // Computes one clock cycle: reads the design's outputs at the edge, then sets the design's
+    // inputs.
     void cycle() {
         if (pins.wrEn | pins.cmdEn | pins.rdEn)
             takeInputs();
@@ -96,33 +99,34 @@ public:
             work();
     }
 
-    // untilEvent returns the clocks to the next event, minus 1. skip passes clocks in which the
-    // design is idle.
+    // untilEvent returns the number of clocks before the next event, so that the event is in the
+    // clock after them. pass skips clocks in which the design is idle.
     uint64_t untilEvent() const {
         return hung_ ? ~0ull : nextEvent_ > now_ + 1 ? nextEvent_ - now_ - 1 : 0;
     }
     void pass(uint64_t clocks) { now_ += clocks; }
 
-    // Restarts the memory as after power-on; the start takes `clocks`.
+    // Restarts the memory, as after power-on; the start takes `clocks` clocks.
     void restart(unsigned clocks) {
         timing_.calibration = static_cast<unsigned>(now_) + clocks;
         pins.calibDone = false;
         nextEvent_ = 0;
     }
 
-    // Injects a fault, or ends it. During the fault no command begins and no word moves; waiting
-    // commands are carried out afterwards.
+    // Starts or ends a fault in which the memory hangs: no command begins and no word moves.
+    // Waiting commands are carried out after the fault.
     void hang(bool on) { hung_ = on; }
 
-    // Faults of the lines to the memory. Each halfword of data is one transfer on DQ15..DQ0; row
-    // and column addresses share A9..A0.
+    // Faults of the lines between the FPGA and the memory. Each halfword of data is one transfer on
+    // DQ15..DQ0; row and column addresses share A9..A0.
     struct Lines {
         uint16_t dqLow = 0, dqHigh = 0; // data lines that are stuck at a level
         uint16_t dqShort = 0;           // data lines that are shorted to each other
         // data masks that are stuck at a level; bit 0 is LDM, bit 1 is UDM
         uint8_t maskLow = 0, maskHigh = 0;
         uint16_t addressLow = 0, addressShort = 0; // A12..A0
-        // strobes with an open wire, whose reads return noise; bit 0 is LDQS, bit 1 is UDQS
+        // data strobes whose wire is broken, so that reads return noise; bit 0 is LDQS, bit 1 is
+        // UDQS
         uint8_t strobeOpen = 0;
         uint8_t bankLow = 0, bankShort = 0; // BA2..BA0
     };
@@ -131,7 +135,7 @@ public:
         isFaulty_ = true;
     }
 
-    // Direct access to the memory, for pictures and checks.
+    // Direct access to the contents of the memory, for pictures and checks.
     uint8_t* data() { return memory_.data(); }
     size_t size() const { return memory_.size(); }
     const Ddr3Timing& device() const { return device_; }
@@ -140,7 +144,7 @@ public:
 
 private:
     struct Command {
-        uint64_t at; // time at which the command arrives at the memory
+        uint64_t at; // time at which the memory receives the command
         uint32_t address;
         uint8_t instruction, words;
     };
@@ -175,25 +179,27 @@ private:
     Ddr3Timing device_;
     bool hung_ = false;
     uint64_t now_ = 0, nextEvent_ = 0;
-    // AR36413: memory clocks added to a refresh; memory clocks from the end of read data to a
-    // write.
+    // Delays by AR36413, memory clocks: additional wait before a refresh, and time from the end of
+    // read data to a write.
     static constexpr unsigned refreshLater = 2, readToWrite = 3;
     uint64_t readEnd_ = 0; // memory clock in which the data of the last read ends
     bool lastWasRead_ = false;
-    uint64_t free_ = 0;       // earliest memory clock of the next command
-    unsigned promised_ = 0;   // words of the write FIFO that accepted commands will use
-    unsigned writeCount_ = 0; // words in the write FIFO, as the user port reports them
+    uint64_t free_ = 0;       // earliest memory clock for the next command
+    unsigned promised_ = 0;   // number of words in the write FIFO that belong to accepted commands
+    unsigned writeCount_ = 0; // number of words in the write FIFO, as the user port reports it
     Ring<Command, commandDepth> commands_;
     Ring<Write, dataDepth> write_; // writes not yet carried out
-    Ring<Release, 256> releases_;  // times at which words leave the write FIFO
-    Ring<Word, 1024> coming_;      // words on their way from the memory
+    // times at which words leave the write FIFO, with the number of words
+    Ring<Release, 256> releases_;
+    // words that the memory has sent and the read FIFO has not received yet
+    Ring<Word, 1024> coming_;
     Ring<uint64_t, dataDepth> read_;
 };
 
-// ---- functions that connect a Verilated module's MCB user port with an McbModel, around one clock
-// edge ----
+// ---- functions that connect the MCB user port of a Verilated module with an McbModel, around one
+// clock edge ----
 
-// Samples the design's settled outputs before the edge.
+// Copies the design's settled outputs to the model, before the edge.
 template <class Module> void sampleMcb(Module& top, McbModel& memory) {
     McbModel::Pins& m = memory.pins;
     m.cmdEn = top.mcb_cmd_en_o;
@@ -211,7 +217,7 @@ template <class Module> void sampleMcb(Module& top, McbModel& memory) {
     memory.cycle();
 }
 
-// Drives the design's inputs after the edge.
+// Copies the model's outputs to the design's inputs, after the edge.
 template <class Module> void driveMcb(Module& top, const McbModel& memory) {
     const McbModel::Pins& m = memory.pins;
     top.mcb_cmd_full_i = m.cmdFull;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// memory_bench: a memory controller with one requester at each of its PORTS ports, and the MCB
-// model as its memory.
+// memory_bench: connects a memory controller to the MCB model as its memory, and one requester to
+// each of the controller's PORTS ports.
 
 #pragma once
 

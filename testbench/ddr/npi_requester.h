@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// npi_requester: requesters on the packed NPI ports of a memory controller, with a reference
-// memory.
+// npi_requester: makes random requests on the packed NPI ports of a memory controller, and compares
+// the results with a reference memory.
 //
-// The order of acknowledgements is the order of accesses in memory (docs/memory.md), so each
-// acknowledgement updates the reference memory. Every read word is compared with the reference at
-// once, and a difference throws.
+// The memory executes accesses in the order of their acknowledgements (docs/memory.md), so each
+// acknowledgement updates the reference memory. Every word that is read is compared with the
+// reference at once; a difference throws an exception.
 
 #pragma once
 
@@ -17,8 +17,8 @@
 #include <type_traits>
 #include <vector>
 
-// Bits lsb..lsb+width-1 of a Verilated module's packed port of any type (width up to 64, the field
-// within two 32-bit words of a wide port).
+// Returns the bits lsb..lsb+width-1 of a Verilated module's packed port of any type. `width` is at
+// most 64, and in a wide port the bits must lie within two of its 32-bit words.
 template <class Port> uint64_t getBits(const Port& port, unsigned lsb, unsigned width) {
     uint64_t mask = width == 64 ? ~0ull : (1ull << width) - 1;
     if constexpr (std::is_integral_v<Port>) {
@@ -46,22 +46,24 @@ template <class Port> void setBits(Port& port, unsigned lsb, unsigned width, uin
     }
 }
 
-// The traffic that a requester makes.
+// Describes the traffic that one requester makes.
 struct NpiTraffic {
-    double ask = 1.0;    // probability, per cycle, of starting a request when none is waiting
+    // probability, per cycle, of starting a request if no other request is waiting
+    double ask = 1.0;
     double push = 1.0;   // probability, per cycle, of pushing the next word of a write
     double pop = 1.0;    // probability, per cycle, of popping a word that has arrived
-    double writes = 0.5; // share of writes
+    double writes = 0.5; // fraction of the requests that are writes
     unsigned minSize = 0, maxSize = 5;
-    // limit of the words that were requested and not popped yet; may be exceeded only with pop = 1
-    // (rule 3)
+    // largest number of words that may be requested and not popped yet; it may exceed the read FIFO
+    // only if pop is 1 (rule 3)
     unsigned outstanding = 32;
     bool byteEnables = true; // true: byte enables are random; false: all bytes are written
-    bool anyLineWord = true; // reads of cache lines start at a random word
+    bool anyLineWord = true; // true: a read of a cache line may start at any of its words
     // true if each address follows the previous one, false if addresses are random
     bool sequential = false;
     uint32_t base = 0, bytes = 1 << 16; // part of the memory that this requester uses
-    uint32_t above = 0;                 // random address bits beyond the memory, which are ignored
+    // random address bits above the size of the memory; the controller ignores them
+    uint32_t above = 0;
 };
 
 template <class Module> class NpiRequesters {
@@ -80,7 +82,8 @@ public:
     NpiTraffic& traffic(unsigned port) { return ports_[port].traffic; }
     const Counters& counters(unsigned port) const { return ports_[port].counters; }
     std::vector<uint8_t>& reference() { return reference_; }
-    void stop() { stopped_ = true; } // starts no new requests; pending ones end
+    // Starts no new requests; requests that have begun are completed.
+    void stop() { stopped_ = true; }
     void go() { stopped_ = false; }
     bool idle() const {
         for (const Port& port : ports_)
@@ -89,7 +92,7 @@ public:
         return true;
     }
 
-    // If this is requested, records accepted requests in order.
+    // Accepted requests in their order; recorded only if `log` is set.
     struct Accepted {
         uint32_t address;
         unsigned words;
@@ -135,8 +138,8 @@ public:
         }
     }
 
-    // Called when the outputs have settled, since pops depend on the port's state in the same
-    // cycle.
+    // Sets the pop inputs. Called when the outputs have settled, because whether a word can be
+    // popped depends on the port's outputs in the same cycle.
     void pops() {
         for (Port& port : ports_) {
             port.popping =
@@ -162,11 +165,12 @@ private:
         unsigned number = 0;
         NpiTraffic traffic;
         Counters counters;
-        Request now, ahead; // `ahead`: next request; its write words may be pushed early
+        // `ahead` is the request after `now`; its write words may be pushed early
+        Request now, ahead;
         bool raised = false, willing = false, popping = false;
-        uint32_t next = 0; // address of a sequential stream
+        uint32_t next = 0; // next address, if the addresses are sequential
         uint64_t since = 0;
-        std::deque<Expected> expected; // expected words of reads, in order
+        std::deque<Expected> expected; // words that reads must return, in order
     };
 
     bool roomFor(const Port& port, const Request& r) const { // rule 3

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// checkpoints: frozen copies of this process (fork), used by a debugger to step backwards.
+// checkpoints: makes frozen copies of this process (fork), which let a debugger step backwards.
 //
-// A copy has everything: processor, chip, radio, air. To go back to a place, a process wakes the
-// last copy before this place, gives it an order, and ends. The woken process is itself a copy of
-// the frozen one, which stays frozen. Connections are shared, so the debugger notices nothing. The
-// first process ends together with the last one, with the same exit status; all others end with
-// their parent.
+// A copy contains everything: processor, chip, radio, air. To go back to a place, the running
+// process wakes the last copy before that place, gives it an order, and ends. The frozen copy
+// forks, and the new process carries out the order; the copy itself stays frozen and can be used
+// again. All processes share the connections, so the debugger does not notice the change. The first
+// process waits for the last running process and ends with the same exit status. All other
+// processes end when their parent ends.
 
 #pragma once
 
@@ -24,15 +25,16 @@
 
 class Checkpoints {
 public:
-    // The task of a woken copy. Places are counts of instructions.
+    // The order given to a woken copy. A place is a number of executed instructions.
     struct Order {
         enum Goal {
-            Stop,          // run to `place` and stop there
-            LastStop,      // find the last place before `place` at which the processor can stop
+            Stop, // run to `place`, and stop there
+            // find the last place before `place` at which the processor could have stopped
+            LastStop,
             LastBreakpoint // find the last breakpoint before `place`
         } goal;
         uint64_t place;
-        std::set<uint32_t> breakpoints; // at most 250
+        std::set<uint32_t> breakpoints; // breakpoint addresses, at most 250
     };
 
     Checkpoints()
@@ -42,8 +44,8 @@ public:
             throw std::system_error(errno, std::generic_category(), "checkpoints");
         shared_->first = shared_->active = getpid();
     }
-    // The destructor of a woken process does not end other processes; the first process does, which
-    // waits for the exit status.
+    // The destructor must not end other processes when it runs in a woken process. Only the first
+    // process ends them, after it has waited for the exit status.
     ~Checkpoints() {
         if (getpid() != shared_->first)
             return;
@@ -53,8 +55,9 @@ public:
     Checkpoints(const Checkpoints&) = delete;
     Checkpoints& operator=(const Checkpoints&) = delete;
 
-    // Forks a frozen copy, unless one exists at or after this place or there are too many. In a
-    // woken process, returns the order; otherwise returns nothing, and the run continues.
+    // Forks a frozen copy, unless there is already a copy at or after this place or the maximum
+    // number of copies exists. Returns an order in a process that was woken later; returns nothing
+    // in the process that continues.
     std::optional<Order> freeze(uint64_t place) {
         Shared& s = *shared_;
         if (s.count == mostCopies || (s.count && s.copies[s.count - 1].place >= place))
@@ -66,7 +69,7 @@ public:
         hasCopies_ = true;
         return std::nullopt;
     }
-    // Wakes the last copy at or before `before`; there must be one. Does not return.
+    // Wakes the last copy at or before `before`; such a copy must exist. Does not return.
     [[noreturn]] void wake(uint64_t before, const Order& order) {
         Shared& s = *shared_;
         s.goal = order.goal;
@@ -84,16 +87,17 @@ public:
         kill(s.copies[last].process, SIGUSR1);
         if (getpid() == s.first)
             waitForTheEnd();
-        while (hasCopies_) // the copies would end with this process
+        // a process ends together with its parent, so this process waits as long as it has copies
+        while (hasCopies_)
             pause();
         _exit(0);
     }
-    // Ends the copies after this place, because the run will be different after it.
+    // Ends the copies after this place, because the run will be different from here on.
     void forgetBehind(uint64_t place) {
         for (Shared& s = *shared_; s.count && s.copies[s.count - 1].place > place; --s.count)
             kill(s.copies[s.count - 1].process, SIGKILL);
     }
-    // True if no earlier copy exists.
+    // Returns true if there is no copy before this place.
     bool isFirst(uint64_t place) const {
         return shared_->count == 0 || place <= shared_->copies[0].place;
     }
@@ -101,7 +105,7 @@ public:
 private:
     static constexpr unsigned mostCopies = 64, mostBreakpoints = 250;
 
-    // Forks a process that ends when this one does. Returns 0 in it.
+    // Forks a process that is ended when this process ends. Returns 0 in the new process.
     static pid_t forkChild() {
         const pid_t parent = getpid();
         std::cout.flush();
@@ -121,24 +125,27 @@ private:
         struct Copy {
             uint64_t place;
             pid_t process;
-        } copies[mostCopies]; // ordered by place
+        } copies[mostCopies]; // copies, ordered by place
         unsigned count;
         Order::Goal goal;
         uint64_t place;
         unsigned breakpointCount;
         uint32_t breakpoints[mostBreakpoints];
-        pid_t first, active; // process ids; active is 0 while it is being woken
-        bool over;           // the active process has ended normally
+        // process ids of the first and of the running process; `active` is 0 while a copy is being
+        // woken
+        pid_t first, active;
+        bool over; // true if the running process has ended normally
         int status;
     };
 
-    // Holds a frozen copy, which forks each time it is woken. Returns only in the forked process.
+    // Keeps this copy frozen. Each time it is woken, it forks; only the forked process returns,
+    // with the order.
     std::optional<Order> sleep() {
         sigset_t all, wakes, before;
         sigfillset(&all);
         sigemptyset(&wakes);
         sigaddset(&wakes, SIGUSR1);
-        sigprocmask(SIG_SETMASK, &all, &before); // a Ctrl-C must not reach the frozen copy
+        sigprocmask(SIG_SETMASK, &all, &before); // Ctrl-C must not end a frozen copy
         signal(SIGCHLD, SIG_IGN);
         do {
             int number;

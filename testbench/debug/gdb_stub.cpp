@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// gdb_stub: receives packets "$payload#checksum" and answers each (GDB manual, appendix E).
+// gdb_stub: receives packets "$payload#checksum" from GDB and answers each of them (GDB manual,
+// appendix E).
 
 #include "gdb_stub.h"
 #include <arpa/inet.h>
@@ -16,7 +17,8 @@
 
 namespace {
 
-constexpr int xpsrNumber = 25, firstSystemNumber = 26; // register numbers in the description below
+// register numbers in the target description that follows
+constexpr int xpsrNumber = 25, firstSystemNumber = 26;
 constexpr int systemRegisters[] = {CortexM3::Msp,     CortexM3::Psp,       CortexM3::Primask,
                                    CortexM3::Basepri, CortexM3::Faultmask, CortexM3::Control};
 
@@ -63,8 +65,8 @@ uint32_t wordOf(const std::string& hex) {
     return value;
 }
 
-// Converts GDB's number of a register to the number in CortexM3; returns -1 if there is no such
-// register.
+// Converts a register number of GDB to the register's number in CortexM3; returns -1 if CortexM3
+// has no such register.
 int registerOf(unsigned long number) {
     if (number <= 15)
         return static_cast<int>(number);
@@ -75,8 +77,9 @@ int registerOf(unsigned long number) {
 }
 
 const std::string error = "E01";
-constexpr int interrupt = 3;             // Ctrl-C
-constexpr size_t longestPacket = 0x4000; // longest packet, bytes, as reported in qSupported
+constexpr int interrupt = 3; // Ctrl-C
+// size of the longest packet, bytes, as reported in qSupported
+constexpr size_t longestPacket = 0x4000;
 
 } // namespace
 
@@ -165,7 +168,8 @@ bool GdbStub::wantsStop() {
         pollfd waiting{listener_, POLLIN, 0};
         return poll(&waiting, 1, 0) > 0;
     }
-    // reads everything, so that other bytes cannot hide a Ctrl-C or the end of the connection
+    // Reads all bytes that have arrived, so that a Ctrl-C or the end of the connection is not
+    // hidden behind other bytes.
     char bytes[4096];
     const ssize_t n = recv(connection_, bytes, sizeof bytes, MSG_DONTWAIT);
     return n > 0 ? std::memchr(bytes, interrupt, static_cast<size_t>(n)) != nullptr
@@ -187,14 +191,16 @@ bool GdbStub::serve(const Target& target, const std::function<bool()>& mayWait) 
     return served_ && !over_;
 }
 
-// Sets the time-out for a packet: none, or 2 s for the first one. A debugger may be silent for
-// hours, but it always sends the first packet.
+// Sets the time-out for the next packet. The first packet must arrive within 2 s, because a
+// debugger sends it at once; for later packets there is no time-out, because a debugger may be
+// silent for hours.
 void GdbStub::patient(bool on) {
     timeval limit{on ? 0 : 2, 0};
     setsockopt(connection_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
 }
 
-// Returns false if the peer does not use GDB's protocol.
+// Handles the packets of a connection until it ends. Returns false if the peer does not use GDB's
+// protocol.
 bool GdbStub::talks(const Target& target) {
     std::string packet;
     bool talked = false;
@@ -339,7 +345,7 @@ std::string GdbStub::writeMemory(const Target& target, const std::string& argume
 std::string GdbStub::breakpoint(const Target& target, const std::string& packet) {
     unsigned kind = 0, address = 0;
     if (std::sscanf(packet.c_str() + 1, "%u,%x", &kind, &address) != 2 || kind > 1)
-        return ""; // watchpoints are not supported; the debugger steps instead
+        return ""; // an empty answer: watchpoints are not supported, so the debugger steps instead
     if (packet[0] == 'Z')
         target.cpu.breakpoints.insert(address & ~1u);
     else
@@ -354,12 +360,12 @@ std::string GdbStub::resume(const Target& target, bool singleStep) {
         return "T05replaylog:" + edge + ";";
     if (target.isOver()) {
         over_ = true;
-        return "W00"; // the program has ended
+        return "W00"; // the answer if the program has ended
     }
     return why == CortexM3::Stop::Asked ? "T02" : "T05"; // SIGINT, SIGTRAP
 }
 
-// Handles "bs" and "bc", which run backwards.
+// Handles "bs" and "bc", the commands for stepping and continuing backwards.
 std::string GdbStub::back(const Target& target, const std::string& packet) {
     if (!target.back || (packet != "bs" && packet != "bc"))
         return "";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// gdb_stub: lets a debugger on this machine control a CortexM3. It serves GDB's remote serial
+// gdb_stub: lets a debugger on the same machine control a CortexM3. It serves GDB's remote serial
 // protocol over TCP on the loopback interface: registers, memory, breakpoints, step, continue,
 // interrupt, and `monitor reset`.
 
@@ -13,22 +13,23 @@
 
 class GdbStub {
 public:
-    // What the debugger controls. `run` returns when the processor stops or when the simulation has
-    // ended; isOver() is true after the latter. `describe` returns the answer to `monitor info`.
+    // Functions of the program that the debugger controls. `run` returns when the processor stops
+    // or when the simulation has ended; in the second case isOver() returns true afterwards.
+    // `describe` returns the answer to `monitor info`.
     struct Target {
         CortexM3& cpu;
         std::function<CortexM3::Stop(bool singleStep)> run;
         std::function<void()> reset;
         std::function<bool()> isOver;
         std::function<std::string()> describe;
-        // Goes back by one instruction (`singleStep`) or to the last breakpoint; empty if not
-        // supported. Returns if there is nothing before; otherwise the process that continues
-        // returns from `run`.
+        // Goes back by one instruction (if `singleStep` is true) or to the last breakpoint; empty
+        // if going back is not supported. Returns only if there is no earlier place. Otherwise
+        // another process continues, and `run` returns in that process.
         std::function<void(bool singleStep)> back = nullptr;
-        // Returns the end of the recording that a reversible run has reached: "begin", "end", or
-        // "".
+        // Returns "begin" or "end" if a reversible run has reached that end of its recording,
+        // otherwise "".
         std::function<std::string()> edge = [] { return ""; };
-        // called after the debugger has written registers or memory
+        // called after the debugger has written a register or memory
         std::function<void()> changed = [] {};
     };
     // Listens on 127.0.0.1; port 0 selects a free one. Throws std::system_error if the port is
@@ -40,12 +41,12 @@ public:
     uint16_t port() const { return port_; }
 
     // Waits for a debugger while `mayWait` returns true, and executes its commands. Disconnects a
-    // peer that does not speak the protocol. Returns true if the program must continue. Returns
+    // peer that does not use GDB's protocol. Returns true if the program must continue. Returns
     // false if the debugger has killed the program, the simulation has ended, or no debugger has
     // connected.
     bool serve(const Target& target, const std::function<bool()>& mayWait);
-    // Returns true if the running processor must stop: the debugger has sent Ctrl-C or
-    // disconnected, or another debugger waits.
+    // Returns true if the running processor must stop, because the debugger has sent Ctrl-C or has
+    // disconnected, or because another debugger is waiting.
     bool wantsStop();
     bool hasServed() const { return served_; }
 

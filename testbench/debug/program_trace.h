@@ -2,10 +2,10 @@
 //
 // program_trace: records over time which task, interrupt and function the Cortex-M3 runs.
 //
-// If the environment asks for a waveform (wave_window.h), the program writes three rows of text to
-// WAVE.program.vcd. Their unit of time is half a clock, as in the waveform of the RTL;
-// join_waves.sh combines the two files. Functions are recorded from WAVE_FROM to WAVE_TO; tasks and
-// interrupts start a tenth of a second earlier.
+// If the environment requests a waveform (wave_window.h), this class writes three rows of text to
+// WAVE.program.vcd. Their time unit is half a clock, as in the waveform of the RTL, and
+// join_waves.sh combines the two files. Functions are recorded from WAVE_FROM to WAVE_TO. Tasks and
+// interrupts are recorded starting a tenth of a second before WAVE_FROM.
 
 #pragma once
 
@@ -17,8 +17,8 @@
 
 class ProgramTrace {
 public:
-    // Observes `cpu`, which runs the program `image`, as long as both exist. `clocks` returns the
-    // number of fabric clocks that have passed.
+    // Observes `cpu`, which runs the program `image`; both must exist as long as this object.
+    // `clocks` returns the number of clocks of the fabric that have passed.
     ProgramTrace(CortexM3& cpu, const ElfImage& image, std::function<uint64_t()> clocks)
         : cpu_(cpu), image_(image), clocks_(std::move(clocks)),
           taskAddress_(kernelsPointer(image)) {
@@ -45,17 +45,18 @@ public:
     ProgramTrace(const ProgramTrace&) = delete;
     ProgramTrace& operator=(const ProgramTrace&) = delete;
 
-    // Called at a task switch; the name of a task is the name of its function.
+    // Called at each task switch with the name of the task, which is the name of the task's
+    // function.
     std::function<void(const std::string& name)> onTask;
 
 private:
-    // number of the exception in which both kernels switch tasks
+    // number of the exception PendSV, in which both kernels switch tasks
     static constexpr unsigned pendSv = 14;
     static constexpr uint64_t tenthOfASecond = 10'000'000; // clocks
-    // longest time to the next exception, clocks; the kernel's tick is 100,000
+    // longest time until another exception, clocks; the kernel's tick comes every 100,000 clocks
     static constexpr uint64_t soon = 200'000;
 
-    // Returns the address of the kernel's pointer to the running task (of uC/OS-II or of our
+    // Returns the address of the variable that points to the running task (in uC/OS-II or in our
     // kernel); 0 if the program has no kernel.
     static uint32_t kernelsPointer(const ElfImage& image) {
         for (const char* name : {"OSTCBCur", "os_running"})
@@ -64,8 +65,8 @@ private:
         return 0;
     }
 
-    // Handles a task switch. A task that runs for the first time starts at its function, which
-    // gives its name.
+    // Handles a task switch. When a task runs for the first time, its saved PC is the start of its
+    // function; the task gets the name of this function.
     void switched() {
         std::string& name = tasks_[cpu_.word(taskAddress_)];
         if (name.empty())
@@ -110,7 +111,8 @@ private:
     std::ofstream file_;
     // address of the kernel's pointer to the running task; 0 if the program has no kernel
     uint32_t taskAddress_;
-    std::map<uint32_t, std::string> tasks_; // names of tasks by the value of that pointer
+    // names of the tasks; the key is the value of the kernel's pointer
+    std::map<uint32_t, std::string> tasks_;
     std::string task_, interrupt_ = "-";
     std::map<std::string, std::string> written_; // last text written in each row
     uint64_t time_ = ~0ull;

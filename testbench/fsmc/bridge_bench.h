@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// bridge_bench: tests the FSMC bridge alone, between the pins of the processor, a memory, and a bus
-// slave that returns the ID of the system slot.
+// bridge_bench: tests the FSMC bridge alone. It connects the bridge to the pins of the processor,
+// to a memory, and to a bus slave that returns the ID of the system slot.
 
 #pragma once
 
@@ -16,8 +16,8 @@ extern "C" {
 #include "system_regs.h"
 }
 
-// A bus slave with 1024 words (docs/bus.md), with random stalls, errors, and an option to hang. It
-// checks that the master obeys the rules of the bus, and throws if not.
+// A bus slave with 1024 words (docs/bus.md) and random stalls. It can report errors, and it can
+// hang. It checks that the master obeys the rules of the bus, and throws an exception if not.
 template <class Module> class BusSlave {
 public:
     BusSlave(Bench<Module>& bench, double stall, uint64_t seed)
@@ -27,9 +27,10 @@ public:
     }
 
     std::array<uint32_t, 1024> words{};
-    unsigned firstError = 1024; // this word and all later ones report an error
+    unsigned firstError = 1024; // first word that reports an error; all later words also do
     bool hung = false;          // never answers
-    unsigned clearWord = 1024;  // word whose bits are cleared by writing 1 (default: none)
+    // address of a word whose bits are cleared by writing 1 (default: no such word)
+    unsigned clearWord = 1024;
 
 private:
     [[noreturn]] static void broken(const std::string& what) {
@@ -59,14 +60,15 @@ private:
     void drive() {
         bool ready = !hung && !random_.chance(stall_);
         top_.bus_ready_i = ready;
-        // Data is valid only while ready is high; it is noise before.
+        // Read data is only valid while ready is high, so before that it is noise.
         top_.bus_rdata_i = random_.next();
         top_.bus_error_i = random_.chance(0.5);
-        answer(); // the answer is combinational, as from a decoder
+        // the bits of the answer that depend on the address are set at once, as from a decoder
+        answer();
     }
 
 public:
-    // Sets data and error from the address, combinationally, as a decoder does.
+    // Sets read data and error from the current address, without a clock, as a decoder does.
     void answer() {
         if (!top_.bus_ready_i)
             return;
@@ -100,22 +102,24 @@ public:
 
     Bench<Bridge> bench;
     Bridge& top = bench.top();
-    FsmcPins pins;         // pins at the processor
-    FsmcPins* far = &pins; // pins at the FPGA; a separate set if the pins have delays
+    FsmcPins pins; // pins at the processor
+    // pins at the FPGA; the same object as `pins` unless the pins have delays
+    FsmcPins* far = &pins;
     NpiMemory<Bridge> memory;
     BusSlave<Bridge> slave;
     FsmcMaster master;
     unsigned errors = 0, errorAddr = 0;
     bool errorWrite = false;
-    std::function<void()> onTick; // called in each clock; for observers
+    std::function<void()> onTick; // called once per clock; for observers
 
-    // Configures the FSMC by its driver, with the driver's own timings or with the same bank twice.
+    // Configure the FSMC by its driver: with the driver's own timings, or with `bank` for both
+    // banks.
     FSMC_Status init() { return FSMC_init(&driverPort, &master); }
     FSMC_Status init(const FSMC_Bank& bank) {
         const FSMC_Bank banks[2] = {bank, bank};
         return FSMC_initBanks(&driverPort, &master, banks);
     }
-    // From now on the word EVENT works as in the system slot: a late access sets its bit, writing 1
+    // Makes the word EVENT behave as in the system slot: a late access sets its bit, and writing 1
     // clears it.
     void keepEvents() { slave.clearWord = MAP_SLOT_SYSTEM * 16 + SYSTEM_EVENT; }
     void tick() {
@@ -156,7 +160,7 @@ private:
     }
     void showPins() {
         top.fsmc_a_i = far->a;
-        top.fsmc_d_i = far->dOut ? far->d : 0xDEAD; // value of a bus that floats
+        top.fsmc_d_i = far->dOut ? far->d : 0xDEAD; // value that a bus without a driver returns
         top.fsmc_ne_n_i = far->neN & 3;
         top.fsmc_nbl_n_i = far->nblN;
         top.fsmc_noe_n_i = far->noeN;

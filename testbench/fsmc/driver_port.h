@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // driver_port: connects the loads and stores of the FSMC driver (sw/fsmc) to the model of the FSMC.
-// The context is the FsmcMaster.
+// The driver's context pointer is the FsmcMaster.
 
 #pragma once
 

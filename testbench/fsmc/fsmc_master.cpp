@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_master: accesses as sequences of pin changes and HCLK cycles.
+// fsmc_master: carries out each access as a sequence of pin changes and HCLK cycles.
 
 #include "fsmc_master.h"
 #include "pin_delays.h"
@@ -24,7 +24,7 @@ FsmcMaster::FsmcMaster(FsmcPins& pins, Design design, unsigned hclkPerUnit, unsi
 FsmcMaster::~FsmcMaster() = default;
 
 void FsmcMaster::delay(const FsmcCorner& corner, FsmcPins& far, uint64_t seed, bool looksTwice) {
-    constexpr int clk = 10000; // ps: 100 MHz
+    constexpr int clk = 10000; // period of the design's clock at 100 MHz, ps
     delays_ = std::make_unique<PinDelays>(pins_, far, design_, corner, seed,
                                           static_cast<int>(clk * clkPerUnit_ / hclkPerUnit_), clk);
     looksTwice_ = looksTwice;
@@ -49,7 +49,8 @@ void FsmcMaster::setClocks(unsigned hclkPerUnit, unsigned clkPerUnit) {
         delays_->setHclk(static_cast<int>(10000 * clkPerUnit_ / hclkPerUnit_));
 }
 
-// Reports a signal that changes at the wrong time, unless such signals are tolerated.
+// Throws an FsmcError for a signal that changes at the wrong time, unless such signals are
+// tolerated.
 void FsmcMaster::complain(const std::string& what) const {
     if (!tolerant_)
         throw FsmcError(what);
@@ -57,7 +58,7 @@ void FsmcMaster::complain(const std::string& what) const {
 
 void FsmcMaster::show() {
     if (delays_)
-        return delays_->show(); // both sides may drive the data bus for a few ns
+        return delays_->show(); // with pin delays, both sides may drive the data bus for a few ns
     design_.settle();
     if (pins_.dDriven && pins_.dOut)
         complain("data bus driven by both sides");
@@ -85,7 +86,7 @@ unsigned FsmcMaster::idleQuiet(unsigned hclk, uint64_t ns) {
         design_.passQuiet((phase_ + uint64_t(hclk) * clkPerUnit_) / hclkPerUnit_, ns);
     if (clocks == 0)
         return 0;
-    // Advances up to the last of these clocks, with the same result as single steps.
+    // Advances to the last of these clocks. The result is the same as after single steps.
     const uint64_t cycles = (clocks * hclkPerUnit_ - phase_ + clkPerUnit_ - 1) / clkPerUnit_;
     phase_ += static_cast<unsigned>(cycles * clkPerUnit_ - clocks * hclkPerUnit_);
     hclks_ += cycles;
@@ -140,7 +141,7 @@ FsmcMaster::Access FsmcMaster::decode(uint32_t address, bool write) {
 // Waits between two accesses, as RM0033 describes for BUSTURN.
 void FsmcMaster::turnaround(const Access& access) {
     bool held = access.muxed || access.mode == 'D';
-    unsigned pause = 1; // pause after a read
+    unsigned pause = 1; // number of HCLK cycles of the pause after a read
     if (lastHeld_)
         pause = lastBusturn_;
     else if (lastWrite_)
@@ -154,13 +155,14 @@ void FsmcMaster::turnaround(const Access& access) {
     lastBusturn_ = access.timing.busturn;
 }
 
-// True if the bank uses NWAIT and NWAIT is active.
+// Returns true if the bank uses NWAIT and NWAIT is active.
 bool FsmcMaster::isWaiting(const Access& access) const {
     return (access.bank->bcr & bcrAsyncWait) &&
            pins_.nwaitN == bool(access.bank->bcr & bcrWaitHigh);
 }
 
-// Drives the pins from NE low to the beginning of the data phase; the strobe is low afterwards.
+// Drives the pins from the falling edge of NE to the beginning of the data phase, at which the
+// strobe is low.
 void FsmcMaster::addressPhase(const Access& access, uint16_t value, uint8_t lanes) {
     bool early = access.write ? access.mode == '2'
                               : access.mode == '1' || access.mode == '2' || access.mode == 'B';
@@ -192,7 +194,7 @@ void FsmcMaster::addressPhase(const Access& access, uint16_t value, uint8_t lane
     }
     strobe = false;
     show();
-    // Without pin delays, NWAIT must follow the strobe at once.
+    // Without pin delays, NWAIT must become active together with the strobe.
     if (free && isWaiting(access) && !delays_)
         complain(access.name + ": NWAIT went active after the strobe");
 }
@@ -233,7 +235,8 @@ uint16_t FsmcMaster::readPins(uint32_t address) {
     Access access = decode(address, false);
     turnaround(access);
     addressPhase(access, 0, 3);
-    // Data-to-NE-high set-up time: HCLK + 4 ns (STM32F2 data sheet): two HCLK cycles here.
+    // Set-up time of the data before NE rises: HCLK + 4 ns (STM32F2 data sheet), which are two HCLK
+    // cycles here.
     passHclk(0);
     unsigned left = waitPhase(access);
     bool ours = access.index < 2;
@@ -249,7 +252,7 @@ uint16_t FsmcMaster::readPins(uint32_t address) {
         value = static_cast<uint16_t>(~pins_.dFromDesign); // the processor gets an undefined value
     }
     if (ours && !pins_.dDriven)
-        value = static_cast<uint16_t>(~value); // a floating bus
+        value = static_cast<uint16_t>(~value); // value of a data bus that nobody drives
     endOfAccess(access);
     pins_.noeN = true;
     pins_.neN = 0xF;
@@ -257,7 +260,8 @@ uint16_t FsmcMaster::readPins(uint32_t address) {
     show();
     if (pins_.dDriven && !delays_)
         complain(access.name + ": the data bus is still driven after the access");
-    return ours ? value : 0xFFFF; // the bank belongs to another chip; its data lines are pulled up
+    // another bank belongs to another chip; its data lines are pulled up
+    return ours ? value : 0xFFFF;
 }
 
 void FsmcMaster::writePins(uint32_t address, uint16_t value, uint8_t lanes) {
@@ -268,7 +272,7 @@ void FsmcMaster::writePins(uint32_t address, uint16_t value, uint8_t lanes) {
     endOfAccess(access);
     pins_.nweN = true;
     show();
-    passHclk(1); // address and data are held for one HCLK
+    passHclk(1); // address and data are held for one HCLK cycle
     pins_.neN = 0xF;
     pins_.nblN = 3;
     pins_.dOut = false;
@@ -285,7 +289,7 @@ void FsmcMaster::abort(const Access& access, unsigned hclk) {
     show();
     if (pins_.dDriven && !delays_)
         throw FsmcError(access.name + ": the access was aborted, and the data bus is still driven");
-    passHclk(8); // the reset of a processor takes far longer
+    passHclk(8); // a few idle cycles; a real reset of the processor takes far longer
 }
 
 void FsmcMaster::abortRead(uint32_t address, unsigned hclk) {
@@ -330,7 +334,7 @@ uint32_t FsmcMaster::read32(uint32_t address) {
 void FsmcMaster::write32(uint32_t address, uint32_t value) {
     if (address >= registersAt) {
         fsmcRegister(address) = value;
-        return passHclk(1); // the AHB's data phase
+        return passHclk(1); // data phase of the AHB
     }
     writePins(address, static_cast<uint16_t>(value), 3);
     writePins(address + 2, static_cast<uint16_t>(value >> 16), 3);

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_master: the STM32F2's FSMC peripheral, bank 1 (RM0033, chapter 31), which drives the pins to
-// the FPGA.
+// fsmc_master: models the FSMC peripheral of the STM32F2, bank 1 (RM0033, chapter 31), which drives
+// the pins to the FPGA.
 //
-// Programmed through BCRx, BTRx and BWTRx like the real one. Asynchronous modes 1, A, 2, B, C, D
-// and multiplexed, with ASYNCWAIT. During an access the model runs the clock of the design. HCLK
-// and that clock have an exact fixed ratio (120 MHz to 100 MHz by default); pins change on HCLK
-// edges, between clock edges.
+// It is programmed through BCRx, BTRx and BWTRx like the real FSMC. It supports the asynchronous
+// modes 1, A, 2, B, C, D and multiplexed, with ASYNCWAIT. During an access the model runs the clock
+// of the design. HCLK and the design's clock have an exact fixed ratio (120 MHz to 100 MHz by
+// default). Pins change on HCLK edges, between edges of the design's clock.
 //
-// It throws FsmcError where a real system would fail: both sides driving the data bus, no side
-// driving it in a read, read data that moves within its set-up time, NWAIT too late to be seen or
-// low for ever, reserved values in registers, a bank that is not enabled.
+// It throws FsmcError in these cases, in which a real system would fail: both sides drive the data
+// bus, no side drives it in a read, read data changes within its set-up time, NWAIT becomes active
+// too late to be sampled or stays low for ever, a register contains a reserved value, or a bank is
+// not enabled.
 
 #pragma once
 
@@ -24,7 +25,8 @@
 namespace fsmc {
 
 constexpr uint32_t registersAt = 0xA0000000, windowsAt = 0x60000000, windowBytes = 0x04000000;
-// number of HCLK cycles for which NWAIT may stop an access; then the model reports an error
+// maximum number of HCLK cycles for which NWAIT may extend an access; the model reports an error
+// after that
 constexpr unsigned waitLimit = 20000;
 
 // BCR
@@ -51,27 +53,28 @@ public:
     FsmcMaster(FsmcPins& pins, Design design, unsigned hclkPerUnit = 6, unsigned clkPerUnit = 5);
     ~FsmcMaster();
 
-    // Adds delays to the pins (pin_delays.h): `far` are the pins at the design, `pins` those of the
-    // processor. `looksTwice` selects one of two interpretations of RM0033's rule about NWAIT: the
-    // FSMC samples NWAIT only once, four HCLK before the end of the data phase; or it also samples
-    // NWAIT after that.
+    // Adds delays to the pins (pin_delays.h): `far` are the pins at the design, `pins` are those at
+    // the processor. `looksTwice` selects one of two interpretations of RM0033's rule about NWAIT.
+    // false: the FSMC samples NWAIT only once, four HCLK cycles before the end of the data phase.
+    // true: it also samples NWAIT after that.
     void delay(const FsmcCorner& corner, FsmcPins& far, uint64_t seed, bool looksTwice);
 
-    // Delays the changes of a pin by `ps`, in addition to delay(), which must have been called.
-    // After this call, a signal that comes at the wrong time gives the processor wrong data instead
-    // of an FsmcError.
+    // Delays the changes of a pin by `ps`, in addition to the delays of delay(), which must have
+    // been called before. After this call, a signal that changes at the wrong time gives the
+    // processor wrong data instead of an FsmcError.
     void makeLate(const std::string& pin, int ps);
-    // Has the same effect on errors as makeLate(), without a late pin.
+    // Gives the processor wrong data instead of an FsmcError, as makeLate() does, but delays no
+    // pin.
     void tolerate();
-    // Changes HCLK and the design's clock, in cycles per unit of time.
+    // Sets the frequencies of HCLK and of the design's clock, as cycles in the same unit of time.
     void setClocks(unsigned hclkPerUnit, unsigned clkPerUnit);
 
-    // Sets whether BUSTURN also applies between two writes to a bank. According to RM0033 it does
-    // not. On an STM32F407 it applies between the two halves of a word, with the value in BWTR if
-    // the bank uses BWTR (community.st.com, thread 309858).
+    // Sets whether the pause BUSTURN also applies between two writes to the same bank. According to
+    // RM0033 it does not. On an STM32F407 it applies between the two halves of a word, with the
+    // value in BWTR if the bank uses BWTR (community.st.com, thread 309858).
     void pauseWrites(bool pauses) { pausesWrites_ = pauses; }
 
-    // Loads and stores of the processor. A 32-bit load or store to a window is two accesses, low
+    // Loads and stores of the processor. A 32-bit load or store to a window makes two accesses, low
     // half first.
     uint8_t read8(uint32_t address);
     void write8(uint32_t address, uint8_t value);
@@ -80,21 +83,21 @@ public:
     uint32_t read32(uint32_t address);
     void write32(uint32_t address, uint32_t value);
 
-    // Called after each 32-bit access to a window, for observers.
+    // called after each 32-bit access to a window; for observers
     std::function<void(uint32_t address, uint32_t value, bool isWrite)> onWord;
 
-    // Begin an access that a reset of the processor aborts: after `hclk` cycles of the data phase,
-    // NE and the strobe rise (NE first), whatever NWAIT is. Only in asynchronous modes.
+    // Begin an access, which a reset of the processor then aborts: after `hclk` cycles of the data
+    // phase, NE rises, then the strobe, independent of NWAIT. For asynchronous modes only.
     void abortRead(uint32_t address, unsigned hclk);
     void abortWrite(uint32_t address, uint16_t value, unsigned hclk);
     // Lets HCLK cycles pass without an access.
     void idle(unsigned hclk) { passHclk(hclk); }
-    // Lets at most `hclk` cycles and about `ns` pass, as long as the design is quiet. Returns the
-    // number of passed cycles.
+    // Skips HCLK cycles as long as the design is idle, at most `hclk` cycles and about `ns`.
+    // Returns the number of skipped cycles.
     unsigned idleQuiet(unsigned hclk, uint64_t ns);
 
     uint64_t accesses() const { return accesses_; }
-    uint64_t hclks() const { return hclks_; } // HCLK cycles of all accesses and pauses
+    uint64_t hclks() const { return hclks_; } // number of HCLK cycles of all accesses and pauses
 
 private:
     struct Bank {
@@ -106,12 +109,12 @@ private:
     };
     struct Access {
         Bank* bank;
-        unsigned index;    // number of the bank: 0 for NE1 to 3 for NE4
+        unsigned index;    // index of the bank: 0 for NE1 to 3 for NE4
         uint32_t halfword; // address
         bool write, muxed;
         char mode; // mode of the access: '1', 'A', '2', 'B', 'C' or 'D'
         Timing timing;
-        std::string name; // name of the bank for messages
+        std::string name; // name of the bank, for messages
     };
 
     Access decode(uint32_t address, bool write);

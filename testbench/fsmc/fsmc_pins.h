@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_pins: the pins between the FSMC and the design, and the functions that clock the design.
+// fsmc_pins: the pins between the FSMC and the design, and the functions that run the design.
 
 #pragma once
 
@@ -8,22 +8,23 @@
 #include <functional>
 #include <stdexcept>
 
-// The pins between processor and FPGA. The test bench sets the pins that the design drives.
+// Levels of the pins between processor and FPGA. The test bench sets the pins that the design
+// drives.
 struct FsmcPins {
     uint32_t a = 0; // halfword address, 25 bits; with a multiplexed bus, only bits 24..16 are valid
-    uint16_t d = 0; // data driven by the processor while dOut is set
+    uint16_t d = 0; // data that the processor drives while dOut is true
     bool dOut = false;
     uint8_t neN = 0xF, nblN = 3; // NE1 in bit 0 to NE4 in bit 3
     bool noeN = true, nweN = true, nadvN = true;
-    // data driven by the design
+    // data that the design drives
     uint16_t dFromDesign = 0;
     bool dDriven = false, nwaitN = true;
 };
 
-// Connection to the design. `tick` runs one clock with the current pins. `settle` passes on pins
-// that changed between two clock edges. Both update the pins that the design drives. `passQuiet`
-// skips clocks while the design is idle, at most the given numbers of clocks and ns, and returns
-// the number of skipped clocks; a design without this function is never idle.
+// Connection to the design. `tick` runs one clock with the current pins. `settle` updates the
+// design after pins have changed between two clock edges. Both update the pins that the design
+// drives. `passQuiet` skips clocks while the design is idle, at most the given numbers of clocks
+// and ns, and returns the number of skipped clocks. If `passQuiet` is empty, no clocks are skipped.
 struct FsmcDesign {
     std::function<void()> tick, settle;
     std::function<uint64_t(uint64_t clocks, uint64_t ns)> passQuiet = nullptr;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// pin_delays: models the wires between the FSMC and the design. Each change of a pin has a separate
-// delay. FsmcError is thrown if the data of a flip-flop changes in its set-up or hold time.
+// pin_delays: models the wires between the FSMC and the design. Each change of a pin is delayed
+// separately. FsmcError is thrown if the data of a flip-flop changes within its set-up or hold
+// time.
 
 #pragma once
 
@@ -14,34 +15,35 @@
 #include <random>
 #include <string>
 
-// A delay in ps: random between two bounds, or exact (without skew).
+// A delay, ps: random between two bounds, or one exact value (no skew).
 struct PinDelay {
     constexpr PinDelay(int exact) : least(exact), most(exact) {}
     constexpr PinDelay(int atLeast, int atMost) : least(atLeast), most(atMost) {}
     int least, most;
 };
 
-// A corner of delays: the STM32F2's pads (from HCLK's edge to the pin), the board, and the FPGA.
-// The FPGA's delays are its pads and routing, up to the first flip-flop or LUT and from the last
-// one; their limits are in synth/ise/chip.ucf.
+// A corner: one set of delays for the STM32F2's pads (from HCLK's edge to the pin), the board, and
+// the FPGA. The delays of the FPGA are those of its pads, and of its routing up to the first or
+// from the last flip-flop or LUT; synth/ise/chip.ucf limits them.
 struct FsmcCorner {
     const char* name;
     PinDelay address, data, lanes, select, strobe; // processor
     PinDelay board;                                // delay of the board's tracks in each direction
-    // clockIn: delay of NWE and NADV, which the design uses as clocks
+    // padIn: delay of an input pad and its routing; clockIn: the same for NWE and NADV, which the
+    // design uses as clocks
     PinDelay padIn, clockIn;
-    PinDelay padOut; // delay of LUTs and pad
-    // set-up and hold time of the design's capture by NWE
+    PinDelay padOut; // delay of the last LUT, routing and output pad
+    // set-up and hold time of the flip-flops that capture at NWE's edge
     int setup, hold;
-    // set-up time of the FSMC for read data, in addition to one HCLK
+    // set-up time of the FSMC for read data, ps, in addition to one HCLK cycle
     int readSetup = 4000;
 };
 
-// The tables of the two data sheets (STM32F2, "FSMC characteristics"; Spartan-6, DS162, IOB and
-// CLB switching) were not available. The values of the pads are from memory, rounded to the safe
-// side. The routing delays in the chip are the limits in synth/ise/chip.ucf; boards are 2 cm to 8
-// cm. From address to read data, and from NE to NWAIT, a signal needs at most 10 ns through the
-// chip, and 15 ns including the other delays.
+// The tables of the two data sheets (STM32F2, "FSMC characteristics"; Spartan-6, DS162, IOB and CLB
+// switching) were not available. Therefore the delays of the pads are values from memory, rounded
+// to the safe side. The routing delays in the chip are the limits in synth/ise/chip.ucf, and the
+// tracks on the board are 2 cm to 8 cm long. From address to read data, and from NE to NWAIT, a
+// signal needs at most 10 ns through the chip, and 15 ns including the other delays.
 inline const FsmcCorner fsmcCorners[] = {
     {"no delay", 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0},
     {"fast", 0, 0, 0, 0, 500, 100, 1000, 1500, 2500, 1000, 500},
@@ -62,10 +64,10 @@ inline const FsmcCorner fsmcCorners[] = {
      500},
 };
 
-// Returns a corner. With late synchronisers (tests cdc.*), the lateness of a whole clock stands for
-// all delays (docs/fsmc.md). Therefore the address then comes no later than NOE, its bits arrive
-// together, and NWE's delay into the chip is equal at both edges. At 60 MHz the bits of the address
-// may arrive at different times before NOE.
+// Returns a corner of delays. In the tests cdc.*, each synchroniser may be late by a whole clock;
+// this already covers all delays (docs/fsmc.md), so the corner is simplified. The address then
+// comes no later than NOE, its bits arrive together, and NWE's delay into the chip is equal at both
+// edges. At 60 MHz the bits of the address may still arrive at different times before NOE.
 inline FsmcCorner cornerOf(unsigned index, unsigned hclk = 100) {
     FsmcCorner corner = fsmcCorners[index];
     if (std::getenv("CDC_SEED")) {
@@ -89,7 +91,7 @@ public:
         nextEdge_ = 1 + static_cast<int64_t>(random_() % static_cast<uint64_t>(clk)); // any phase
     }
 
-    // Passes changes of the processor's pins on to the design.
+    // Starts the delays for those of the processor's pins that have changed.
     void show() {
         uint64_t levels = driven(near_);
         for (unsigned pin = 0; pin <= drives; ++pin)
@@ -98,7 +100,7 @@ public:
         sent_ = levels;
         pass(0);
     }
-    // Lets time pass, and clocks the design during it.
+    // Advances the time by HCLK cycles, and runs the design's clock.
     void pass(unsigned hclks) {
         int64_t end = now_ + int64_t(hclks) * hclk_;
         for (;;) {
@@ -148,9 +150,9 @@ public:
         else
             throw std::runtime_error("late " + pin + ": expected a line of the FSMC");
     }
-    // Accepts pins that change at the wrong time as they are, instead of throwing FsmcError.
+    // Accepts signals that change at the wrong time as they are, instead of throwing FsmcError.
     void tolerate() { tolerant_ = true; }
-    // Returns whether the data at the processor's pins has been stable for the set-up time.
+    // Returns true if the data at the processor's pins has been stable for the set-up time.
     bool dataIsSetUp() const { return now_ - dataMoved_ >= corner_.readSetup + hclk_; }
 
 private:
@@ -185,7 +187,7 @@ private:
         return extra_[pin] + between(processor) + between(corner_.board) +
                between(clock ? corner_.clockIn : corner_.padIn);
     }
-    // Applies a pin's change at the design or at the processor.
+    // Applies the delayed change of a pin at the design or at the processor.
     void arrive(unsigned pin, bool level) {
         bool selected = (arrived_ >> selectBit & 3) != 3;
         if (level && selected && pin == nwe) {
@@ -202,7 +204,7 @@ private:
         design_.settle();
         settled();
     }
-    // Passes changes of the design's pins on to the processor.
+    // Starts the delays for those of the design's outputs that have changed.
     void settled() {
         uint32_t out = far_.dFromDesign | uint32_t(far_.dDriven) << drivenOut |
                        uint32_t(far_.nwaitN) << nwaitOut;
@@ -213,7 +215,7 @@ private:
                    pin, out >> pin & 1, false);
         shown_ = out;
     }
-    // Schedules a change of a pin. The changes of one pin keep their order.
+    // Schedules the change of a pin at `time`. Several changes of one pin keep their order.
     void at(int64_t time, unsigned pin, bool level, bool toDesign) {
         int64_t& last = toDesign ? last_[pin] : lastOut_[pin];
         last = std::max(time, last);
@@ -234,7 +236,8 @@ private:
     int nwaitExtra_ = 0;
     bool tolerant_ = false;
     uint64_t sent_, arrived_;
-    uint32_t shown_ = 1u << 17; // current outputs of the design: data, data enable, NWAIT
+    // current outputs of the design: data in bits 15..0, data enable in bit 16, NWAIT in bit 17
+    uint32_t shown_ = 1u << 17;
     int64_t last_[64] = {}, lastOut_[18] = {};
     std::multimap<int64_t, Change> changes_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// ground_step: makes simulated time wait for the ground program that keeps step with it
+// ground_step: makes simulated time wait for a ground program that keeps step with it
 // (keep_step.h), even if a busy machine rarely runs that program.
 
 #pragma once
@@ -22,9 +22,9 @@
 
 class GroundStep {
 public:
-    // Calls `goOn` about every 10 ms while time stands still; stops waiting when `goOn` returns
-    // false. A program that holds time for `patience` seconds of the wall clock, and is not stopped
-    // by a debugger, is no longer waited for; a message on stderr names it.
+    // `goOn` is called about every 10 ms while time stands still; if it returns false, the wait
+    // ends. If a program holds time for `patience` seconds of the wall clock, and a debugger has
+    // not stopped it, time no longer waits for this program, and a message on stderr names it.
     GroundStep(SimStatus& status, PtyLine& pty, std::function<bool()> goOn, double patience = 60)
         : status_(status), pty_(pty), goOn_(std::move(goOn)), patience_(patience) {
         std::strncpy(status_.device, pty.path().c_str(), sizeof status_.device - 1);
@@ -35,8 +35,8 @@ public:
     GroundStep(const GroundStep&) = delete;
     GroundStep& operator=(const GroundStep&) = delete;
 
-    // Returns when the program lets time pass beyond `now`. Returns at once if no program keeps
-    // step.
+    // Returns when the program allows time to pass beyond `now`; returns at once if no program
+    // keeps step.
     void wait(uint64_t now) {
         __atomic_store_n(&status_.carried, pty_.carried(), __ATOMIC_RELEASE);
         if (!holds(now))
@@ -76,8 +76,8 @@ private:
         return __atomic_load_n(&field, __ATOMIC_ACQUIRE);
     }
     static pid_t processOf(uint64_t keeper) { return static_cast<pid_t>(keeper & 0xFFFFFFFFu); }
-    // Returns true if a debugger or SIGSTOP has stopped the process; /proc/PID/stat is then "PID
-    // (NAME) T ...".
+    // Returns true if a debugger or SIGSTOP has stopped the process. /proc/PID/stat then contains
+    // "PID (NAME) T ...".
     static bool isHeld(pid_t process) {
         std::ifstream file("/proc/" + std::to_string(process) + "/stat");
         std::string text;
@@ -85,7 +85,7 @@ private:
         const size_t name = text.rfind(") ");
         return name != std::string::npos && (text[name + 2] == 'T' || text[name + 2] == 't');
     }
-    // Counts bytes given to the program, unless another program has replaced it meanwhile.
+    // Adds to the number of bytes given to the program, unless another program has replaced it.
     void given(uint64_t keeper, size_t bytes) {
         uint64_t is = load(status_.toGround);
         while (is - simCount(is) == simSession(keeper) &&
@@ -98,7 +98,7 @@ private:
                (load(status_.untilNs) <= now ||
                 load(status_.taken) < simCount(load(status_.toGround)));
     }
-    // Stops waiting for a program that was killed, since it could not sign off.
+    // Stops waiting for a program that was killed and therefore could not sign off.
     void dismissTheDead() {
         uint64_t keeper = load(status_.keeper);
         if (keeper && kill(processOf(keeper), 0) != 0 && errno == ESRCH)

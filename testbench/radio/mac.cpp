@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// mac: implements carrier sense, tries and rounds as events on the air.
+// mac: implements carrier sense, tries and rounds of Mac as events on the air.
 
 #include "mac.h"
 #include <algorithm>
@@ -11,9 +11,9 @@ namespace {
 constexpr uint64_t backoffUnitNs = 320'000;
 constexpr uint64_t ackWaitNs = 864'000; // macAckWaitDuration: 54 symbols after the frame, ns
 constexpr unsigned longestBackoff = 5, mostBackoffs = 4; // macMaxBE, macMaxCSMABackoffs
-// ns to wait for an acknowledgement before the next round (RR)
+// wait for an acknowledgement before the next round (RR), ns
 constexpr uint64_t roundNs = 200'000'000;
-constexpr uint32_t roundSpreadUs = 48'000; // longest random extra wait, us
+constexpr uint32_t roundSpreadUs = 48'000; // longest random addition to this wait, us
 
 } // namespace
 
@@ -35,7 +35,7 @@ void Mac::startRound(uint64_t now, uint64_t ready) {
     startTry(now, ready);
 }
 
-// Starts a try. If RN is not 0, it begins with a random wait before the first carrier sense.
+// Starts a try. If RN is not 0, a random wait precedes the first carrier sense.
 void Mac::startTry(uint64_t now, uint64_t ready) {
     --triesLeft_;
     busySenses_ = 0;
@@ -76,7 +76,7 @@ void Mac::wake(uint64_t now) {
         finish(now, fate_);
 }
 
-// Handles a failed try: makes the next try of the round or, with RR, the first try of the next
+// Handles a try that failed: starts the next try of the round, or with RR the first try of the next
 // round.
 void Mac::failed(uint64_t now, uint64_t ready, Fate fate) {
     if (triesLeft_) {
@@ -95,11 +95,12 @@ void Mac::failed(uint64_t now, uint64_t ready, Fate fate) {
 
 void Mac::ended(uint64_t now, const RfPacket& arrived, RfOutcome outcome, bool isAnswered) {
     const bool isLost = outcome == RfOutcome::Lost || outcome == RfOutcome::Nobody;
-    // this outcome means that all tries have failed
+    // the outcome Lost, drawn for the whole packet, includes the failure of all tries
     const bool isDrawnLost = drawn_ == RfOutcome::Lost;
     if (packet_.acknowledged && !isAnswered && !isDrawnLost && (triesLeft_ || roundsLeft_)) {
         if (!isLost)
-            drawn_ = RfOutcome::Delivered; // only one try of the packet is damaged
+            // damage affects only one try of the packet, so the next tries are undamaged
+            drawn_ = RfOutcome::Delivered;
         return failed(now, now + ackWaitNs, Fate::NoAck);
     }
     const uint64_t done = now + (packet_.acknowledged ? RfTimes::ackNs : 0) + RfTimes::gapNs;

@@ -13,12 +13,12 @@ class Mac : private RfSender {
 public:
     enum class Fate { Sent, NoAck, NoClearChannel };
 
-    // The modem to which the MAC belongs.
+    // Interface of the modem to which a MAC belongs.
     class Modem : public RfReceiver {
     public:
-        // Returns the time until which the modem is busy with packets and sends no further one.
+        // Returns the time until which the modem processes packets and sends no other packet.
         virtual uint64_t busyUntil() const = 0;
-        // Called when the packet in flight has been sent or has failed.
+        // Called when the current packet has been sent or has failed.
         virtual void transmitted(uint64_t now, Fate fate) = 0;
     };
 
@@ -27,9 +27,9 @@ public:
     Mac(const Mac&) = delete;
     Mac& operator=(const Mac&) = delete;
 
-    // Sends a packet; the previous one must have ended. Calls Modem::transmitted at its end.
+    // Sends a packet. The previous packet must have ended. Calls Modem::transmitted at the end.
     void send(RfPacket packet, uint64_t now);
-    // Drops the packet. A frame that is already on the air still arrives.
+    // Abandons the packet. A frame that is already on the air still arrives.
     void abort();
 
 private:
@@ -50,11 +50,10 @@ private:
     Modem& modem_;
     State state_ = State::Idle;
     RfPacket packet_;
-    // outcome drawn for this packet by the model of the weather
+    // outcome that the model of the weather has drawn for this packet
     RfOutcome drawn_ = RfOutcome::Delivered;
-    // Number of remaining tries in this round, of remaining rounds (RR), and of remaining copies of
-    // a broadcast.
+    // Number of tries left in this round, of rounds left (RR), and of copies left of a broadcast.
     unsigned triesLeft_ = 0, roundsLeft_ = 0, copiesLeft_ = 0;
-    unsigned busySenses_ = 0; // number of carrier senses in this try that found the channel busy
+    unsigned busySenses_ = 0; // number of carrier senses of this try that found the channel busy
     Fate fate_ = Fate::Sent;
 };

@@ -20,7 +20,7 @@ namespace {
 volatile std::sig_atomic_t stopped = 0;
 
 struct Settings {
-    std::string link; // path of a symbolic link to the pty
+    std::string link; // path of a symbolic link to the pseudo-terminal
     std::vector<std::string> set;
 };
 
@@ -113,7 +113,7 @@ void say(uint64_t now, const RfPacket& packet, RfChannel::Outcome outcome) {
                packet.from, packet.to, packet.bytes.size(), outcomes[static_cast<int>(outcome)]);
 }
 
-// Runs for `duration` seconds, or until Ctrl-C if it is 0, and prints statistics.
+// Runs for `duration` seconds, or until Ctrl-C if `duration` is 0, and prints statistics.
 void run(RfChannel& air, XBee& a, XBee& b, double duration) {
     std::signal(SIGINT, [](int) { stopped = 1; });
     std::signal(SIGTERM, [](int) { stopped = 1; });

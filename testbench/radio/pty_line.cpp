@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// pty_line: the modem's serial side as a pseudo-terminal.
+// pty_line: connects the modem's serial side to a pseudo-terminal.
 
 #include "serial_line.h"
 #include <algorithm>
-// for struct termios2 and TCGETS2, which have the actual speed, including custom speeds
+// for struct termios2 and TCGETS2, which contain the actual speed, including custom speeds
 #include <asm/termbits.h>
 #include <cerrno>
 #include <cmath>
@@ -17,10 +17,10 @@
 
 namespace {
 
-constexpr uint64_t pollNs = 500'000; // interval between reads of the pty, ns
-// ns between reads if the program counts its bytes, so that no byte is late
+constexpr uint64_t pollNs = 500'000; // interval between two reads of the pty, ns
+// interval between two reads if the program counts its bytes, ns; short, so that no byte is late
 constexpr uint64_t countedPollNs = 100'000;
-// number of reads without result after which bytes that were counted, but not moved by the kernel,
+// maximum number of reads without a result; after that, counted bytes that the kernel has not moved
 // are considered read
 constexpr int patience = 20'000;
 
@@ -64,8 +64,8 @@ bool PtyLine::speedFits() const {
     return std::fabs(settings.c_ospeed - modem) <= 0.045 * modem;
 }
 
-// Reads all bytes that the program has written. The kernel needs a moment to move them between the
-// two ends of the pty.
+// Reads all bytes that the program has written. The kernel needs a moment to move bytes from one
+// end of the pty to the other, so this reads again until the counted bytes have arrived.
 void PtyLine::readAhead(uint64_t now) {
     uint64_t counter = count_.keeper ? count_.keeper() : 0;
     if (counter != counter_)
@@ -75,8 +75,8 @@ void PtyLine::readAhead(uint64_t now) {
     for (; counter && looks < patience; ++looks) {
         uint8_t bytes[512];
         ssize_t count = read(master_, bytes, sizeof bytes);
-        if (count > 0) {        // also the bytes of a program that has stopped counting
-            if (ahead_.empty()) // the wire was idle before these bytes
+        if (count > 0) {        // includes the bytes of a program that no longer counts
+            if (ahead_.empty()) // the wire was idle until now
                 rxFree_ = std::max(rxFree_, static_cast<double>(now));
             ahead_.insert(ahead_.end(), bytes, bytes + count);
             fetched_ += static_cast<uint64_t>(count);
@@ -86,7 +86,7 @@ void PtyLine::readAhead(uint64_t now) {
             sched_yield();
         }
     }
-    if (looks == patience) // the previous session has read the missing bytes
+    if (looks == patience) // the missing bytes were already read in the previous session
         fetched_ = std::max(fetched_, count_.fromProgram());
 }
 
@@ -101,8 +101,8 @@ size_t PtyLine::fetch(uint8_t* bytes, size_t room) {
 
 void PtyLine::readHost(uint64_t now) {
     uint8_t bytes[64];
-    // Reads only as many bytes as the wire could have carried by now, so that flow control applies
-    // to the others.
+    // Reads only as many bytes as the wire could have carried until now; flow control applies to
+    // the remaining bytes.
     if (!counter_)
         rxFree_ = std::max(rxFree_, static_cast<double>(now) - lookBack());
     size_t room = 0;

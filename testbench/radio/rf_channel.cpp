@@ -9,9 +9,9 @@
 namespace {
 
 constexpr uint64_t burstStepNs = 10'000'000; // duration of a full packet, ns
-// sensitivity of the receiver, dBm; an XBee-PRO has -100
+// sensitivity of the receiver, dBm; -100 for an XBee-PRO
 constexpr double sensitivity = -92;
-// relative variation of a modem's processing time; not verified on hardware
+// largest relative deviation of a modem's processing time; not verified on hardware
 constexpr double jitter = 0.05;
 
 } // namespace
@@ -47,8 +47,8 @@ void RfChannel::carryAway(const RfReceiver* modem, bool isAway) {
 }
 
 RfChannel::Outcome RfChannel::fate(uint64_t now) {
-    // One step for this packet, and one for each packet time without a packet, so that a burst of
-    // losses also ends while no modem sends.
+    // The model makes one step for this packet, and one step for each packet time without a packet,
+    // so that a burst of losses also ends if no modem sends.
     const uint64_t quiet = std::min<uint64_t>((now - fateAt_) / burstStepNs, 1000);
     fateAt_ = now;
     for (uint64_t steps = std::max<uint64_t>(quiet, 1); weather.burstBegin > 0 && steps; --steps)
@@ -108,8 +108,8 @@ bool RfChannel::isClear(uint8_t channel, uint64_t from, uint64_t to) const {
     });
 }
 
-// Starts a transmission. Two modems that start within the time from carrier sense to the first
-// symbol do not hear each other; a modem cannot receive while it sends.
+// Starts a transmission. Two modems do not hear each other if both start within the time from
+// carrier sense to the first symbol. A modem cannot receive while it sends.
 void RfChannel::put(RfSender& sender, const RfReceiver& from, RfPacket packet, Outcome drawn,
                     uint64_t now) {
     const uint64_t end = now + RfTimes::tryNs(packet);
@@ -159,7 +159,7 @@ bool RfChannel::isMissed(Frame& frame) {
            (weather.tryLoss > 0 && random_.chance(weather.tryLoss));
 }
 
-// Ends a transmission: the receiver has the packet.
+// Ends a transmission: delivers the packet to the receiver.
 void RfChannel::land(RfSender* sender, Frame& frame, uint64_t now) {
     const bool missed = isMissed(frame);
     if (frame.drawn == Outcome::Corrupted && !missed) {
@@ -169,7 +169,7 @@ void RfChannel::land(RfSender* sender, Frame& frame, uint64_t now) {
             static_cast<uint8_t>(1 + random_.below(255));
     }
     const Outcome outcome = missed ? Outcome::Lost : deliver(frame, now);
-    // A modem also acknowledges a packet that it then drops because its buffer is full.
+    // A modem acknowledges a packet even if it then drops the packet because its buffer is full.
     const bool isHeard = outcome != Outcome::Lost && outcome != Outcome::Nobody;
     const bool isAnswered = isHeard && !(weather.ackLoss > 0 && random_.chance(weather.ackLoss));
     if (sender)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// rf_channel: the air between modems. The air is half duplex and shared, so frames collide. The
-// simulated weather loses, damages, delays and duplicates frames at random; a seed makes it
+// rf_channel: models the air between modems. It is half duplex and shared, so frames can collide.
+// The simulated weather loses, damages, delays and duplicates frames at random; a seed makes this
 // repeatable.
 
 #pragma once
@@ -22,17 +22,17 @@
 #include <string>
 #include <vector>
 
-// A record of a link: CSV with the heading `time_s,loss,rssi_dbm,delay_ms`. A row is valid until
-// the time of the next row; the last row stays valid.
+// The recording of a link: a CSV file with the heading `time_s,loss,rssi_dbm,delay_ms`. Each row is
+// valid until the time of the next row; the last row stays valid.
 class RfTrace {
 public:
     struct Row {
         uint64_t ns;
-        double loss;      // share of packets that are lost although the MAC has retried
+        double loss;      // fraction of packets that are lost in spite of the MAC's retries
         double rssi;      // dBm
         uint64_t delayNs; // delay in addition to the time on the air, ns
     };
-    // Reads a file. Throws std::runtime_error with the file, the line and the error.
+    // Reads a file. Throws std::runtime_error with the name of the file, the line and the error.
     explicit RfTrace(const std::string& path) {
         std::ifstream file(path);
         std::string line;
@@ -75,33 +75,35 @@ private:
     std::vector<Row> rows_;
 };
 
-// Weather of the air; fields are probabilities unless stated otherwise.
+// Weather: the conditions on the air. Fields are probabilities unless stated otherwise.
 struct RfWeather {
-    // Probability that a packet is lost in one direction although the MAC has retried; takes no
-    // additional air time.
+    // Probability that a packet is lost in one direction in spite of the MAC's retries. Such a loss
+    // takes no additional air time.
     double loss = 0;
     double burstBegin = 0, burstEnd = 0.2,
-           // parameters of bursts of loss (Gilbert-Elliott model); drawn for each packet, or each
-           // 10 ms without packets
+           // Parameters of bursts of losses (Gilbert-Elliott model). The state of the model is
+           // drawn for each packet, or every 10 ms without packets.
         burstLoss = 0.9;
     double duplication = 0, corruption = 0;
     uint64_t delayNs = 0; // delay in addition to the time on the air, ns
-    // Probability that one try of the MAC, or its acknowledgement, is lost; the MAC then retries.
+    // Probabilities that one try of the MAC, or the acknowledgement of a try, is lost. The MAC then
+    // retries.
     double tryLoss = 0, ackLoss = 0;
-    // Distance in free space with Rayleigh fading per try, m; 0 disables it.
+    // Distance between the modems, m, in free space with Rayleigh fading for each try; 0 disables
+    // this model.
     double distance = 0;
-    // Share of each period during which an interferer is on: the channel is then busy, and a try
-    // that overlaps it is lost. A microwave oven: about half of 20 ms (50 Hz).
+    // Fraction of each period during which an interferer sends. The channel is then busy, and a try
+    // that overlaps with this time is lost. A microwave oven sends for about half of 20 ms (50 Hz).
     double interference = 0;
     uint64_t interferencePeriodNs = 20'000'000;
-    // Recorded link; it replaces `loss` and the delay above.
+    // Recorded link; its values replace `loss` and `delayNs`.
     std::shared_ptr<const RfTrace> trace;
-    // Perfect air, for unit tests: frames may be sent in both directions at once, without carrier
-    // sense, collisions or processing time in the modems. No real radio behaves like this.
+    // Perfect air, for unit tests: frames may be sent in both directions at the same time, without
+    // carrier sense, collisions, or processing time in the modems. No real radio behaves like this.
     bool perfect = false;
 
-    // Published kinds of weather: losses in bursts as on flights, tries lost as in field tests,
-    // distance in open terrain, an interferer. Sources: docs/simulation.md.
+    // Kinds of weather from publications: losses in bursts as on flights, lost tries as in field
+    // tests, a distance in open terrain, an interferer. Sources: docs/simulation.md.
     static const std::vector<std::pair<std::string, RfWeather>>& published() {
         static const auto all = [] {
             std::vector<std::pair<std::string, RfWeather>> list;
@@ -125,8 +127,8 @@ struct RfWeather {
         }();
         return all;
     }
-    // Draws one of the published kinds of weather, with independent losses below `mostLoss`
-    // percent, or no weather; sometimes with duplicated and damaged packets.
+    // Draws a weather at random: one of the published kinds, or independent losses below `mostLoss`
+    // percent, or no losses; sometimes also duplicated and damaged packets.
     static RfWeather drawn(Random& random, unsigned mostLoss) {
         RfWeather w;
         const size_t kind = random.below(static_cast<uint32_t>(3 * published().size()));
@@ -148,7 +150,7 @@ struct RfWeather {
     }
     // Returns the received strength, in dBm, of a modem that sends with 0 dBm at `distance`.
     double meanRssi() const {
-        // loss of the first metre, dB: free space at 2.4 GHz
+        // loss on the first metre, dB, in free space at 2.4 GHz
         constexpr double lossOfFirstMetre = 40;
         return -lossOfFirstMetre - 20 * std::log10(std::max(distance, 1.0));
     }
@@ -159,18 +161,19 @@ class RfReceiver {
 public:
     virtual ~RfReceiver() = default;
     virtual bool
-    // Returns whether the packet is addressed to this receiver. Absent: the modem is off or boots.
+    // Returns whether the packet is addressed to this receiver.
     hears(const RfPacket& packet) const = 0;
-    // NoRoom: acknowledged but lost, because the buffer to the host is full.
+    // Result of receive(). Absent: the modem is off or is booting. NoRoom: the packet is
+    // acknowledged but lost, because the buffer to the host is full.
     enum class Reception { Absent, NoRoom, Taken };
     virtual Reception receive(const RfPacket& packet, uint64_t now) = 0;
 };
 
-// A sender that the air calls while a packet is sent.
+// A sender; the air calls it while a packet is being sent.
 class RfSender {
 public:
     virtual ~RfSender() = default;
-    virtual void wake(uint64_t now) = 0; // called at the requested time
+    virtual void wake(uint64_t now) = 0; // called at the time that was requested by wakeAt()
     virtual void ended(uint64_t now, const RfPacket& arrived, RfOutcome outcome,
                        bool isAnswered) = 0; // Called at the end of a frame with its result.
 };
@@ -182,7 +185,7 @@ public:
     struct Counters {
         uint64_t packets = 0, bytes = 0, lost = 0, duplicated = 0, corrupted = 0;
         uint64_t retries = 0, collisions = 0, noClearChannel = 0;
-        uint64_t airNs = 0; // time that the tries took on the air, ns
+        uint64_t airNs = 0; // air time that all tries of a packet took, ns
     };
     using Listener = std::function<void(uint64_t now, const RfPacket&, Outcome)>;
 
@@ -202,24 +205,24 @@ public:
     void advance(uint64_t now);
     uint64_t nextEvent() const { return events_.empty() ? ~uint64_t(0) : events_.begin()->first; }
 
-    // Returns the time on the air for `bytes` of payload between modems with 16-bit addresses. It
-    // includes the maker's header, carrier sense, the MAC's acknowledgement and the gap after it:
-    // docs/simulation.md.
+    // Returns the air time of a packet with `bytes` of payload between modems with 16-bit
+    // addresses, ns. It includes the maker's header, carrier sense, the MAC's acknowledgement and
+    // the gap after it (docs/simulation.md).
     static uint64_t airTimeNs(size_t bytes);
 
     // Functions that the MACs of the modems call:
 
-    // Draws the weather for a new packet: its strength and its outcome.
+    // Draws the strength and the outcome of a new packet.
     Outcome announce(const RfReceiver& from, RfPacket& packet, uint64_t now);
     // Returns whether carrier sense finds the channel clear from `from` to `to`.
     bool isClear(uint8_t channel, uint64_t from, uint64_t to) const;
-    // Makes one try of a packet, with carrier sense at `now`. The sender's ended() is called at the
-    // end of the frame.
+    // Makes one try of a packet, with carrier sense at `now`. Calls the sender's ended() at the end
+    // of the frame.
     void put(RfSender& sender, const RfReceiver& from, RfPacket packet, Outcome drawn,
              uint64_t now);
-    // Calls the sender's wake() at this time.
+    // Calls the sender's wake() at the time `at`.
     void wakeAt(uint64_t at, RfSender* sender) { events_.emplace(at, Event{sender, nullptr}); }
-    // Stops calling this sender.
+    // Forgets a sender, which is then no longer called.
     void forget(const RfSender* sender);
     void report(uint64_t now, const RfPacket& packet, Outcome outcome);
     void countRetry() { ++counters_.retries; }
@@ -228,17 +231,19 @@ public:
 private:
     struct Frame { // A try of a packet on the air.
         RfPacket packet;
-        Outcome drawn; // outcome that the weather has drawn
+        Outcome drawn; // outcome drawn for the packet
         const RfReceiver* from;
-        uint64_t begin, frameEnd, end; // times of the frame and of its acknowledgement
+        // times of the frame's begin and end, and of the end of its acknowledgement
+        uint64_t begin, frameEnd, end;
         bool collided = false;
-        // Returns when the air is free again. A collided frame has no acknowledgement.
+        // Returns the time at which the air is free again. A frame that collided is not
+        // acknowledged.
         uint64_t over() const { return collided ? frameEnd : end; }
     };
     struct Event {
-        // sender of the frame; null for a duplicate, or if the sender was reset or removed
+        // sender of the frame; null for a duplicate, or if the sender has been reset or removed
         RfSender* sender;
-        // frame that ends at this time; null if the sender's wake() is due at this time
+        // frame that ends at this time; null if this event calls the sender's wake()
         std::shared_ptr<Frame> frame;
     };
     void land(RfSender* sender, Frame& frame, uint64_t now);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// serial_line: serial lines between a modem and its host: UART pins of a design, a pty for a
-// program, or C++ in the same process.
+// serial_line: serial lines between a modem and its host. The host is a design (UART pins), a
+// program (pseudo-terminal), or C++ code in the same process.
 
 #pragma once
 
@@ -14,12 +14,12 @@
 
 constexpr uint64_t never = ~uint64_t(0);
 
-// The modem as the client of a line: it accepts and returns bytes.
+// Interface of the modem at a line: the line gives it bytes and takes bytes from it.
 class SerialClient {
 public:
     virtual void fromHost(uint8_t byte, uint64_t now) = 0;
     virtual void framingError(uint64_t now) = 0;
-    // Sets `byte` to the modem's next byte for the host. Returns false if there is none.
+    // Sets `byte` to the next byte from the modem to the host. Returns false if there is no byte.
     virtual bool nextToHost(uint8_t& byte) = 0;
 
 protected:
@@ -30,14 +30,14 @@ class SerialLine {
 public:
     virtual ~SerialLine() = default;
     void attach(SerialClient* client) { client_ = client; }
-    // Sets the bit time in ns. It takes effect when no byte is on the line.
+    // Sets the bit time, ns. The change takes effect when no byte is being transferred.
     virtual void setBitTime(double ns) { bitNs_ = ns; }
     virtual void setCts(bool accepts) { cts_ = accepts; }
-    // Sets whether the host's RTS can stop the modem (D6). A line without RTS ignores this.
+    // Sets whether the host can stop the modem by RTS (D6). A line without RTS ignores this.
     void setHeedRts(bool heeds) { heedsRts_ = heeds; }
     virtual void advance(uint64_t now) = 0;
     virtual uint64_t nextEvent() const = 0;
-    // Reports that the modem has bytes to send, which nextToHost returns.
+    // Called when the modem has bytes to send; nextToHost returns these bytes.
     virtual void wake(uint64_t now) = 0;
 
 protected:
@@ -46,8 +46,8 @@ protected:
     bool cts_ = true, heedsRts_ = false;
 };
 
-// Serial pins of a design. setTxd reports each change of the design's TXD; RXD and CTS are outputs
-// of this class.
+// A line to the UART pins of a design. setTxd must be called for each change of the design's TXD;
+// this class drives RXD and CTS.
 class UartPins : public SerialLine {
 public:
     void setTxd(bool level, uint64_t now) {
@@ -80,7 +80,7 @@ public:
             bitNs_ = wantedBitNs_;
     }
     // Returns the time of the next event: the next stop bit of a byte from the design, or the next
-    // RXD edge. Nothing else can happen between two edges of TXD.
+    // edge of RXD. Between these times only an edge of TXD needs attention, which setTxd reports.
     uint64_t nextEvent() const override {
         double at = 1e300;
         if (rxBit_)
@@ -95,11 +95,11 @@ public:
     }
 
 private:
-    // index of the stop bit; bit 1 is the start bit, bits 2 to 9 are data
+    // number of the stop bit; bit 1 is the start bit, bits 2 to 9 are the data bits
     static constexpr unsigned stopBit = 10;
 
     bool mayTalk() const { return rts_ || !heedsRts_; }
-    // Samples TXD up to `now`; TXD has not changed since the last call.
+    // Samples TXD up to `now`. The level of TXD has not changed since the last call.
     void receive(uint64_t now) {
         while (rxBit_ && rxAt_ <= static_cast<double>(now))
             sample(now);
@@ -127,7 +127,7 @@ private:
         txBit_ = 1;
         txAt_ = at + bitNs_;
     }
-    // Returns the level after the start bit or a data bit.
+    // Returns the level of RXD or TXD after the start bit or a data bit.
     bool levelAfter(unsigned bit) const { return bit > 8 || (txByte_ >> (bit - 1) & 1); }
     double nextEdge() const {
         unsigned bit = txBit_;
@@ -156,7 +156,7 @@ private:
     uint8_t rxByte_ = 0, txByte_ = 0;
 };
 
-// A line without a wire. The host is C++ code in the same process, which calls send and reads
+// A line without a wire, to C++ code in the same process. This code calls send() and reads
 // `received`.
 class HostLine : public SerialLine {
 public:
@@ -165,7 +165,7 @@ public:
             client_->fromHost(byte, now);
     }
     std::vector<uint8_t> received;
-    bool paused = false; // true: nothing is sent to the host
+    bool paused = false; // true: nothing is sent to the C++ code
     bool cts() const { return cts_; }
 
     void advance(uint64_t) override {
@@ -177,9 +177,10 @@ public:
     void wake(uint64_t) override { advance(0); }
 };
 
-// A pseudo-terminal, for programs that talk to a serial port. Bytes move at the modem's baud rate;
-// while CTS is off, no bytes are read, which is the flow control. If the speed set by the program
-// differs from the modem's by more than 4.5 %, bytes are damaged, as on a wire.
+// A line to a program: a pseudo-terminal that the program opens like a serial port. Bytes move at
+// the modem's baud rate. While CTS is off, no bytes are read, which is the flow control. If the
+// program sets a speed that differs from the modem's by more than 4.5 %, bytes are damaged, as on a
+// wire.
 class PtyLine : public SerialLine {
 public:
     PtyLine(); // throws std::system_error
@@ -188,17 +189,17 @@ public:
     PtyLine& operator=(const PtyLine&) = delete;
     const std::string& path() const { return path_; }
 
-    // A program may report how many bytes it has written and read; then no byte is late only
-    // because the machine is busy (testbench/radio/ground_step.h).
+    // Byte counts that a program may report: the bytes it has written and read. With them, no byte
+    // is late only because the machine is busy (testbench/radio/ground_step.h).
     struct Count {
-        // returns the number of the program's session, or 0 without a session; counts start at 0 in
-        // each session
+        // returns the number of the program's session, or 0 if no program counts; counts start at 0
+        // in each session
         std::function<uint64_t()> keeper;
         std::function<void(uint64_t keeper, size_t bytes)> toProgram;
         std::function<uint64_t()> fromProgram;
     };
     void keepCount(Count count) { count_ = std::move(count); }
-    // Returns how many of the counted bytes the line has carried.
+    // Returns the number of counted bytes that the line has carried.
     uint64_t carried() const { return fetched_ - std::min<uint64_t>(fetched_, ahead_.size()); }
 
     void advance(uint64_t now) override;
@@ -207,32 +208,33 @@ public:
 
 private:
     bool speedFits() const;
-    // Returns the time (ns) in which an idle wire may have carried bytes that were not noticed: one
-    // poll period and one byte.
+    // Returns a time, ns: bytes that are read now from an idle wire may have been sent this long
+    // ago (one poll period and one byte).
     double lookBack() const { return 1e6 + 10 * bitNs_; }
     void readAhead(uint64_t now);
     size_t fetch(uint8_t* bytes, size_t room);
     void readHost(uint64_t now);
     void writeHost(uint64_t now);
 
-    // keeper_: the slave side of the pty, kept open so that closing it elsewhere causes no hang-up
+    // keeper_: slave side of the pty; it stays open so that the pty does not hang up when a program
+    // closes it
     int master_ = -1, keeper_ = -1;
     std::string path_;
     uint64_t nextPoll_ = 0;
-    double rxFree_ = 0, txFree_ = 0; // times at which the wire is free, in each direction
+    double rxFree_ = 0, txFree_ = 0; // times at which the wire is free again, in each direction
     std::vector<uint8_t> unwritten_;
     Count count_;
     bool txIdle_ = true;
-    uint64_t counter_ = 0;      // session of the program to which the counts belong
-    uint64_t fetched_ = 0;      // number of counted bytes fetched
-    std::deque<uint8_t> ahead_; // bytes read that the wire has not carried yet
+    uint64_t counter_ = 0;      // session of the program that the counts belong to
+    uint64_t fetched_ = 0;      // number of counted bytes that were read from the pty
+    std::deque<uint8_t> ahead_; // bytes that were read but that the wire has not carried yet
 };
 
-// Connects two serial lines by a wire in each direction, without modems.
+// Connects two serial lines directly, without modems, by a wire in each direction.
 class Cable {
 public:
-    // `bitNs`: bit time of both hosts. `carried` is called for each byte with the line that sent
-    // it.
+    // `bitNs` is the bit time of both hosts, ns. `carried` is called for each byte, with the line
+    // that sent the byte.
     Cable(SerialLine& first, SerialLine& second, double bitNs,
           std::function<void(const SerialLine& from)> carried)
         : ends_{{first, carried}, {second, carried}} {
@@ -264,7 +266,7 @@ private:
             carried(line);
             other->line.wake(now);
         }
-        // drops the byte; the check of the link detects the loss
+        // a byte with a wrong stop bit is dropped; the link detects the loss by its checksum
         void framingError(uint64_t) override {}
         bool nextToHost(uint8_t& byte) override {
             if (bytes.empty())
@@ -276,7 +278,7 @@ private:
         SerialLine& line;
         std::function<void(const SerialLine&)> carried;
         End* other = nullptr;
-        std::deque<uint8_t> bytes; // bytes on their way to this end
+        std::deque<uint8_t> bytes; // bytes on their way to this line
     };
     End ends_[2];
 };

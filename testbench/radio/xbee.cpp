@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee: models the modem's firmware as its manual describes it: data, buffers, packets.
+// xbee: models the data path of the modem's firmware as the manual describes it: serial bytes,
+// buffers, packets.
 
 #include "xbee.h"
 #include "xbee_crypt.h"
@@ -13,11 +14,12 @@ constexpr size_t outputBytes = 202;
 // payload of a packet in the legacy mode selected by C8, bytes
 constexpr size_t legacyBytes = 100, legacyBytesEncrypted = 95;
 constexpr uint64_t msNs = 1'000'000, resetNs = 200;
-// Processing time of the modem for each packet: before the carrier sense when it sends, or after
-// the packet when it receives. With this time and the time on the air, full packets leave at 80
-// kb/s, and at 47 kb/s if encrypted, as the manufacturer measured (docs/simulation.md).
+// Time that the modem's processor needs for each packet: before carrier sense for a packet that it
+// sends, and after the end of a packet that it receives. Together with the air time, this results
+// in the rates that the manufacturer measured for full packets: 80 kb/s, and 47 kb/s with
+// encryption (docs/simulation.md).
 constexpr uint64_t processingNs = 4'688'000, processingEncryptedNs = 10'666'000;
-// time in which the three characters of the command sequence must arrive
+// time within which the three characters of the command sequence must arrive, ns
 constexpr uint64_t plusWindowNs = 1000 * msNs;
 
 } // namespace
@@ -41,7 +43,7 @@ XBee::XBee(SerialLine& line, RfChannel& channel, Options options)
     channel_.join(this);
     boot(0);
     line_.setBitTime(1e9 / baud());
-    bootDone_ = 0; // the boot ended long ago
+    bootDone_ = 0; // a new modem has already booted
 }
 
 XBee::~XBee() {
@@ -160,13 +162,14 @@ void XBee::dataByte(uint8_t byte, uint64_t now) {
         return;
     }
     for (; pluses_; --pluses_)
-        store(static_cast<uint8_t>(active_.at("CC"))); // the held characters were data
+        // the characters that were held back are data, not the command sequence
+        store(static_cast<uint8_t>(active_.at("CC")));
     store(byte);
     sendPackets(now);
 }
 
-// At the end of the guard time, decides whether the held characters were the command sequence or
-// data.
+// At the end of the guard time, decides whether the characters that were held back are the command
+// sequence or data.
 void XBee::silence(uint64_t now) {
     if (pluses_ && now - lastByte_ >= guardNs()) {
         if (pluses_ == 3)
@@ -252,7 +255,7 @@ void XBee::launch(RfPacket packet, uint64_t now) {
     mac_.send(std::move(packet), now);
 }
 
-// Occupies the modem's processor, which handles one packet at a time in either direction.
+// Occupies the modem's processor, which handles one packet at a time, sent or received.
 void XBee::work(uint64_t now, bool encrypted) {
     uint64_t needed = encrypted ? processingEncryptedNs : processingNs;
     busyUntil_ = std::max(busyUntil_, now) + channel_.jittered(needed);
@@ -295,7 +298,8 @@ XBee::Reception XBee::receive(const RfPacket& onAir, uint64_t now) {
     active_["DB"] = pending_["DB"] = static_cast<uint32_t>(std::clamp(-packet.rssi, 23.0, 92.0));
     bool wantsHeader = active_.at("MM") == 0 || active_.at("MM") == 3;
     if (wantsHeader && !packet.header)
-        return Reception::Taken; // acknowledged, but this value of MM ignores the packet
+        // the packet is acknowledged, but with this value of MM the modem ignores it
+        return Reception::Taken;
     if (packet.encrypted != (active_.at("EE") != 0)) {
         ++counters_.packetsUnreadable;
         return Reception::Taken;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee: model of an XBee modem with 802.15.4 firmware (xbee_profile.h): command mode, packetizing,
+// xbee: models an XBee modem with 802.15.4 firmware (xbee_profile.h): command mode, packetizing,
 // buffers, flow control, API frames, encryption, reset. Facts and limits: docs/modem.md.
 //
-// Time is in nanoseconds. advance(now) handles due events; nextEvent() returns the next time. The
-// serial side is a SerialLine (pins or a pty), the radio side an RfChannel.
+// Times are in nanoseconds. advance(now) handles the events that are due; nextEvent() returns the
+// time of the next event. The serial side is a SerialLine (pins or a pty), the radio side is an
+// RfChannel.
 
 #pragma once
 
@@ -25,21 +26,23 @@ public:
         std::string profile = "s1"; // modem: s1, s2c or xb3
         // duration of the boot, 50 to 500 ms depending on the modem's firmware
         uint64_t bootNs = 50'000'000;
-        // parameters that differ from the factory settings, with their values
+        // parameters that differ from the factory settings: name and value
         std::map<std::string, uint32_t> set;
-        std::string key; // KY, 32 hexadecimal digits
+        std::string key; // encryption key (KY), 32 hexadecimal digits
     };
     struct Counters {
         uint64_t bytesFromHost = 0, bytesToHost = 0;
         uint64_t overflow = 0; // bytes lost because the serial input buffer was full
-        // number of bytes with a wrong stop bit, or at a baud rate too far from the modem's
+        // number of bytes that had a wrong stop bit or a baud rate that differed too much from the
+        // modem's
         uint64_t framingErrors = 0;
         uint64_t commands = 0, refused = 0;
         uint64_t packetsSent = 0, packetsReceived = 0;
-        // number of packets that were acknowledged and then lost, because the buffer to the host
-        // was full
+        // number of packets that were acknowledged and then lost because the buffer to the host was
+        // full
         uint64_t packetsDropped = 0;
-        // number of packets that were encrypted while EE was 0 at this modem, or the reverse
+        // number of packets that were encrypted although EE is 0 at this modem, or unencrypted
+        // although EE is 1
         uint64_t packetsUnreadable = 0;
         // number of duplicates; number of API frames with a wrong checksum or type
         uint64_t duplicatesDropped = 0, badFrames = 0;
@@ -53,11 +56,11 @@ public:
     void advance(uint64_t now);
     uint64_t nextEvent() const;
 
-    // Sets the reset pin. `low` for at least 200 ns resets the modem.
+    // Sets the level of the reset pin. A low level of at least 200 ns resets the modem.
     void resetPin(bool low, uint64_t now);
     // Switches the power. Settings that were not stored by WR are lost.
     void power(bool on, uint64_t now);
-    // Makes the modem reply ERROR to this command, like a firmware without the command; "" disables
+    // Makes the modem reply ERROR to this command, as if its firmware lacked the command; "" ends
     // this.
     void refuseCommand(const std::string& letters) { refuse_ = letters; }
 
@@ -65,7 +68,8 @@ public:
     uint32_t parameter(const std::string& letters) const { return active_.at(letters); }
     const XBeeProfile& profile() const { return profile_; }
     double baud() const;
-    const std::string& key() const { return key_; } // 32 hex digits; "" if no key was set
+    // Returns the key, 32 hexadecimal digits; "" if no key was set.
+    const std::string& key() const { return key_; }
     bool inCommandMode() const { return mode_ == Mode::Command; }
     bool cts() const { return cts_; }
     const Counters& counters() const { return counters_; }
@@ -133,22 +137,25 @@ private:
     Mode mode_ = Mode::Off;
     uint64_t bootDone_ = 0, lastByte_ = 0, commandUntil_ = 0, resetLowSince_ = 0;
     bool resetLow_ = false;
-    unsigned pluses_ = 0; // number of characters so far of a sequence that may enter command mode
+    // number of characters received so far of the sequence that enters command mode
+    unsigned pluses_ = 0;
     uint64_t firstPlus_ = 0;
     std::string commandLine_;
-    std::deque<uint8_t> input_;  // bytes from the host that are not sent yet
-    size_t flushCount_ = 0;      // number of bytes in input_ that must be sent now
-    std::deque<uint8_t> output_; // bytes to the host
-    double nextBaud_ = 0; // baud rate that the line takes after the bytes counted by atOldRate_
-    // number of bytes that are still sent at the old rate; the last of them belongs to the OK of
-    // the command
+    std::deque<uint8_t> input_; // bytes from the host that have not been sent on the air yet
+    // number of bytes in input_ that must be sent without waiting for more
+    size_t flushCount_ = 0;
+    std::deque<uint8_t> output_; // bytes that wait to be sent to the host
+    double nextBaud_ = 0;        // baud rate of the line after the bytes that atOldRate_ counts
+    // number of bytes that must still be sent to the host at the old rate; they end with the OK of
+    // the command that changed the rate
     size_t atOldRate_ = 0;
     bool inFlight_ = false, cts_ = true;
     Mac mac_;
     uint64_t busyUntil_ = 0;
     uint16_t sequence_ = 0;
-    uint32_t frameCounter_ = 0;                 // number of encrypted packets since power-on
-    std::map<uint16_t, uint16_t> lastSequence_; // last sequence number of each sender
+    uint32_t frameCounter_ = 0; // number of encrypted packets since power-on
+    // sequence number of the last packet from each sender
+    std::map<uint16_t, uint16_t> lastSequence_;
     std::string refuse_;
     std::string key_, writtenKey_;
     // API
@@ -159,6 +166,6 @@ private:
     Bytes frame_;
     bool inFrame_ = false, escaped_ = false;
     std::deque<ApiPacket> apiQueue_;
-    uint8_t apiId_ = 0; // frame id of the API packet in flight
+    uint8_t apiId_ = 0; // frame id of the API frame whose packet is being sent
     Counters counters_;
 };

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee: handles API frames, which consist of 0x7E, length (2 bytes), type, contents and checksum.
-// With AP 2 some bytes are escaped.
+// xbee_api: the part of XBee that handles API frames. A frame consists of 0x7E, length (2 bytes),
+// type, contents and checksum. With AP 2 some bytes are escaped.
 
 #include "xbee.h"
 
 namespace {
 
 constexpr uint8_t delimiter = 0x7E, escape = 0x7D, escapeXor = 0x20;
-constexpr size_t longestHead = 23; // largest number of bytes in a frame besides the data
+// largest number of bytes that a frame contains in addition to its data
+constexpr size_t longestHead = 23;
 
 bool mustEscape(uint8_t byte) {
     return byte == delimiter || byte == escape || byte == 0x11 || byte == 0x13;
@@ -60,7 +61,7 @@ void XBee::apiFrame(const Bytes& frame, uint64_t now) {
         apiSend(frame, now);
         break;
     case 0x08: // AT command
-    case 0x09: // AT command that takes effect with AC
+    case 0x09: // AT command whose value takes effect with the command AC
         apiCommand(frame, now);
         break;
     default:
@@ -83,7 +84,7 @@ void XBee::apiSend(const Bytes& frame, uint64_t now) {
         packet.to64 = packet.to64 << 8 | frame[2 + i];
     packet.to = static_cast<uint16_t>(packet.to64);
     if (packet.wide && packet.to64 == 0xFFFF)
-        packet.wide = false; // 64-bit form of the broadcast address
+        packet.wide = false; // 64-bit broadcast address
     const uint8_t options = frame[head - 1];
     const bool noAck = options & 0x01;
     if (options & 0x04)
@@ -105,8 +106,8 @@ void XBee::sendApiPacket(uint64_t now) {
     launch(std::move(next.packet), now);
 }
 
-// Handles a command and replies with a frame 0x88, with status 0 OK, 1 ERROR, 2 invalid command, or
-// 3 invalid value.
+// Executes an AT command and replies with a frame 0x88. Its status is 0 OK, 1 ERROR, 2 invalid
+// command, or 3 invalid value.
 void XBee::apiCommand(const Bytes& frame, uint64_t now) {
     if (frame.size() < 4) {
         ++counters_.badFrames;
@@ -142,7 +143,7 @@ void XBee::apiCommand(const Bytes& frame, uint64_t now) {
         answer[4] = 2;
     }
     counters_.refused += answer[4] != 0;
-    if (frame[1] != 0) // frame id 0 asks for no reply
+    if (frame[1] != 0) // with frame id 0 the host requests no reply
         apiReply(answer);
     line_.wake(now);
 }
@@ -160,8 +161,8 @@ void XBee::apiReply(const Bytes& frame) {
     }
 }
 
-// Reports a received packet: a frame 0x81 from a 16-bit address, or 0x80 from a 64-bit address,
-// with source, RSSI, options and data.
+// Reports a received packet to the host: a frame 0x81 for a 16-bit source address or 0x80 for a
+// 64-bit source address, with source, RSSI, options and data.
 void XBee::apiReceived(const RfPacket& packet) {
     Bytes frame = {static_cast<uint8_t>(packet.from64 ? 0x80 : 0x81)};
     for (int byte = packet.from64 ? 7 : 1; byte >= 0; --byte)

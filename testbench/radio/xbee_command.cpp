@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee: handles the command mode.
+// xbee_command: the part of XBee that handles command mode.
 
 #include "xbee.h"
 #include <algorithm>
@@ -20,7 +20,7 @@ bool isHex(const std::string& text, size_t most) {
 
 } // namespace
 
-// Enters command mode. The OK waits until all received data has been sent to the host.
+// Enters command mode. The OK follows after all received data has been sent to the host.
 void XBee::enterCommandMode(uint64_t now) {
     mode_ = Mode::Command;
     flushCount_ = input_.size();
@@ -57,7 +57,7 @@ bool XBee::setParameter(const std::string& letters, uint32_t value) {
         return false;
     if (letters == "BD" && value > profile_.highestCode)
         value =
-            // the nearest possible rate
+            // the modem stores the nearest rate that it can generate
             static_cast<uint32_t>(std::lround(xbeeBaud(profile_, value)));
     pending_[letters] = value;
     if (letters == "EC" || letters == "EA")
@@ -65,7 +65,7 @@ bool XBee::setParameter(const std::string& letters, uint32_t value) {
     return true;
 }
 
-// Sets the key, which can be written but not read: a query is refused.
+// Sets the key. A key can be set but not read, so a query returns an error.
 bool XBee::setKey(const std::string& value) {
     if (!isHex(value, keyDigits))
         return false;
@@ -73,7 +73,7 @@ bool XBee::setKey(const std::string& value) {
     return true;
 }
 
-// Executes a command without a value; returns "" if the name is not such a command.
+// Executes a command that has no value. Returns "" if there is no such command.
 std::string XBee::order(const std::string& letters, uint64_t now) {
     if (letters == "CN") {
         leaveCommandMode();
@@ -86,10 +86,10 @@ std::string XBee::order(const std::string& letters, uint64_t now) {
         pending_ = factory();
         for (auto& [own, value] : options_.set)
             if (!table_.at(own).writable)
-                pending_[own] = value; // the serial number is not reset
+                pending_[own] = value; // RE does not change the serial number
         key_.clear();
     } else if (letters == "FR") {
-        boot(now); // the OK is still sent at the old rate
+        boot(now); // the OK is sent at the old rate, before the boot
     } else {
         return "";
     }
@@ -121,7 +121,7 @@ std::string XBee::executeOne(const std::string& command, uint64_t now) {
         value.erase(0, 2);
     for (char& c : letters)
         c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    // refuses a command in general, or with one value
+    // refuse_ contains a command, or a command and one value
     if (letters == refuse_ || letters + value == refuse_)
         return "ERROR\r";
     std::string answer = value.empty() ? order(letters, now) : "";
@@ -145,7 +145,8 @@ std::string XBee::executeOne(const std::string& command, uint64_t now) {
     return answer;
 }
 
-// Applies the settings; BD takes effect after the OK has been sent (XBee::advance).
+// Applies the changed settings. A new baud rate (BD) takes effect after the OK has been sent
+// (XBee::advance).
 void XBee::apply() {
     active_ = pending_;
     line_.setHeedRts(active_.at("D6") == 1);

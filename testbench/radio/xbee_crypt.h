@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee_crypt: AES-128 in counter mode by IEEE 802.15.4-2003 (security suite AES-CTR, 7.6.2). Five
-// bytes precede the payload: frame counter and key sequence counter; there is no integrity check.
-// So a packet has room for 95 instead of 100 bytes, and a wrong key yields garbage, not silence.
+// xbee_crypt: encrypts payloads with AES-128 in counter mode as IEEE 802.15.4-2003 defines it
+// (security suite AES-CTR, 7.6.2). Frame counter and key sequence counter, five bytes, precede the
+// payload, so a packet has room for 95 bytes instead of 100. There is no integrity check: with a
+// wrong key the receiver gets random bytes, not an error.
 
 #pragma once
 
@@ -17,7 +18,7 @@
 struct XBeeCrypt {
     using Bytes = std::vector<uint8_t>;
     static constexpr size_t headBytes = 5;
-    // Encrypts a payload. `key`: 32 hexadecimal digits, or "" for all zeros. `source`: serial
+    // Encrypts a payload. `key`: 32 hexadecimal digits, or "" for a key of zeros. `source`: serial
     // number of the sender.
     static Bytes encrypt(const std::string& key, uint64_t source, uint32_t counter,
                          const Bytes& plain) {
@@ -45,7 +46,7 @@ private:
         return key;
     }
     // Returns the first counter block: flags, address of the sender, frame counter, key sequence
-    // counter, and number of the block (starting with 1), each with the high byte first.
+    // counter, and number of the block, which starts with 1. Each number has its high byte first.
     static Block firstBlock(uint64_t source, const uint8_t* head) {
         Block block{0x82};
         for (size_t i = 0; i < 8; ++i)
@@ -55,7 +56,7 @@ private:
         block[15] = 1;
         return block;
     }
-    // Encrypts or decrypts; in counter mode both are the same operation.
+    // Encrypts or decrypts; both are the same operation in counter mode.
     static Bytes stream(const std::string& key, const Block& block, const uint8_t* bytes,
                         size_t count) {
         std::unique_ptr<EVP_CIPHER_CTX, decltype(&EVP_CIPHER_CTX_free)> context(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee_parameters: the parameters of each modem: factory values and limits, after Digi's manuals.
+// xbee_parameters: defines the parameters of each modem, with factory values and limits from Digi's
+// manuals.
 
 #pragma once
 
@@ -15,32 +16,37 @@ struct XBeeParameter {
     bool writable;
 };
 
-// Parameters of the series 1; xbeeParameters adds the differences of the others.
+// Parameters of the XBee series 1; xbeeParameters changes them for the other modems.
 inline const std::map<std::string, XBeeParameter>& xbeeParametersOfS1() {
     static const std::map<std::string, XBeeParameter> table = {
-        {"MY", {0, 0, 0xFFFF, true}}, // 16-bit address of this modem; FFFE and FFFF disable it
-        // high word of the destination; with 0 and DL <= FFFF, DL is a 16-bit address
+        // 16-bit address of this modem; with FFFE or FFFF it has no 16-bit address
+        {"MY", {0, 0, 0xFFFF, true}},
+        // destination, high word; if it is 0 and DL is at most FFFF, DL is a 16-bit address
         {"DH", {0, 0, 0xFFFFFFFF, true}},
-        {"DL", {0, 0, 0xFFFFFFFF, true}},           // destination, low word; FFFF: broadcast
+        {"DL", {0, 0, 0xFFFFFFFF, true}},           // destination, low word; FFFF means broadcast
         {"SH", {0x0013A200, 0, 0xFFFFFFFF, false}}, // serial number
         {"SL", {0x40000000, 0, 0xFFFFFFFF, false}},
-        {"ID", {0x3332, 0, 0xFFFF, true}}, // network; FFFF: all networks
+        {"ID", {0x3332, 0, 0xFFFF, true}}, // network; FFFF means all networks
         {"CH", {0x0C, 0x0B, 0x1A, true}},  // channel
-        {"BD", {3, 0, 0x3D090, true}},     // baud rate: a code, or above 7 the rate itself
-        // silence after which a packet is sent, in character times
+        // baud rate: codes up to 7; a higher value is the rate itself
+        {"BD", {3, 0, 0x3D090, true}},
+        // time without a byte from the host after which a packet is sent, in character times
         {"RO", {3, 0, 0xFF, true}},
-        {"RN", {0, 0, 3, true}}, // smallest exponent of the random wait before sending
+        {"RN", {0, 0, 3, true}}, // smallest exponent of the random wait before a transmission
         // 0: header and acknowledgements, 1: neither, 2: acknowledgements only, 3: header only
         {"MM", {0, 0, 3, true}},
-        {"RR", {0, 0, 6, true}},        // additional rounds of the MAC's four tries
-        {"EE", {0, 0, 1, true}},        // encryption
-        {"GT", {1000, 2, 3300, true}},  // ms of silence around the command sequence
-        {"CT", {100, 2, 0xFFFF, true}}, // time without a command that ends command mode, 100 ms
-        {"CC", {'+', 0, 0xFF, true}},   // character of the command sequence
+        // number of additional rounds, each with the MAC's four tries
+        {"RR", {0, 0, 6, true}},
+        {"EE", {0, 0, 1, true}}, // encryption
+        // guard time of silence before and after the command sequence, ms
+        {"GT", {1000, 2, 3300, true}},
+        // time without a command after which the modem leaves command mode, in 100 ms
+        {"CT", {100, 2, 0xFFFF, true}},
+        {"CC", {'+', 0, 0xFF, true}},   // character that forms the command sequence, three times
         {"D6", {0, 0, 5, true}},        // 1: the modem obeys RTS
         {"D7", {1, 0, 5, true}},        // 1: CTS is driven
-        {"AP", {0, 0, 2, true}},        // 1 API frames, 2 with escapes
-        {"DB", {0x28, 0, 0xFF, false}}, // -dBm of the last packet, 0x17 to 0x5C
+        {"AP", {0, 0, 2, true}},        // 1: API frames; 2: API frames with escaped bytes
+        {"DB", {0x28, 0, 0xFF, false}}, // signal strength of the last packet, -dBm, 0x17 to 0x5C
         // number of packets that were not sent because the channel was never clear
         {"EC", {0, 0, 0xFFFF, true}},
         // number of packets that were not acknowledged in any of their tries
@@ -54,14 +60,14 @@ inline std::map<std::string, XBeeParameter> xbeeParameters(const XBeeProfile& pr
     table["RN"].highest = profile.highestRn;
     if (!profile.hasLegacyMode)
         return table;
-    table["C8"] = {0, 0, 3, true}; // bit 0: packets as short as those of the series 1
+    table["C8"] = {0, 0, 3, true}; // bit 0: packets are limited to the size of the series 1
     // number of bytes in the buffer at which CTS is deasserted
     table["FT"] = {profile.threshold, 17, profile.inputBytes - 12, true};
     return table;
 }
 
-// Returns the rate of a BD value in baud. Rates other than the codes are the nearest that the
-// modem's clock gives: on the series 1, 16 MHz / 16 divided by an integer.
+// Returns the baud rate that a value of BD selects. A rate without a code is rounded to the nearest
+// rate that the modem's clock can generate: on the series 1, 16 MHz / 16 divided by an integer.
 inline double xbeeBaud(const XBeeProfile& profile, uint32_t bd) {
     static const double rates[] = {1200,  2400,   4800,   9600,   19200, 38400,
                                    57600, 115200, 230400, 460800, 921600};

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// xbee_profile: properties of the modems that the model can imitate: the XBee 802.15.4 of series 1,
-// the S2C, and the XBee 3 with 802.15.4 firmware. docs/modem.md gives the sources of the figures.
+// xbee_profile: lists the properties of the modems that the model can imitate: the XBee 802.15.4 of
+// series 1, the S2C, and the XBee 3 with 802.15.4 firmware. docs/modem.md contains the sources of
+// the figures.
 
 #pragma once
 
@@ -11,23 +12,24 @@
 #include <string>
 
 struct XBeeProfile {
-    const char* name;     // name, as in --modem
+    const char* name;     // name of the modem, as in the option --modem
     uint32_t highestCode; // highest value of BD that is a code for a rate
     uint32_t lowestRate;  // lowest value of BD that is itself a rate, baud
     uint32_t highestRate; // highest one
-    // true if rates are 1 MHz divided by an integer, so that 115,200 becomes 111,111
+    // true if rates are 1 MHz divided by an integer, so that 115,200 baud becomes 111,111
     bool dividesMegahertz;
     uint32_t highestRn;  // highest value of RN
     uint32_t inputBytes; // size of the serial receive buffer, bytes
     uint32_t threshold;  // factory setting of the buffer level at which CTS is deasserted, bytes
-    // difference between this level and the level at which CTS is asserted again, bytes
+    // number of bytes by which the buffer must fall below that level before CTS is asserted again
     uint32_t release;
-    // true if C8 can limit packets to the size of series 1, and FT is a command
+    // true if C8 can limit packets to the size of series 1 and the command FT exists
     bool hasLegacyMode;
     // largest payload of a packet with Digi's header and 16-bit addresses, bytes
     size_t packetBytes;
-    size_t encryptedBytes; // the same with encryption, bytes
-    // status of a transmit request with a longer payload; 0 means that no status is sent
+    size_t encryptedBytes; // largest payload of an encrypted packet, bytes
+    // status that the modem returns for a transmit request with a longer payload; 0 means that it
+    // returns no status
     uint8_t tooLongStatus;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// app_paper: selects the paper's Figure 5 as the firmware.
+// app_paper: selects the program of the paper's Figure 5 as the firmware of a simulator.
 
 #include "uav_machine.h"
 #include <stdexcept>

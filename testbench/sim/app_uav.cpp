@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// app_uav: selects the UAV's application as the firmware.
+// app_uav: selects the UAV's application as the firmware of a simulator.
 
 #include "uav_machine.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// camera: crops and reduces a picture to the size of the camera's frame.
+// camera: reduces and crops a picture to the size of the camera's frame.
 
 #include "camera.h"
 #include "picture.h"

@@ -14,10 +14,11 @@ struct Frame {
     std::vector<uint8_t> pixels;
 };
 
-// Returns the middle of the picture. If the picture is at least twice the requested size, it is
-// first reduced by an integer factor. The width becomes a multiple of 8. Throws std::runtime_error
-// with the reason.
+// Returns the middle of the picture. If the picture is at least twice as large as requested, it is
+// first reduced by an integer factor. The width is rounded to a multiple of 8. Throws
+// std::runtime_error with the reason if this fails.
 Frame loadFrame(const std::string& path, int width, int height);
-// Returns the picture as seen from another position: rotates its columns to the left.
+// Returns the picture as a camera would see it from another position: the columns are rotated to
+// the left.
 Frame movedBy(Frame frame, int columns);
 void savePng(const std::string& path, const Frame& frame);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// child: starts the ground program as a child process, which ends with the simulator even if the
-// simulator is killed.
+// child: starts the ground program as a child process that ends together with the simulator, even
+// if the simulator is killed.
 
 #pragma once
 
@@ -27,8 +27,8 @@ public:
     Child(const Child&) = delete;
     Child& operator=(const Child&) = delete;
 
-    // Starts a command. Throws std::system_error if no process can be created. The status is 127 if
-    // the program cannot be started.
+    // Starts a command. Throws std::system_error if no process can be created. If the program
+    // cannot be started, its exit status is 127.
     void start(const std::vector<std::string>& command,
                const std::map<std::string, std::string>& places) {
         std::vector<std::string> words;
@@ -46,13 +46,13 @@ public:
         if (pid_ > 0)
             return;
         prctl(PR_SET_PDEATHSIG, SIGTERM);
-        if (getppid() != parent) // the parent has ended before the signal was requested
+        if (getppid() != parent) // the parent ended before this process asked for the signal
             _exit(143);
         execvp(argv[0], argv.data());
         std::fprintf(stderr, "icesoc-sim: cannot start '%s': %s\n", argv[0], std::strerror(errno));
         _exit(127);
     }
-    // Returns true while the process runs. Logs to stderr if a signal has ended it.
+    // Returns true while the process runs. Prints a line on stderr if a signal has ended it.
     bool runs() {
         int status;
         if (pid_ > 0 && waitpid(pid_, &status, WNOHANG) == pid_) {
@@ -64,7 +64,7 @@ public:
         }
         return pid_ > 0;
     }
-    // Asks the process to end, and waits for at most one second.
+    // Asks the process to end, and waits at most one second for this.
     void stop() {
         asked_ = true;
         for (int i = 0; runs(); ++i) {
@@ -75,7 +75,7 @@ public:
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
     }
-    int status() const { return status_; } // exit status as a shell reports it
+    int status() const { return status_; } // Returns the exit status as a shell would report it.
 
 private:
     // Returns `word` with each name in `places` replaced by its value, in one pass.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// core_pins: applies the lines of a script to pins, in the order of their times, or connects the
-// model of the sensor.
+// core_pins: applies the lines of a script to pins at their times, or connects the model of the
+// sensor to the pins.
 
 #include "core_pins.h"
 #include "map_regs.h"
@@ -30,8 +30,8 @@ uint32_t maskOf(const CorePin& pin) {
     return static_cast<uint32_t>((uint64_t(1) << pin.width) - 1) << pin.lsb;
 }
 
-// Log of the outputs. Each line ends the file: if a debugger goes back in time, the process that
-// continues overwrites the later lines.
+// Log of the output pins. After each line the file is cut, because a debugger may go back in time;
+// the process that then continues overwrites the later lines.
 class PinLog {
 public:
     explicit PinLog(const std::string& file)
@@ -136,7 +136,7 @@ void connectSensor(SocModel& soc, const Frame& frame, std::function<bool()> send
                              uint32_t(pins.data) << MAP_PIN_CAMERA_DATA_I;
         soc.setCorePins(all, true);
         note(all);
-        // After the last line VSYNC goes high; the core needs some more clocks to see this.
+        // VSYNC goes high after the last line; the core needs a few more clocks to notice this.
         still = sensor.isIdle() && pins.vsync ? still + 1 : 0;
         return soc.cycles() + (still > 32 ? SocModel::clkHz / 1000 : 1);
     });

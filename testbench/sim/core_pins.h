@@ -8,16 +8,16 @@
 #include "soc_model.h"
 #include <string>
 
-// Plays `script` on the chip's inputs. Each line is one change: "12.5 servo.fault_i 1" means
-// milliseconds, instance.port, value; # begins a comment. Each change of an output is written to
-// the file `log` in the same format. Throws std::runtime_error, with file and line, if the script
-// is wrong.
+// Plays `script` on the chip's inputs. Each line is one change: in "12.5 servo.fault_i 1", 12.5 is
+// the time in ms, servo.fault_i is instance and port, and 1 is the value; # begins a comment.
+// Writes each change of an output to the file `log` in the same format. Throws std::runtime_error,
+// with file and line, if the script is wrong.
 void connectPins(SocModel& soc, const std::string& script, const std::string& log);
 
-// Sends the frame to the camera core, one pixel every second clock, each time that `sends` returns
-// true. `sends` is called every two milliseconds. The clock of the sensor stops between frames, as
-// in many sensors. `note` gets the pins of each clock. Throws std::runtime_error if the chip has no
-// camera core.
+// Sends the frame to the camera core, one pixel every second clock, whenever `sends` returns true;
+// `sends` is called every two milliseconds. Between frames the sensor's clock stops, as in many
+// sensors. `note` receives the levels of the pins in each clock. Throws std::runtime_error if the
+// chip has no camera core.
 void connectSensor(
     SocModel& soc, const Frame& frame, std::function<bool()> sends,
     std::function<void(uint32_t pins)> note = [](uint32_t) {});

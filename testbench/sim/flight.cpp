@@ -29,7 +29,8 @@ volatile sig_atomic_t Flight::stopSignal = 0;
 
 namespace {
 
-constexpr uint64_t clockStepNs = 100'000; // resolution of the time that other programs read
+// interval at which the time that other programs read advances, ns
+constexpr uint64_t clockStepNs = 100'000;
 constexpr uint64_t digestNs = 100'000'000;
 
 Frame pictureFor(const Flight::Options& o) {
@@ -43,7 +44,8 @@ Frame pictureFor(const Flight::Options& o) {
     return loadFrame(o.image, width, height);
 }
 
-// Creates the folder for the files of the flight, stores the picture in it, and returns its path.
+// Creates the folder for the files of the flight and stores the picture there. Returns the path of
+// the picture.
 std::string prepared(const Flight::Options& o, const Frame& frame) {
     std::filesystem::create_directories(o.out);
     savePng(o.out + "/before.png", frame);
@@ -93,7 +95,8 @@ std::vector<uint8_t> keyBytes(const std::string& digits) {
     return key;
 }
 
-// Returns the bytes of a file that initialise a flash; empty if no file is given.
+// Returns the bytes of a file with the initial contents of a flash; returns nothing if no file is
+// given.
 std::vector<uint8_t> flashOf(const std::string& file, size_t size, const std::string& owner) {
     const std::string bytes = file.empty() ? "" : readFile(file);
     if (!file.empty() && bytes.size() != size)
@@ -235,7 +238,7 @@ void Flight::bringTrouble() {
     trouble_->begin(air_, modem);
 }
 
-// Counts the starts of a vehicle's vision core: one for each call.
+// Counts how often a vehicle's vision core was started. Each call of the core is one start.
 void Flight::countStarts(SocModel& soc, uint32_t address, uint32_t value, bool isWrite) {
 #ifdef MAP_SLOT_VISION
     constexpr uint32_t control = MAP_CONTROL_WINDOW + 4 * (16 * MAP_SLOT_VISION + VISION_CONTROL);
@@ -282,8 +285,8 @@ double Flight::millionsPerSecond() const {
            static_cast<double>(pace_.workedNs() - ground_.step.waitedNs());
 }
 
-// Warns once if the clock of the chip can hardly ever be stopped: names the core that prevents it,
-// and the flight's speed.
+// Prints one warning if the clock of the chip can hardly ever be stopped, with the name of the core
+// that prevents this and the speed of the flight.
 void Flight::adviseOnClock() {
     constexpr uint64_t enough = 2'000'000, slow = 2'000'000;
     if (o_.quiet || o_.every_clock || advised_ || soc_.evaluated() < enough ||
@@ -299,15 +302,17 @@ void Flight::adviseOnClock() {
     std::fflush(stdout);
 }
 
-// Records the flight's progress, or compares it with the recording.
+// Records a value of the flight's progress, or compares it with the recording in a replay.
 void Flight::mark(const char* what, const nlohmann::json& value) {
     if (ground_.recorded)
         ground_.recorded->note(soc_.now(), what, value);
-    else if (o_.gdb < 0) // a debugger may change the compared values, so they are not compared then
+    // with a debugger the values are not compared, because the debugger may change them
+    else if (o_.gdb < 0)
         o_.replayed->compare(soc_.now(), what, value);
 }
 
-// Keeps the recording, and makes the model evaluate each clock in the span of the waveform.
+// Updates the recording. Makes the model evaluate every clock during the time for which a waveform
+// is recorded.
 void Flight::watch() {
     if (soc_.now() >= nextDigest_) {
         nextDigest_ += digestNs;
@@ -366,7 +371,7 @@ void Flight::runOnCortexM3() {
         machine.run();
     }
     if (!o_.flash.empty()) {
-        machine.stm32().flash().reset(); // a loss of power
+        machine.stm32().flash().reset(); // restart after a loss of power
         std::ofstream(o_.flash, std::ios::binary)
             .write(reinterpret_cast<const char*>(machine.cpu().flash()), Stm32Flash::bytes);
     }

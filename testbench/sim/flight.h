@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// flight: one run of the simulated UAV with its modem, the air, the ground's modem on a pty and, as
-// a child process, the program that uses the pty.
+// flight: runs one flight of the simulated UAV: the vehicle with its modem, the air, the ground's
+// modem on a pty, and a child process with the program that uses the pty.
 
 #pragma once
 
@@ -17,11 +17,11 @@
 #include <memory>
 #include <thread>
 
-// Pace keeps simulated time from running ahead of the wall clock, and counts the simulator's
-// working time.
+// Slows simulated time down so that it does not run ahead of the wall clock, and measures the time
+// for which the simulator works.
 class Pace {
 public:
-    // `rate`: simulated seconds per second of the wall clock; 0 means no limit.
+    // `rate` is the number of simulated seconds per second of the wall clock; 0 means no limit.
     explicit Pace(double rate) : rate_(rate), anchor_(Clock::now()), begin_(anchor_) {}
     void keep(uint64_t simulatedNs) {
         if (rate_ == 0)
@@ -33,7 +33,9 @@ public:
             std::this_thread::sleep_until(due);
             slept_ += Clock::now() - now;
         } else if (now - due > std::chrono::milliseconds(50)) {
-            anchor_ = now; // too slow for a while: continue from here without catching up
+            // the simulation has been too slow for a while; it does not catch up, but keeps the
+            // rate from here
+            anchor_ = now;
             anchorNs_ = simulatedNs;
         }
     }
@@ -50,8 +52,9 @@ private:
     Clock::duration slept_{};
 };
 
-// Returns a file that belongs to this simulator. `installed`: its path below the folder into which
-// the simulator is installed; `built`: its path from the folder where the simulator is built.
+// Returns the path of a file that belongs to the simulator. `installed` is the path below the
+// folder into which the simulator was installed, `built` the path relative to the folder in which
+// it was built.
 std::string fileOfSimulator(const std::string& installed, const std::string& built);
 
 std::string defaultFirmware();
@@ -59,7 +62,7 @@ std::string defaultFirmware();
 class Flight {
 public:
     struct Options {
-        // Fields of the flight's description, by their names there
+        // Fields of the flight description, with the names used there
         // (tools/icesoc/cli/flight.schema.json).
         std::string image, size = "320x240", out = ".", speed = "real", cpu = "host",
                            firmware = defaultFirmware(), key, observer, trouble, modem_key, pins,
@@ -75,20 +78,21 @@ public:
                                                     flash, fpga_flash, modem, guard, vehicles, gdb,
                                                     loss, interference, distance, duration, from,
                                                     to, seed, camera, wire, every_clock, quiet)
-        nlohmann::json flight; // description, stored in the recording
+        nlohmann::json flight; // flight description, which is stored in the recording
         std::vector<std::string> command;
-        std::shared_ptr<ReplayedLine> replayed; // flight to replay, if any
+        // recording to replay; null if this flight is not a replay
+        std::shared_ptr<ReplayedLine> replayed;
     };
 
-    // Creates the folder and the ground files in it: the counters, before.png, and the recording
-    // unless one is replayed. Throws std::runtime_error, before changing anything, if the options
-    // or the picture are wrong.
+    // Creates the folder and the files of the ground station in it: the counters, before.png, and
+    // the recording (unless a recording is replayed). Throws std::runtime_error, before changing
+    // anything, if the options or the picture are wrong.
     explicit Flight(const Options& options);
     Flight(const Flight&) = delete;
     Flight& operator=(const Flight&) = delete;
 
     // Flies until the program has ended, the time is over, or `stopSignal` is set. Returns the
-    // program's exit status, or the status that a shell would return for the signal. A replay
+    // program's exit status, or the status that a shell would report for the signal. A replay
     // throws std::runtime_error if it differs from the recording.
     int run();
 
@@ -120,13 +124,16 @@ private:
     RfChannel air_;
     Station ground_;
     SocModel soc_;
-    std::vector<std::unique_ptr<Follower>> followers_; // additional vehicles, with addresses from 2
-    // second ground station; only in flights with several vehicles
+    // additional vehicles; their addresses begin with 2
+    std::vector<std::unique_ptr<Follower>> followers_;
+    // second ground station; null unless there are several vehicles
     std::unique_ptr<Station> second_;
-    std::unique_ptr<Trouble> trouble_; // faults, with several vehicles
+    // fault that is injected; null unless there are several vehicles
+    std::unique_ptr<Trouble> trouble_;
     // number of times that the vision core of each vehicle was started
     std::map<const SocModel*, unsigned> starts_;
-    std::unique_ptr<Cable> cable_; // cable that replaces the modems and the air
+    // cable that replaces the modems and the air; null in a flight with radio
+    std::unique_ptr<Cable> cable_;
     Child child_;
     Events events_;
     Pace pace_;

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""icesoc-fly: flies the mission in the simulator: a simulated vehicle, called by a ground station
-with unmodified ZeroC Ice over simulated modems.
+"""icesoc-fly: flies the mission in the simulator: a simulated vehicle that a ground station with
+unmodified ZeroC Ice calls over simulated modems.
 
 This is the installed form of `./icesoc run`, without the page of the flight. It writes pictures, a
 report, and flight.json, which describes the flight, to the output folder.
@@ -16,15 +16,14 @@ from pathlib import Path
 PREFIX = Path(__file__).resolve().parents[1]
 SCHEMA = PREFIX / "share/icesoc/flight.schema.json"
 REFERENCE = PREFIX / "libexec/icesoc/vision-reference"
-# Fields of a flight that this program does not offer, because other programs of the source tree use
-# them.
+# Fields of the flight description that this program does not offer, because only programs of the
+# source tree use them.
 OTHER = {"app", "port", "live", "update", "clk_hz", "probe"}
 CONFIG = Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config") / "icesoc"
 
 
 def fields():
-    """Returns the version of the flight description, and those of its fields that have a
-    default."""
+    """Returns the version of the flight description, and its fields that have a default."""
     known = json.loads(SCHEMA.read_text())["properties"]
     return known["version"]["const"], {name: field for name, field in known.items()
                                        if "default" in field}
@@ -75,7 +74,7 @@ def main():
     if flight["camera"] and "camera" not in flight["cores"]:
         flight["cores"].append("camera")
     if not flight["firmware"]:
-        del flight["firmware"]  # the simulator then uses the installed firmware
+        del flight["firmware"]  # without this field, the simulator uses the installed firmware
     try:
         out = Path(flight["out"])
         out.mkdir(parents=True, exist_ok=True)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// ground: a ground station in this process: a modem, a link and hand-written IceP messages, with
-// scripts for flights. A script is called repeatedly until it returns true.
+// ground: models a ground station in the same process: a modem, a link, and IceP messages written
+// by hand. Scripts control it; a script is a function that is called repeatedly until it returns
+// true.
 
 #pragma once
 
@@ -23,7 +24,7 @@ extern "C" {
 
 using Script = std::function<bool()>;
 
-// A script of steps, one after another.
+// Returns a script that runs the given scripts one after another.
 inline Script inOrder(std::vector<Script> steps) {
     return [steps = std::move(steps), at = size_t(0)]() mutable {
         while (at < steps.size() && steps[at]())
@@ -36,10 +37,11 @@ class Ground : private LinkProgram {
 public:
     struct Call {
         std::string object, operation;
-        int mode = 0;                         // 0 normal, 2 idempotent
+        int mode = 0;                         // operation mode: 0 normal, 2 idempotent
         std::vector<uint8_t> parameters = {}; // encoded
     };
-    // The guard time of the tests' modems; the default, a second, would be idle time.
+    // guard time of the modems in tests, ms; short, because the default of one second would be idle
+    // time
     static constexpr uint16_t guardMs = 20;
     static XBee::Options uavModem(const std::string& profile = "s1") {
         XBee::Options options;
@@ -48,7 +50,7 @@ public:
         options.set = {{"GT", guardMs}};
         return options;
     }
-    // `address` is the address of its modem, `profile` the kind of modem.
+    // `address` is the address of the station's modem, `profile` is the kind of modem.
     Ground(RfChannel& air, uint64_t seed, uint32_t address = 0, const std::string& profile = "s1")
         : random_(seed), link_(new Link) {
         XBee::Options options;
@@ -58,7 +60,7 @@ public:
         modem_ = std::make_unique<XBee>(line_, air, options);
         start();
     }
-    // Begins as a fresh program on the ground, without earlier state.
+    // Restarts the ground program: the link begins without earlier state.
     void start() {
         const Link_Config config = {linkPort(), linkProgram(), 1440, LINK_USE(*buffers_)};
         Link_init(link_.get(), &config);
@@ -88,8 +90,8 @@ public:
         return std::min(modem_->nextEvent(), nextPoll_);
     }
     bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
-    // Returns a call of an object; `parameters` are already encoded. Mode 0 is normal, 2
-    // idempotent; id 0 is oneway.
+    // Returns a request for an operation of an object; `parameters` are already encoded. `mode` is
+    // 0 (normal) or 2 (idempotent); id 0 makes it a one-way request.
     static std::vector<uint8_t> request(int id, const std::string& object,
                                         const std::string& operation, int mode = 0,
                                         const std::vector<uint8_t>& parameters = {}) {
@@ -105,8 +107,8 @@ public:
             backlog_ += size;
     }
     void ping(int id, const std::string& object) { call(id, object, "ice_ping", 2); }
-    // Returns a script that makes calls, each after the reply to the previous one; request ids
-    // start at 1.
+    // Returns a script that makes calls; each call begins after the reply to the previous one.
+    // Request ids start at 1.
     Script calling(std::vector<Call> calls) {
         return [this, calls = std::move(calls), sent = size_t(0)]() mutable {
             if (validated && replies.size() == sent && sent < calls.size()) {
@@ -121,16 +123,18 @@ public:
     }
     void noise(const std::vector<uint8_t>& bytes) { line_.send(bytes, now_); }
 
-    std::map<int, int> replies;                   // reply status by request id
-    std::map<int, std::vector<uint8_t>> messages; // whole reply by request id
-    int delivered = 0, unknown = 0;               // number of messages by outcome
-    uint64_t deliveredBytes = 0;                  // bytes of acknowledged messages
-    size_t backlog() const { return backlog_; }   // bytes of undelivered messages
-    // key of the link, used from the next start(); if it is empty, the link is not encrypted
+    std::map<int, int> replies;                   // status of each reply; the key is the request id
+    std::map<int, std::vector<uint8_t>> messages; // bytes of each reply; the key is the request id
+    // number of messages that were delivered, and of messages whose delivery is unknown
+    int delivered = 0, unknown = 0;
+    uint64_t deliveredBytes = 0; // number of bytes in acknowledged messages
+    // Returns the number of bytes in undelivered messages.
+    size_t backlog() const { return backlog_; }
+    // key of the link; takes effect at the next start(). If it is empty, the link is not encrypted.
     std::vector<uint8_t> key;
     const Link_Statistics& statistics() const { return *Link_statistics(link_.get()); }
     bool validated = false, running = true;
-    unsigned hurry = 1; // factor by which the clock of the link is sped up (UavMachine::hurry)
+    unsigned hurry = 1; // factor by which the clock of the link is faster (UavMachine::hurry)
 
 private:
     U32 us() const { return static_cast<U32>(clock_ / 1000); }
@@ -163,18 +167,19 @@ private:
     std::unique_ptr<Link_Buffers> buffers_{new Link_Buffers};
     uint64_t now_ = 0, clock_ = 0, nextPoll_ = 0;
     size_t backlog_ = 0;
-    bool isOpen_ = false; // true if the channel for its calls is open
+    bool isOpen_ = false; // true if the channel for the station's calls is open
 };
 
-// A vehicle's chip, its ground station, and the air between them.
+// A vehicle's chip, a ground station, and the air between them.
 struct GroundAndChip {
     explicit GroundAndChip(uint64_t seed = testSeed(), const std::string& modem = "s1")
         : air(seed), ground(air, seed + 5, 0, modem), soc(air, Ground::uavModem(modem)) {
-        uav_guardMs = Ground::guardMs; // the variable of the host build
+        uav_guardMs = Ground::guardMs; // variable of the firmware that is built for the host
         soc.onTime([this](uint64_t now) { return ground.advance(now); });
     }
     bool within(double seconds) const { return static_cast<double>(soc.now()) < seconds * 1e9; }
-    // Gives the vehicle a picture, pixel by pixel, or only its size.
+    // Gives the vehicle a picture, whose pixels the function computes, or only the size of a
+    // picture.
     void provide(uint32_t width, uint32_t height, const std::function<uint8_t(uint32_t)>& pixel) {
         const uint32_t size[2] = {width, height};
         std::memcpy(soc.memory().data() + UAV_FRAME_HEADER, size, sizeof size);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// m3_machine: connects the processor to the wires of the board, and derives the time of the
-// processor from its FSMC pins.
+// m3_machine: connects the processor to the wires of the board, and computes the processor's time
+// from the cycles of its FSMC pins.
 
 #include "m3_machine.h"
 #include "tell_on_abort.h"
@@ -10,7 +10,7 @@
 
 namespace {
 
-constexpr uint64_t pinHclkHz = SocModel::clkHz * 6 / 5; // the frequency at which FsmcMaster runs
+constexpr uint64_t pinHclkHz = SocModel::clkHz * 6 / 5; // HCLK frequency of FsmcMaster, Hz
 
 Stm32F2::Config configOf(uint32_t hclkHz, uint64_t seed, uint32_t oscillatorHz) {
     if (hclkHz == 0)
@@ -22,14 +22,14 @@ Stm32F2::Config configOf(uint32_t hclkHz, uint64_t seed, uint32_t oscillatorHz) 
     return {static_cast<unsigned>(hclkHz / pinHclkHz), hclkHz, seed, oscillatorHz};
 }
 
-// Returns the name of the current function, and of the functions to which return addresses on the
-// stack belong.
+// Returns the name of the current function, and the names of the functions whose return addresses
+// are on the stack.
 std::string stackOf(Stm32F2& stm32) {
     const CortexM3& cpu = stm32.cpu();
     std::string text = "The program is in " + stm32.image()->functionAt(cpu.reg(CortexM3::Pc));
     for (uint32_t at = cpu.reg(CortexM3::Sp), end = at + 256; at < end; at += 4) {
         const uint32_t word = cpu.word(at);
-        if ((word & 1) && word >> 20 == 0x080) // a code address in flash
+        if ((word & 1) && word >> 20 == 0x080) // the word is an address of code in flash
             text += ", " + stm32.image()->functionAt(word);
     }
     return text + ".";
@@ -159,7 +159,8 @@ GdbStub::Target M3Machine::target() {
 void M3Machine::debug(GdbStub& stub, bool canGoBack) {
     powerOn();
     stub_ = &stub;
-    // Between two debuggers the program runs freely.
+    // After one debugger has disconnected, the program runs without stopping until the next one
+    // connects.
     auto mayWait = [&] { return poll_() && (!stub.hasServed() || stub.wantsStop()); };
     do {
         checkpoints_ = canGoBack ? std::make_unique<Checkpoints>() : nullptr;
@@ -174,8 +175,8 @@ void M3Machine::debug(GdbStub& stub, bool canGoBack) {
     stub_ = nullptr;
 }
 
-// Runs as the debugger commands. Keeps copies of the process: at first one every 50 ms, later one
-// every sixteenth of the elapsed time.
+// Runs as the debugger commands. Meanwhile makes frozen copies of the process, at first every 50 ms
+// of simulated time, later at intervals of one sixteenth of the elapsed time.
 CortexM3::Stop M3Machine::resume(bool singleStep) {
     constexpr uint64_t copyNs = 50'000'000;
     isAtBegin_ = isAsked_ = false;
@@ -192,9 +193,9 @@ CortexM3::Stop M3Machine::resume(bool singleStep) {
     }
 }
 
-// Goes back to the last place before this one at which the processor can stop, or to the last
-// breakpoint: one copy finds this place, and a second copy goes there. Returns if there is no such
-// place.
+// Goes back to the last earlier place at which the processor can stop, or to the last breakpoint.
+// One woken copy searches this place; a second copy then runs to it. Returns only if there is no
+// such place.
 void M3Machine::goBack(bool singleStep) {
     const uint64_t here = cpu().instructions();
     if (checkpoints_->isFirst(here))
@@ -204,7 +205,8 @@ void M3Machine::goBack(bool singleStep) {
         here - 1, {singleStep ? Order::LastStop : Order::LastBreakpoint, here, cpu().breakpoints});
 }
 
-// Runs to this count of instructions. Returns false if a breakpoint was reached first.
+// Runs until this number of instructions has been executed. Returns false if a breakpoint was
+// reached first.
 bool M3Machine::runTo(uint64_t instructions) {
     CortexM3::Stop why = CortexM3::Stop::Asked;
     cpu().setLimit(instructions);
@@ -214,7 +216,8 @@ bool M3Machine::runTo(uint64_t instructions) {
     return why != CortexM3::Stop::Breakpoint;
 }
 
-// Carries out an order in a woken copy. `from` is the place of the copy.
+// Carries out the order that this woken copy received; `from` is the place at which the copy was
+// made.
 CortexM3::Stop M3Machine::follow(const Checkpoints::Order& order, uint64_t from) {
     using Order = Checkpoints::Order;
     cpu().breakpoints.clear();

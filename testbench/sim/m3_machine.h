@@ -17,28 +17,31 @@ class M3Machine {
 public:
     struct Config {
         std::string firmware; // ELF file
-        // Processor clock (HCLK), Hz in simulated time. With 120 MHz, the processor's work takes as
-        // long as on the board, although the FPGA's clock is slower. With 0, HCLK is 6/5 of the
-        // FPGA's clock, as it always is for FSMC accesses: cycle counts are then as on the board,
-        // and the processor is slowed down by the same factor as the FPGA.
+        // Processor clock (HCLK) in simulated time, Hz. With 120 MHz, the processor's work takes as
+        // long as on the board, even if the FPGA's clock is slower. With 0, HCLK is 6/5 of the
+        // FPGA's clock, as it always is for FSMC accesses. Cycle counts are then the same as on the
+        // board, and the processor is slower by the same factor as the FPGA.
         uint32_t hclkHz = 120'000'000;
-        // Guard time in ms, written to uav_guardMs (uav.h) after each start, as a debugger would
-        // do; 0: not written. A program without this variable is not changed.
+        // Guard time, ms; 0 leaves the program's value. The machine writes it to the variable
+        // uav_guardMs (uav.h) after each start, as a debugger would do. A program without this
+        // variable is not changed.
         uint16_t guardMs = 0;
-        // Contents of the flash; empty: the flash contains the program. With contents, the program
-        // only provides its symbols.
+        // Contents of the flash. If it is empty, the flash contains the program. Otherwise the
+        // program file is only used for its symbols.
         std::vector<uint8_t> flash = {};
-        // Key of the link that the factory has set, 16 bytes; empty: the vehicle is open.
+        // Key of the link, 16 bytes, stored in the vehicle as by its factory. If it is empty, the
+        // vehicle accepts a link without a key.
         std::vector<uint8_t> key = {};
         uint64_t seed = 1; // seed of the random number generator
-        // Contents of the FPGA's configuration flash; empty: the FPGA needs no configuration.
+        // Contents of the FPGA's configuration flash. If it is empty, the FPGA needs no
+        // configuration.
         std::vector<uint8_t> fpgaFlash = {};
         bool isWired = false; // true if the jumper of PB1 is set (board.h)
-        // address of the vehicle, as the factory sets it
+        // address of the vehicle, stored in the vehicle as by its factory
         uint32_t address = 1;
         // peers that the vehicle serves in addition to its ground station
         std::vector<SimulatedBoard::OtherPeer> peers = {};
-        // value written to uav_transparent, in the same way as guardMs
+        // value written to the variable uav_transparent after each start
         bool isTransparent = false;
     };
     // `poll` is called about once per simulated millisecond; when it returns false, run() ends.
@@ -46,23 +49,24 @@ public:
     ~M3Machine();
 
     // Runs until `poll` returns false. The first call begins with power-on. Exceptions of the
-    // models are passed to the caller.
+    // models propagate to the caller.
     void run();
-    // Runs up to this time, or one instruction longer. The first call begins with power-on.
+    // Runs up to this time, or up to one instruction longer. The first call begins with power-on.
     void advance(uint64_t ns);
-    // Prints which instructions the processor executed, and the reason if it stopped.
+    // Prints what the processor has executed and, if it has stopped, the reason.
     void report();
 
-    // Runs as a debugger commands. Execution begins when a debugger connects. After it detaches,
-    // the program runs freely until the next debugger connects. `canGoBack` is true if nothing
-    // outside of this process takes part: the debugger may then run the program backwards, even
-    // from its end.
+    // Runs as a debugger commands. Execution begins when a debugger connects. After the debugger
+    // has detached, the program runs freely until another one connects. `canGoBack` is true if
+    // nothing outside of this process takes part in the flight; a debugger can then run the program
+    // backwards, even from its end.
     void debug(GdbStub& stub, bool canGoBack);
 
     Stm32F2& stm32() { return stm32_; }
     const std::vector<uint8_t>& fpgaFlash() const { return fpgaFlash_.memory; }
     CortexM3& cpu() { return stm32_.cpu(); }
-    // state of the program; empty if a flash was given, because that program is unknown
+    // trace of the program's tasks; empty if `flash` was given, because the program in it is
+    // unknown
     std::optional<ProgramTrace> program;
 
 private:
@@ -80,9 +84,10 @@ private:
     Stm32F2 stm32_;
     uint64_t nextPoll_ = 0, until_ = never;
     bool powered_ = false, over_ = false;
-    std::unique_ptr<Checkpoints> checkpoints_; // exists while a debugger may go back
+    // frozen copies of the process; null unless a debugger may go back
+    std::unique_ptr<Checkpoints> checkpoints_;
     uint64_t nextCopyNs_ = 0;
-    bool isAsked_ = false; // the debugger has requested a stop
+    bool isAsked_ = false; // true if the debugger has requested a stop
     bool isAtBegin_ = false;
 };
 

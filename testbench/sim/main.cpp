@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // icesoc-sim: reads the options of a simulated flight from a file (flight.json) and from arguments
-// "--name value". A schema defines the fields, their types and limits; ./icesoc generates it from
-// its options.
+// "--name value". A schema defines the names, types and limits of the options; ./icesoc generates
+// the schema from its own options.
 
 #include "files.h"
 #include "flight.h"
@@ -25,7 +25,7 @@ json fields() {
     return json::parse(schemaText).at("properties");
 }
 
-// Converts an argument to a value of the field's type; returns the text if that is not possible.
+// Converts an argument to the type of the field; returns it as text if that is not possible.
 json valueOf(const json& field, const std::string& text) {
     const std::string type = field.value("type", "string");
     if (type == "integer" || type == "number") {
@@ -52,7 +52,7 @@ bool fits(const json& field, const json& value) {
                                                   std::regex(field["pattern"].get<std::string>())));
 }
 
-// Returns the values that a field accepts, in words.
+// Returns a description of the values that a field accepts, for messages.
 std::string expectedOf(const std::string& name, const json& field) {
     static const std::map<std::string, std::string> patterns = {
         {"modem_key", "32 hexadecimal digits"},
@@ -74,8 +74,9 @@ std::string optionOf(const std::string& name) {
     return "--" + std::regex_replace(name, std::regex("_"), "-");
 }
 
-// Reads arguments up to "--". "--flight FILE" takes all fields from a file; later arguments
-// override single fields. Throws std::invalid_argument, which names the argument, if one is wrong.
+// Reads the arguments up to "--". "--flight FILE" takes all fields from a file; later arguments
+// override single fields. Throws std::invalid_argument, with the name of the argument, if an
+// argument is wrong.
 json flightOf(const std::vector<std::string>& words) {
     const json known = fields();
     json flight = json::object();
@@ -110,7 +111,7 @@ json flightOf(const std::vector<std::string>& words) {
     return flight;
 }
 
-// Returns the help text, with all fields.
+// Returns the help text, which lists all fields.
 std::string flightHelp() {
     std::string text =
         "Usage: icesoc-sim --image PICTURE [--flight flight.json] [--name value]... [-- COMMAND]\n"

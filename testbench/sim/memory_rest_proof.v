@@ -4,8 +4,8 @@
 // clock stops while no port has a request and no transfer is pending (rests.vh). Used only by the
 // prover.
 //
-// When the gate closes, no register of the memory takes another value, whatever its inputs are
-// (compare hdl/system/idle_proof.v).
+// It proves that at the time at which the clock stops, no register of the memory would take another
+// value at the next clock, whatever its inputs are (compare hdl/system/idle_proof.v).
 
 `default_nettype none
 `include "rests.vh"
@@ -23,7 +23,7 @@ module memory_rest_proof #(
     input wire [PORTS-1:0]    npi_rd_pop_i, npi_rd_flush_i,
     input wire                mcb_cmd_full_i, mcb_wr_full_i, mcb_rd_empty_i, mcb_calib_done_i,
     input wire [63:0]         mcb_rd_data_i,
-    // outputs, so that the FIFOs are part of the proof
+    // outputs of the FIFOs; without them the prover would remove the FIFOs
     output wire [PORTS-1:0]   npi_rd_empty_o, npi_wr_almost_full_o
 );
     (* hierconn *) wire [PORTS-1:0] \u_core.npi_addr_req_i ;
@@ -36,7 +36,7 @@ module memory_rest_proof #(
     (* hierconn *) wire \u_core.u_arbiter.u_queue.cmd_valid_o ;
 
     wire closes;
-    core_gate #(.GATED(1)) u_gate ( // as in sim_soc.v
+    core_gate #(.GATED(1)) u_gate ( // the same gate as in sim_soc.v
         .clk_i(clk_i), .rst_i(rst_i), .access_i(1'b0), .idle_i(`MEMORY_RESTS(u_core)),
         .clk_o(closes));
     initial assume (rst_i);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// never_quiet: a QuietSpan that never skips a clock. It is used for a netlist of the chip, in which
-// the counters that quiet_span.cpp reads do not have their names.
+// never_quiet: a QuietSpan that never skips a clock, for simulations of a netlist. In a netlist,
+// the counters that quiet_span.cpp reads have other names.
 
 #include "quiet_span.h"
 

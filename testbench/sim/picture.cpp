@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// picture: decodes pictures with stb_image. Handles two properties that stb_image ignores: the
+// picture: decodes pictures with stb_image, and handles two properties that stb_image ignores: the
 // orientation in a JPEG file (EXIF 2.3, tag 0x0112), and the largest sample value of a PNM file
 // (netpbm's formats).
 
@@ -15,7 +15,8 @@
 #include <memory>
 #include <stdexcept>
 
-// stb_image accepts a GIF file that is cut, and any bytes as a TGA file.
+// The other formats of stb_image are disabled: it accepts a truncated GIF file, and any bytes as a
+// TGA file.
 #define STBI_ONLY_JPEG
 #define STBI_ONLY_PNG
 #define STBI_ONLY_PNM
@@ -41,8 +42,8 @@ struct Reader {
     }
 };
 
-// Returns the orientation from an EXIF block, which begins at `at` with a TIFF header; 1 (upright)
-// if it has none.
+// Returns the orientation in an EXIF block, which begins at `at` with a TIFF header; returns 1
+// (upright) if the block contains no orientation.
 int orientationAt(const Bytes& file, size_t at) {
     constexpr size_t tag = 0x0112, shortNumber = 3, entryBytes = 12;
     Reader in{file, file.size() > at && file[at] == 'I'};
@@ -62,9 +63,9 @@ int orientationAt(const Bytes& file, size_t at) {
     return 1;
 }
 
-// Returns the orientation of a JPEG file as EXIF numbers it, 1 to 8; 1 for other files.
+// Returns the EXIF orientation of a JPEG file, 1 to 8; returns 1 for other files.
 int orientationOf(const Bytes& file) {
-    static const char name[] = "Exif\0"; // five characters and two zero bytes
+    static const char name[] = "Exif\0"; // name of the EXIF block: "Exif" and two zero bytes
     constexpr size_t imageData = 0xFFDA, application1 = 0xFFE1;
     const Reader in{file};
     if (in.number(0, 2) != 0xFFD8)
@@ -84,12 +85,12 @@ int orientationOf(const Bytes& file) {
 
 // The header of a binary PNM file.
 struct PnmHeader {
-    size_t white = 255; // largest value of a sample
+    size_t white = 255; // sample value that means white
     size_t end = 0;     // offset of the first sample
-    size_t bytes = 0;   // size of all samples
+    size_t bytes = 0;   // number of bytes of all samples
 };
 
-// Returns the header of a binary PNM file; the default header for any other file.
+// Returns the header of a binary PNM file; returns the default header for any other file.
 PnmHeader pnmHeader(const Bytes& file) {
     PnmHeader header;
     if (file.size() < 2 || file[0] != 'P' || (file[1] != '5' && file[1] != '6'))
@@ -113,8 +114,8 @@ PnmHeader pnmHeader(const Bytes& file) {
     return header;
 }
 
-// Returns a PNM file with samples of two bytes as one with samples of one byte, because stb_image
-// reads the two bytes in the wrong order.
+// Converts a PNM file with samples of two bytes to samples of one byte, because stb_image reads the
+// two bytes in the wrong order.
 Bytes inBytes(const Bytes& file, const PnmHeader& header) {
     const std::string text(file.begin(), file.begin() + std::ptrdiff_t(header.end));
     const size_t white = text.rfind(std::to_string(header.white));
@@ -135,9 +136,9 @@ Picture turned(const Picture& from, int orientation) {
     to.height = isOnItsSide ? from.width : from.height;
     for (int y = 0; y < to.height; ++y)
         for (int x = 0; x < to.width; ++x) {
-            // The orientation is the place of `from`'s first row and first column in the upright
-            // picture: 1 top left, 2 top right, 3 bottom right, 4 bottom left, 5 left top, 6 right
-            // top, 7 right bottom, 8 left bottom.
+            // An orientation states where the first row and the first column of `from` are in the
+            // upright picture: 1 top and left, 2 top and right, 3 bottom and right, 4 bottom and
+            // left, 5 left and top, 6 right and top, 7 right and bottom, 8 left and bottom.
             const int a = isOnItsSide ? y : x, b = isOnItsSide ? x : y;
             const bool flipsA =
                 orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;
@@ -149,7 +150,7 @@ Picture turned(const Picture& from, int orientation) {
     return to;
 }
 
-// Returns the type of a file by its first bytes.
+// Returns the type of a file, determined by its first bytes.
 std::string typeOf(const Bytes& file) {
     const auto begins = [&](const char* with) {
         return file.size() >= 4 && std::equal(with, with + std::strlen(with), file.begin(),
@@ -163,7 +164,7 @@ std::string rejected(const std::string& path, const Bytes& file, const char* rea
     const std::string type = typeOf(file);
     if (type.empty())
         return "'" + path + "': expected a PNG, JPEG or PGM file";
-    // stb_image tries PNG last, so that its reason is about PNG.
+    // The reason that stb_image reports is the one for PNG, the format that it tries last.
     const std::string why = type != "PNG" ? "" : reason && *reason ? reason : "no end";
     return "'" + path + "': the " + type + " file is damaged, cut or of an unusual kind" +
            (why.empty() ? "" : " (" + why + ")") + ": save it again as PNG";

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// quiet_span: compares the chip's state over a clock, and adds skipped clocks to its counters. The
-// members of Verilator's class are found in a table made from its header (state_members.awk).
+// quiet_span: compares the chip's state before and after a clock, and adds skipped clocks to the
+// chip's counters. A table of the state, made from the header that Verilator generates
+// (state_members.awk), gives the position of each signal.
 
 #include "quiet_span.h"
 #include "VSoc.h"
@@ -11,30 +12,33 @@
 #include <cstring>
 #include <set>
 
-// offsetof is valid for this class, because no base class changes the layout
+// offsetof is allowed for this class, because none of its base classes changes the layout
 #pragma GCC diagnostic ignored "-Winvalid-offsetof"
 
 namespace {
 
-// width and carry of the phase in modem_baud.v
+// bits of the baud rate's phase in modem_baud.v: the fraction and the carry
 constexpr uint32_t phaseMask = (1u << 18) - 1, phaseCarry = 1u << 18;
 constexpr uint32_t timerLast = (1u << 17) - 1; // count at which the timer of modem_timer.v ticks
-// lowest code of the baud rate with which every carry is a tick
+// lowest code of the baud rate for which each carry is a tick
 constexpr unsigned everyCarryTicks = 5;
-// number of the last tick of a bit in modem_uart_rx.v and modem_uart_tx.v
+// number of a bit's last tick in modem_uart_rx.v and modem_uart_tx.v
 constexpr uint8_t lastTick = 7;
-// number of clocks below which skipping does not pay; fewer clocks are evaluated
+// smallest number of clocks that is skipped; a smaller number is evaluated, because skipping would
+// take longer
 constexpr uint64_t worth = 4;
-constexpr uint64_t margin = 2; // clocks before an event that are always evaluated
-// number of clocks after a carry in which its tick may still have effects
+constexpr uint64_t margin = 2; // number of clocks before an event that are always evaluated
+// number of clocks after a carry of the phase in which its tick may still have effects
 constexpr uint64_t settling = 8;
-constexpr uint64_t least = 8;    // clocks that the platform is skipped alone at first
-constexpr unsigned longest = 32; // largest number of clocks between two tests of a busy chip
-// number of tests of a busy chip between two records of the changed cores
+// smallest number of clocks for which only the platform is skipped, used at first
+constexpr uint64_t least = 8;
+constexpr unsigned longest = 32; // largest number of clocks between two comparisons of a busy chip
+// number of comparisons of a busy chip after which the names of the changed cores are recorded
+// again
 constexpr uint64_t blameEvery = 256;
-// blocks of soc.v other than its cores
+// blocks of soc.v that are not cores
 const std::set<std::string> platform = {"u_platform", "u_modem", "u_system_slot"};
-// blocks that get no clock while the platform rests (testbench/sim/CMakeLists.txt)
+// blocks whose clock is stopped while the platform is quiet (testbench/sim/CMakeLists.txt)
 const char* const resting[] = {"u_platform.u_fsmc_bridge.", "u_platform.u_bus_decoder.", "u_modem.",
                                "u_system_slot."};
 
@@ -55,7 +59,8 @@ const struct Member {
 #include "soc_members.inc"
 };
 
-// Copies one member of `from` into the image of another time.
+// Copies one member of the current state `from` to its place in the image, which was taken at an
+// earlier time.
 template <class T>
 void copyInto(std::vector<unsigned char>& image, const VSoc___024root& from, const T& member) {
     auto at = reinterpret_cast<const unsigned char*>(&member) -
@@ -80,7 +85,7 @@ std::vector<std::string> SocState::differences(const Image& a, const Image& b) {
 }
 
 QuietSpan::QuietSpan(VSoc& top) : top_(top), image_(sizeof(VSoc___024root)) {
-    bool joins = false; // the previous member also belongs to the platform
+    bool joins = false; // true if the previous member also belongs to the platform
     for (const Member& m : members) {
         const bool is = std::any_of(std::begin(resting), std::end(resting), [&](const char* block) {
             return std::string(m.path).rfind(block, 0) == 0;
@@ -109,7 +114,7 @@ void QuietSpan::takeImage() {
     nullAge_ = 0;
 }
 
-// Returns whether all state of the platform except the counters equals the image.
+// Returns true if the whole state of the platform, except its counters, equals the image.
 bool QuietSpan::isPlatformLikeImage() {
     const VSoc___024root& r = *top_.rootp;
     copyInto(image_, r, r.tick_i);
@@ -133,7 +138,7 @@ void QuietSpan::beginPause() {
     pause_ = patience_;
 }
 
-// Records, in some of the tests, which cores have changed since the image was taken.
+// Records, in some of the comparisons, which cores have changed since the image was taken.
 void QuietSpan::blame() {
     if (++busyLooks_ % blameEvery)
         return;
@@ -162,7 +167,7 @@ uint64_t QuietSpan::age(uint64_t phase) const {
     return step_ ? (phase & phaseMask) / step_ : ~0ull;
 }
 
-// Returns the clocks until a counter reaches its event, minus the margin.
+// Returns the number of clocks until the first counter reaches its event, minus the margin.
 uint64_t QuietSpan::untilEvent(const Counters& now, uint64_t most, bool passesTicks) const {
     uint64_t clocks = most;
     if (timerRuns_)
@@ -179,8 +184,8 @@ uint64_t QuietSpan::untilEvent(const Counters& now, uint64_t most, bool passesTi
     return clocks > margin ? clocks - margin : 0;
 }
 
-// Learns, from the clocks since the last comparison, by which steps the counters change. Returns
-// false if they have changed in an unknown way.
+// Determines the steps of the counters from their values at the last comparison and now. Returns
+// false if a counter has changed by another step than before.
 bool QuietSpan::learn(const Counters& now) {
     const uint8_t rx = (now.rx - before_.rx) & lastTick, tx = (now.tx - before_.tx) & lastTick;
     if (!isFixed_) { // this is the first clock after the image was taken
@@ -224,7 +229,7 @@ QuietSpan::Clocks QuietSpan::look(Clocks most) {
     }
     if (!isPlatformLikeImage() || !learn(now)) {
         blame();
-        if (isFixed_ && age(now.phase) < settling) // the tick had an effect on other state
+        if (isFixed_ && age(now.phase) < settling) // the tick changed other state than counters
             takeImage();
         else
             beginPause();
@@ -243,7 +248,8 @@ QuietSpan::Clocks QuietSpan::look(Clocks most) {
     since_ = 0;
     if (isLike) {
         rest_ = least;
-        return isAllFixed_ ? clocks : Clocks{}; // otherwise the next clock is checked again
+        // if more than the counters changed, the next clock is compared again
+        return isAllFixed_ ? clocks : Clocks{};
     }
     blame();
     std::memcpy(image_.data(), top_.rootp, image_.size());

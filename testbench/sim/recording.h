@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// recording: stores all inputs of a flight, with their times, in a file, so that it can be replayed
-// bit by bit, without the ground's program.
+// recording: stores all inputs of a flight, with their times, in a file, so that the flight can be
+// replayed exactly, without the ground program.
 //
-// The simulator is deterministic except for the bytes that the ground's program sends on its serial
+// The simulator is deterministic except for the bytes that the ground program sends on its serial
 // port, and their times. The file has JSON Lines, with one object in each line:
 //   {"flight": {flight.json}, "clkHz": n, "hashes": {file: hash}}   the first line
 //   {"ns": time, "up": "hexadecimal"}        bytes from the program to its modem
-//   {"ns": time, "spoilt": n}                bytes with a wrong stop bit
-//   {"ns": time, "down": n}                  bytes that the modem handed to the program
-//   {"ns": time, "digest": "hexadecimal"}    digest of all bus accesses so far, each 100 ms
-//   {"ns": time, "end": {...}}               the flight's final state; missing if the simulator was
+//   {"ns": time, "spoilt": n}                number of bytes with a wrong stop bit
+//   {"ns": time, "down": n}                  number of bytes that the modem gave to the program
+//   {"ns": time, "digest": "hexadecimal"}    hash of all bus accesses so far, every 100 ms
+//   {"ns": time, "end": {...}}               final state of the flight; missing if the simulator
+//   was
 //   killed
 
 #pragma once
@@ -28,8 +29,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// The events of a flight, with their times, as JSON Lines, for the mission's page and other tools.
-// One object in each line:
+// Writes the events of a flight, with their times, as JSON Lines, for the mission's page and other
+// tools. One object in each line:
 //   {"ns": t, "packet": bytes, "from": "ground" or "uav", "lost": bool}   end of a packet
 //   {"ns": t, "slot": n, "events": bits}   the processor has read these events of slot n; bits is
 //   not 0
@@ -48,7 +49,7 @@ public:
 
     void task(uint64_t ns, const std::string& name) { put({{"ns", ns}, {"task", name}}); }
 
-    // Records a register access. `word` is slot * 16 + word.
+    // Records one access to a register. `word` is 16 times the slot, plus the word in the slot.
     void access(uint64_t ns, uint32_t word, uint32_t value, bool isWrite) {
         constexpr uint64_t binNs = 10'000'000;
         constexpr uint32_t event = 1;
@@ -80,7 +81,7 @@ private:
     std::array<unsigned, 64> accesses_{};
 };
 
-// A hash over all bus accesses so far, with their clock, address, value and direction (FNV-1a).
+// Computes a hash of all bus accesses: clock, address, value and direction (FNV-1a).
 class AccessDigest {
 public:
     void add(uint64_t clock, uint32_t address, uint32_t value, bool isWrite) {
@@ -93,15 +94,17 @@ private:
     uint64_t hash_ = 0xCBF29CE484222325;
 };
 
-// Sits between a modem and its line, passes on all bytes and records them. A line of the file is
-// written when the next line begins, so the recording of a killed simulator is usable.
+// Stands between a modem and its line: passes on all bytes and records them. A line of the file is
+// written when the next line begins, so the recording is usable even if the simulator is killed.
 class RecordedLine : public SerialLine, SerialClient {
     using json = nlohmann::json;
 
 public:
-    // Throws std::runtime_error if the file cannot be written.
+    // Opens the file and writes its first line, `head`. Throws std::runtime_error if the file
+    // cannot be written.
     RecordedLine(SerialLine& line, const std::string& file, const json& head) : line_(line) {
-        // The flight's description may hold the modem's key: only the owner may read the file.
+        // only the owner may read the file, because the flight description may contain the modem's
+        // key
         const int fd = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
         if (fd < 0 || fchmod(fd, 0600) != 0)
             throw std::runtime_error("cannot write '" + file + "': " + std::strerror(errno));
@@ -145,8 +148,8 @@ private:
         count("down");
         return true;
     }
-    // Counts a byte of kind `what`. If the kind or the time differs from the current line, begins a
-    // new line.
+    // Counts one byte of kind `what`. Begins a new line of the file if the kind or the time differs
+    // from the current line.
     void count(const char* what) {
         if (what_ && std::strcmp(what_, what) != 0)
             write();
@@ -173,18 +176,18 @@ private:
     SerialLine& line_;
     std::ofstream file_;
     uint64_t now_ = 0;
-    // Kind and value of the line being written; its time is `now_`.
+    // kind of the line that is being collected; its time is `now_`
     const char* what_ = nullptr;
     std::string bytes_;
     unsigned count_ = 0;
 };
 
-// A recording that is replayed: it replaces the program at a modem's line.
+// Replays a recording: it takes the place of the program at a modem's line.
 class ReplayedLine : public SerialLine {
     using json = nlohmann::json;
 
 public:
-    // Throws std::runtime_error with the line number if the file is malformed.
+    // Reads a recording. Throws std::runtime_error with the line number if the file is malformed.
     explicit ReplayedLine(const std::string& file) {
         std::ifstream in(file);
         std::string text;
@@ -197,7 +200,7 @@ public:
             if (!head_.at("flight").is_object())
                 throw std::runtime_error("it was recorded by another version of the simulator");
             while (!whole_ && std::getline(in, text) &&
-                   !in.eof()) { // the last line may be incomplete
+                   !in.eof()) { // an incomplete last line is ignored
                 ++number;
                 json line = json::parse(text);
                 endNs_ = line.at("ns");
@@ -259,7 +262,7 @@ private:
     };
     json head_;
     std::vector<Move> moves_;
-    std::vector<json> marks_; // recorded digests and the final state
+    std::vector<json> marks_; // lines with the recorded digests and the final state
     size_t at_ = 0, mark_ = 0;
     uint64_t endNs_ = 0, agreedNs_ = 0;
     bool whole_ = false;

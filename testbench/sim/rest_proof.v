@@ -4,14 +4,14 @@
 // modem, system slot) while stirs_o is low, because the platform would not change its state
 // (sim_soc.v, quiet_span.h). Used only by the prover.
 //
-// In the first clock the platform may be in any state in which only its counters change. The proof
-// shows that in all later clocks, too, only the counters change, always by the same steps, for any
-// behaviour of cores and memory. It assumes that stirs_o is low, that the pins of the platform are
-// stable, and that no counter reaches its end. The outputs of the platform to cores, memory and
-// pins do not depend on the counters (tests/hdl/formal/platform_rests.ys).
+// The proof begins in any state of the platform in which one clock changes only its counters. It
+// shows that all later clocks also change only the counters, and always by the same steps, whatever
+// cores and memory do. It assumes that stirs_o is low, that the pins of the platform are stable,
+// and that no counter reaches its end. The outputs of the platform to cores, memory and pins do not
+// depend on the counters (tests/hdl/formal/platform_rests.ys).
 //
-// The chip's clock is the signal `later` here: idle_registers.v turns each flip-flop with this
-// clock into one assumption and one assertion.
+// The signal `later` counts as the chip's clock here: idle_registers.v turns each flip-flop with
+// this clock into one assumption and one assertion.
 
 `default_nettype none
 `include "rests.vh"
@@ -19,7 +19,7 @@
 module rest_proof (
     input wire        clk_i,
     input wire [31:0] core_pins_i,
-    output reg        later // high after the first clock
+    output reg        later // high after the first clock edge
 );
     initial later = 1'b0;
     always @(posedge clk_i)
@@ -43,23 +43,23 @@ module rest_proof (
     wire stirs = `PLATFORM_STIRS(u_soc.u_platform);
     always @* assume (!stirs);
 
-    // All counters, and the counters whose end triggers an action.
+    // All three counters; only `phase` and `clocks` trigger an action when they reach their end.
     (* hierconn *) wire [63:0] \u_soc.u_system_slot.cycles ;
     (* hierconn *) wire [18:0] \u_soc.u_modem.u_baud.phase ;
     (* hierconn *) wire [16:0] \u_soc.u_modem.u_timer.clocks ;
     wire [18:0] phase  = \u_soc.u_modem.u_baud.phase ;
     wire [16:0] clocks = \u_soc.u_modem.u_timer.clocks ;
-    localparam [16:0] FIRST = 17'd1 - 17'd106250; // as in modem_timer.v at 100 MHz
+    localparam [16:0] FIRST = 17'd1 - 17'd106250; // same value as in modem_timer.v at 100 MHz
     always @* assume (!phase[18] && clocks >= FIRST && !(&clocks));
 
     wire [98:0] now = {\u_soc.u_system_slot.cycles , phase[17:0], clocks};
     reg  [98:0] before, older;
-    reg         last = 1'b0; // high after the second clock
+    reg         last = 1'b0; // high after the second clock edge
     always @(posedge clk_i) begin
         {older, before} <= {before, now};
         last            <= later;
     end
-    // it counts by one, or stands still
+    // in the first clock the timer's count increases by one or does not change
     always @* assume (!later || last || now[16:0] - before[16:0] <= 17'd1);
     always @* if (last) begin
         assert (now[98:35] - before[98:35] == before[98:35] - older[98:35]);

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
 //
-// rests: the conditions on which the simulator stops clocks of the chip (sim_soc.v). rest_proof.v
-// and memory_rest_proof.v prove that a block whose clock is stopped would not have changed.
+// rests: the conditions under which the simulator stops clocks of the chip (sim_soc.v).
+// rest_proof.v and memory_rest_proof.v prove that a block would not change its state while its
+// clock is stopped.
 
-// MEMORY_RESTS is true while no port of `memory`, a memory_mcb, has a request and no transfer is
-// pending. The memory then keeps its state.
+// MEMORY_RESTS is true while no port of `memory`, an instance of memory_mcb, has a request and no
+// transfer is pending. The memory then keeps its state.
 `define MEMORY_RESTS(memory) \
     !(|{memory.npi_addr_req_i, memory.npi_wr_push_i, memory.npi_wr_flush_i, memory.npi_rd_pop_i, \
         memory.npi_rd_flush_i, memory.u_arbiter.u_queue.moving, memory.u_arbiter.u_queue.coming, \
         memory.u_arbiter.u_queue.cmd_valid_o})
 
-// PLATFORM_STIRS is true while the memory or the register bus of the platform `p` may change the
-// state of the bridge, the decoder, the modem or the system slot. Memory port 0 belongs to the
-// bridge, port 1 to the modem.
+// PLATFORM_STIRS is true while an access to the memory or to the register bus of the platform `p`
+// may change the state of the bridge, the decoder, the modem or the system slot. Memory port 0
+// belongs to the bridge, port 1 to the modem.
 `define PLATFORM_STIRS(p) \
     (!p.calib_done || p.bus_valid || \
      |(p.u_memory.npi_addr_ack_o[1:0] | ~p.u_memory.npi_rd_empty_o[1:0]))

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
-// sim_soc: the chip with the clocks of the simulator. The chip is soc.v, its netlist, or the
+// sim_soc: connects the chip to the clocks of the simulator. The chip is soc.v, its netlist, or the
 // netlist of table1.v (TABLE1).
 //
-// Each change of tick_i is one clock: clk_i rises with it, and falls as soon as its edge has been
-// processed, so that both edges need only one evaluation. The memory pins have flip-flops here: the
-// simulator sets them before the edge to their values after the edge. Therefore no path leads from
-// inputs through the chip's logic; the model would have to evaluate such a path each time.
+// Each change of tick_i is one clock: clk_i rises with the change and falls as soon as its edge has
+// been processed, so one evaluation of the model is enough for both edges. The inputs from the
+// memory pass through flip-flops here: before an edge, the simulator sets them to the values that
+// they have after the edge. Therefore no combinational path leads from these inputs through the
+// chip's logic; the model would have to evaluate such a path each time.
 
 `default_nettype none
 `ifdef RESTS
@@ -62,7 +63,7 @@ module sim_soc #(
 `endif
     reg  ticked = 1'b0;
 `ifdef TRACED
-    wire clk_i = tick_i; // shows both edges in a waveform
+    wire clk_i = tick_i; // a waveform needs both edges of the clock, so tick_i itself is the clock
 `else
     wire clk_i = tick_i != ticked;
 `endif
@@ -86,7 +87,8 @@ module sim_soc #(
     core_gate #(.GATED(1)) u_gate_memory (
         .clk_i(clk_i), .rst_i(soc.rst), .access_i(1'b0),
         .idle_i(`MEMORY_RESTS(soc.u_platform.u_memory)), .clk_o(memory_clk));
-    // A probe would record the counters of a stopped platform, which stand still.
+    // A probe may record the platform's counters, which would stand still; with a probe the clock
+    // is therefore never stopped.
     assign stirs_o = MAP_PROBES != 0 || `PLATFORM_STIRS(soc.u_platform);
 
     soc #(.CLK_HZ(CLK_HZ), .GATES(1))

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// simulated_board: provides secrets to firmware that runs on the host. Random numbers come from a
-// seed, by the generator of the Cortex-M3 model; some words keep their values without power.
-// Initially the vehicle has no key.
+// simulated_board: provides secrets to firmware that runs on the host. Its random numbers come from
+// a seed and the generator of the Cortex-M3 model. It has a few words that keep their values
+// without power. Initially the vehicle has no key.
 
 #pragma once
 
@@ -19,20 +19,20 @@ public:
     using Words = std::array<uint32_t, BACKUP_WORDS>;
 
     explicit SimulatedBoard(uint64_t seed = 1) : random_(seed) {
-        (void)RandomBlock::next(random_); // drops the first number, as secrets.c does
+        (void)RandomBlock::next(random_); // discards the first random number, as secrets.c does
         provide({});
     }
     // Makes the firmware use this board.
     void use() { UAV_useBoard(&port(), this); }
-    // Stores the key of the vehicle, 16 bytes, and its address, as the factory does. With an empty
-    // key, the vehicle accepts a link without a key.
+    // Stores the vehicle's key (16 bytes) and address, as the factory does. If the key is empty,
+    // the vehicle accepts a link without a key.
     void provide(const std::vector<uint8_t>& key, uint32_t address = 1) {
         use();
         UAV_provide(address, key.empty() ? nullptr : key.data());
     }
     // A peer that the vehicle serves in addition to its first ground station.
     struct OtherPeer {
-        int role; // UAV_OBSERVER, UAV_VEHICLE or UAV_GROUP
+        int role; // role of the peer: UAV_OBSERVER, UAV_VEHICLE or UAV_GROUP
         uint32_t address;
         std::vector<uint8_t> key;
     };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// soc_model: the simulator's innermost loop. Slow events are checked only when they are due.
+// soc_model: the innermost loop of the simulator. Events that are rare are checked only when they
+// are due.
 
 #include "soc_model.h"
 #include "mcb_model.h"
@@ -9,7 +10,8 @@
 
 namespace {
 
-// The model has no threads: a fork keeps only the calling thread.
+// Makes the Verilated model use a single thread, because after a fork only the calling thread
+// exists.
 VerilatedContext* oneThread() {
     auto* context = new VerilatedContext;
     context->threads(1);
@@ -38,7 +40,8 @@ SocModel::SocModel(RfChannel& air, XBee::Options modemOptions, unsigned hclkPerU
 
 SocModel::~SocModel() {
     tellers.erase(this);
-    Verilated::threadContextp(context_.get()); // the chip's scopes need it
+    // the destructors of the chip's scopes use this context
+    Verilated::threadContextp(context_.get());
     top_->final();
     observer_.finish();
 }
@@ -52,7 +55,7 @@ void SocModel::reset(bool memoryStarts) {
     for (int i = 0; i < 8; ++i)
         tick();
     top_->rst_i = 0;
-    // The chip's reset ends some clocks after the pin's, because of its synchroniser.
+    // The chip leaves its reset some clocks after the reset pin, because of the synchroniser.
     for (int i = 0; i < 8 || !(memoryStarts || memory_.pins.calibDone); ++i)
         tick();
 }
@@ -75,7 +78,8 @@ void SocModel::timeModels() {
     top_->modem_cts_n_i = wires_.reaches(BoardWires::ModemCts) && line_.ctsN();
 }
 
-// Returns the clocks until a model outside the chip, or a model at the platform's pins, is due.
+// Returns the number of clocks until a model outside the chip, and until a model at the platform's
+// pins, must be called.
 QuietSpan::Clocks SocModel::mayBeQuiet() const {
     if (!skips_ || now() >= nextEvent_)
         return {};
@@ -86,30 +90,30 @@ QuietSpan::Clocks SocModel::mayBeQuiet() const {
     return {clocks, platform};
 }
 
-// Adds the clocks that have passed without evaluation to the chip.
+// Adds the clocks that have passed without evaluation to the chip's counters.
 void SocModel::pay() {
     if (rested_)
-        (void)span_.pass(rested_); // no tick of the baud rate is among them
+        (void)span_.pass(rested_); // these clocks contain no tick of the baud rate
     rested_ = 0;
     if (!owed_)
         return;
     uint64_t left = span_.pass(owed_);
     memory_.pass(owed_ - left);
     owed_ = 0;
-    if (left) // a tick of the baud rate has begun: the remaining clocks cannot be skipped
+    if (left) // a tick of the baud rate has begun, so the remaining clocks are evaluated
         quiet_ = 0;
     for (cycles_ -= left; left; --left)
         evaluate();
 }
 
-// Ends a quiet span: an input is about to change.
+// Ends a quiet span, because an input is about to change.
 void SocModel::wake() {
     pay();
     quiet_ = resting_ = 0;
     span_.forget();
 }
 
-// Updates the processor pins between two clock edges.
+// Updates the design after a change of the processor's pins between two clock edges.
 void SocModel::settle() {
     wake();
     VSoc& top = *top_;
@@ -129,7 +133,7 @@ void SocModel::settle() {
     showOutputs();
 }
 
-// Shows the processor the pins that the chip drives.
+// Copies the outputs of the chip to the pins that the processor reads.
 void SocModel::showOutputs() {
     far_->dFromDesign = top_->fsmc_d_o;
     far_->dDriven = top_->fsmc_d_oe_o;
@@ -162,14 +166,14 @@ void SocModel::tick() {
 }
 
 void SocModel::evaluate(bool rests) {
-    // The design is settled. The memory pins get their values after this clock.
+    // The design has settled; the memory pins now get their values for after this clock.
     VSoc& top = *top_;
     sampleMcb(top, memory_);
     driveMcb(top, memory_);
     span_.rest(rests);
     ++cycles_;
     ++evaluated_;
-#ifdef ICESOC_TRACE // a waveform has both halves of a clock (sim_soc.v)
+#ifdef ICESOC_TRACE // a waveform contains both halves of a clock (sim_soc.v)
     for (unsigned half : {0u, 1u}) {
 #else
     for (unsigned half : {0u}) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// soc_model: the Verilated chip with its memory, its modem and the FSMC of its processor. tick()
-// computes one clock. Clocks in which only counters of the chip would change are not evaluated.
-// They are counted as passed, and are added to the chip's counters before anything reads the chip
+// soc_model: simulates the Verilated chip with its memory, its modem and the FSMC of its processor.
+// tick() computes one clock. Clocks in which only counters of the chip would change are not
+// evaluated. They are counted, and are added to the chip's counters before anything reads the chip
 // (quiet_span.h).
 
 #pragma once
@@ -27,20 +27,20 @@ public:
     static constexpr uint64_t clkHz = SOC_CLK_HZ;
     static constexpr uint64_t clkNs = 1'000'000'000 / clkHz;
 
-    // `hclkPerUnit` and `clkPerUnit` are the ratio of HCLK to clkHz: by default that of 120 MHz to
-    // 100 MHz.
+    // `hclkPerUnit` and `clkPerUnit` set the ratio of HCLK to the design's clock; the default is
+    // the ratio of 120 MHz to 100 MHz.
     SocModel(RfChannel& air, XBee::Options modemOptions, unsigned hclkPerUnit = 6,
              unsigned clkPerUnit = 5);
     ~SocModel();
 
-    // Resets the chip. Without `memoryStarts`, the memory is ready when this function returns. With
-    // `memoryStarts`, the memory begins its start at that time, and needs a millisecond; this is
-    // the case of a processor that does not wait for the memory.
+    // Resets the chip. If `memoryStarts` is false, the memory is ready when this function returns.
+    // If it is true, the function returns before the memory is ready, which takes a millisecond, as
+    // for a processor that does not wait for the memory.
     void reset(bool memoryStarts = false);
     void tick(); // computes one clock cycle
 
-    // Skips clock cycles while the chip is quiet, up to clock `until`. Returns the number of
-    // skipped cycles.
+    // Skips clocks while the chip is quiet, but not beyond clock `until`. Returns the number of
+    // skipped clocks.
     uint64_t passQuiet(uint64_t until) {
         const uint64_t clocks = until > cycles_ ? std::min(quiet_, until - cycles_) : 0;
         quiet_ -= clocks;
@@ -48,19 +48,20 @@ public:
         cycles_ += clocks;
         return clocks;
     }
-    // Keeps the clocks of cores running while they are idle (hdl/system/core_gate.v). Call it
-    // before the reset; used for comparisons.
+    // Keeps the clocks of idle cores running (hdl/system/core_gate.v). Call it before reset(); used
+    // for comparisons.
     void ungate() {
         const char* option = "+ungated";
         context_->commandArgsAdd(1, &option);
     }
-    // With `all`, evaluates every clock instead of skipping; used for comparisons.
+    // If `all` is true, evaluates every clock and skips none; used for comparisons.
     void evaluateAll(bool all) {
         wake();
         skips_ = !all;
     }
     uint64_t evaluated() const { return evaluated_; } // number of clocks that were evaluated
-    // Returns the name of the core that changed in most of these clocks; empty if no core did.
+    // Returns the name of the core that changed in most of the evaluated clocks; empty if there is
+    // no such core.
     std::string mover() const { return span_.mover(); }
 
     // Returns the complete current state of the chip.
@@ -72,9 +73,9 @@ public:
     uint64_t now() const { return cycles_ * clkNs; }
     bool irq() const { return top_->irq_o; }
 
-    // Sets the input pins of cores (MAP_PIN_...), starting with the next evaluation. `sampled`
-    // means that the pins only lead to flip-flops, as those of a sensor do: a resting platform then
-    // continues to rest.
+    // Sets the input pins of cores (MAP_PIN_...); they take effect with the next evaluation.
+    // `sampled` means that the pins only lead to flip-flops, like the pins of a sensor; a platform
+    // that is being skipped then need not be evaluated.
     void setCorePins(uint32_t value, bool sampled = false) {
         if (!sampled) {
             wake();
@@ -86,8 +87,8 @@ public:
     }
     uint32_t corePins() const { return top_->core_pins_o; }
 
-    // Sets the driver of the cores' input pins. It is called before a clock, and returns the clock
-    // (cycles()) at which it must be called next.
+    // Sets the function that drives the input pins of the cores. It is called before a clock, and
+    // returns the number of the clock (cycles()) before which it must be called next.
     void onClock(std::function<uint64_t()> drive) { drive_ = std::move(drive); }
     // Sets a function that is called at each change of the cores' output pins.
     void onCorePins(std::function<void(uint32_t)> changed) {
@@ -109,18 +110,18 @@ public:
         return memory_;
     }
     XBee& modem() { return modem_; }
-    // Returns the cable at the modem pins that replaces the modem.
+    // Returns the serial line at the chip's modem pins, to connect a cable instead of the modem.
     UartPins& line() { return line_; }
     void plugIn(Cable& cable) { cable_ = &cable; }
 
-    // Replaces the function that advances the air at each update of the models. It is needed if
-    // several chips share the air.
+    // Replaces the function that advances the air whenever the models are updated. This is
+    // necessary if several chips share the air.
     void onAir(std::function<void(uint64_t now)> advance) { advanceAir_ = std::move(advance); }
     // Adds a model with events in simulated time, such as the ground's modem. The function is
-    // called when its event is due, and returns the time of the next one.
+    // called when an event is due, and returns the time of the next event.
     void onTime(std::function<uint64_t(uint64_t now)> advance) { others_ = std::move(advance); }
 
-    // Sets the listener for edges of the interrupt line.
+    // Sets a function that is called at each edge of the interrupt line.
     void onIrq(std::function<void(bool high)> edge) { irqEdge_ = std::move(edge); }
 
 private:
@@ -137,14 +138,18 @@ private:
     std::unique_ptr<VSoc> top_;
     QuietSpan span_;
     bool skips_ = true;
-    uint64_t quiet_ = 0;   // future clocks that need not be evaluated
-    uint64_t owed_ = 0;    // clocks that have passed without evaluation
-    uint64_t resting_ = 0; // future clocks in which the platform need not be evaluated
-    uint64_t rested_ = 0;  // clocks that have passed in which the platform was not evaluated
+    uint64_t quiet_ = 0; // number of future clocks that need not be evaluated
+    // number of clocks that have passed without evaluation and are not yet added to the chip's
+    // counters
+    uint64_t owed_ = 0;
+    uint64_t resting_ = 0; // number of future clocks in which the platform need not be evaluated
+    // number of clocks in which the platform was not evaluated and that are not yet added to its
+    // counters
+    uint64_t rested_ = 0;
     uint64_t evaluated_ = 0;
     BoardWires wires_;
     FsmcPins pins_, delayed_;
-    FsmcPins* far_ = &pins_; // the FSMC's pins at the chip
+    FsmcPins* far_ = &pins_; // FSMC pins at the chip
     FsmcMaster fsmc_;
     McbModel memory_;
     RfChannel& air_;
@@ -153,7 +158,7 @@ private:
     XBee modem_;
     Cable* cable_ = nullptr;
     std::function<uint64_t()> drive_;
-    uint64_t driveAt_ = 0; // clock at which the pins' driver is called next
+    uint64_t driveAt_ = 0; // clock before which the driver of the pins must be called next
     std::function<void(uint32_t)> corePinsChanged_;
     uint32_t corePins_ = 0;
     std::function<uint64_t(uint64_t)> others_;

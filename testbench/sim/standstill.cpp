@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// standstill: samples simulated time with a timer of CPU time, so a process that waits is not
-// sampled.
+// standstill: samples simulated time with a timer of CPU time, so that a process that only waits is
+// not sampled.
 
 #include "standstill.h"
 #include <algorithm>
@@ -30,7 +30,7 @@ void setTimer(double seconds) {
     setitimer(ITIMER_PROF, &timer, nullptr);
 }
 
-// Returns the program counter at which a signal has interrupted the program.
+// Returns the program counter at which the signal interrupted the program.
 void* interruptedAt(const void* context) {
     const mcontext_t& machine = static_cast<const ucontext_t*>(context)->uc_mcontext;
 #if defined(__x86_64__)
@@ -47,7 +47,8 @@ std::vector<void*> interruptedCode(const void* context) {
     void** at = std::find(frames, end, interruptedAt(context));
     std::vector<void*> code(at, end);
     if (!code.empty())
-        // functionsAt() subtracts 1, because the others are return addresses
+        // adds 1, because functionsAt() subtracts 1 from every address; the other addresses are
+        // return addresses
         code[0] = static_cast<char*>(code[0]) + 1;
     return code;
 }
@@ -69,7 +70,8 @@ std::vector<std::string> functionsAt(const std::vector<void*>& addresses) {
     char line[1000];
     for (unsigned number = 0; output && std::fgets(line, sizeof line, output); ++number) {
         line[std::strcspn(line, "\n")] = 0;
-        if (number % 2 == 0 && line[0] != '?') // a line with the file follows each name
+        // addr2line prints two lines per address: the name of the function, then the file
+        if (number % 2 == 0 && line[0] != '?')
             names.push_back(line);
     }
     if (output)
@@ -80,7 +82,8 @@ std::vector<std::string> functionsAt(const std::vector<void*>& addresses) {
 Standstill::Standstill(std::function<uint64_t()> now, double seconds) : now_(std::move(now)) {
     theOne = this;
     void* first[1];
-    backtrace(first, 1); // loads the library of backtrace now; a signal handler must not load it
+    // loads the library that backtrace needs, because a signal handler must not load it
+    backtrace(first, 1);
     struct sigaction action{};
     action.sa_sigaction = [](int, siginfo_t*, void* context) { theOne->onTick(context); };
     action.sa_flags = SA_RESTART | SA_SIGINFO;
@@ -94,8 +97,7 @@ Standstill::~Standstill() {
     theOne = nullptr;
 }
 
-// Functions called here need not be safe in a signal handler: a program that stands still cannot
-// get worse.
+// The functions called here need not be safe in a signal handler, because the program hangs anyway.
 void Standstill::onTick(const void* context) {
     const uint64_t now = now_();
     same_ = now == last_ ? same_ + 1 : 0;
@@ -113,7 +115,8 @@ void Standstill::onTick(const void* context) {
                "icesoc-sim: simulated time has stopped at {:.6f} s; the firmware is in {}\n",
                static_cast<double>(now) / 1e9,
                text.empty() ? "an unknown function: addr2line (binutils) finds no name" : text);
-    // The flight's handler only sets a flag, which hanging firmware never reads.
+    // The flight's signal handler only sets a flag, which hanging firmware never reads. With the
+    // default handler, a signal ends the process.
     for (int signal : {SIGINT, SIGTERM, SIGHUP})
         std::signal(signal, SIG_DFL);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// uav_machine: lets simulated time pass in bus accesses and while the firmware is idle, never
-// elsewhere.
+// uav_machine: runs the firmware on the host. Simulated time passes only in bus accesses and while
+// the firmware is idle.
 
 #include "uav_machine.h"
 
@@ -11,7 +11,7 @@ extern "C" {
 
 namespace {
 
-// The firmware calls its port as C functions, whose context is the machine.
+// The firmware calls C functions for its port; their context is the UavMachine.
 SocModel* socOf(void* context) {
     return static_cast<SocModel*>(context);
 }

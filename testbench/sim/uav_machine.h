@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// uav_machine: runs firmware that was built for the host on a SocModel, with bus accesses,
+// uav_machine: runs firmware that was built for the host on a SocModel, and provides bus accesses,
 // interrupts and the tick. A table of entry points selects the firmware; the default is the UAV's
 // application.
 
@@ -20,8 +20,8 @@ extern "C" {
 
 class UavMachine {
 public:
-    // Entry points of the firmware, as in uav.h: one is called at boot and creates the tasks; one
-    // is called for an interrupt of the FPGA.
+    // Entry points of the firmware, as in uav.h: one is called at boot and creates the tasks, the
+    // other is called for each interrupt of the FPGA.
     struct Firmware {
         std::function<void(const FSMC_Port*, void*)> start = [](const FSMC_Port* port, void* soc) {
             if (UAV_start(port, soc) == UAV_NO_KEY)
@@ -43,8 +43,9 @@ public:
 
     SimulatedBoard board; // board of the UAV's application
 
-    // Makes the firmware's clock `times` as fast as the fabric's clock, to shorten periods in which
-    // only time-outs of the firmware run. The modem is too slow for the firmware meanwhile.
+    // Makes the firmware's clock `times` as fast as the fabric's clock. This shortens periods in
+    // which the firmware only waits for time-outs. During this time the modem is too slow for the
+    // firmware.
     void hurry(unsigned times);
 
 private:
@@ -58,8 +59,8 @@ private:
     uint64_t nextTick_ = 0, tickCycles_;
 };
 
-// Boots the UAV's application and flies until the script is done or this simulated second is
-// reached. Returns whether the script is done.
+// Boots the UAV's application and flies until the script has ended or the simulated time reaches
+// `seconds`. Returns true if the script has ended.
 inline bool flies(
     SocModel& soc, const std::function<bool()>& script, double until,
     const std::function<void(UavMachine&)>& prepare = [](UavMachine&) {}) {
@@ -74,6 +75,6 @@ inline bool flies(
 }
 
 // Returns the firmware that the simulator runs on the host; each program that links sim_main
-// defines this function. `modemKey`: the modem's AES key of 16 bytes, or empty. `isSecure`: whether
-// the link has a key. Throws if the firmware cannot encrypt.
+// defines this function. `modemKey` is the modem's AES key of 16 bytes, or empty. `isSecure` is
+// true if the link has a key. Throws an exception if the firmware cannot encrypt.
 UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& modemKey, bool isSecure);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// vehicles: additional vehicles and a second ground station in a flight, and injection of faults
-// that need them.
+// vehicles: additional vehicles and a second ground station in a flight, and the faults that need
+// several vehicles.
 
 #pragma once
 
@@ -15,8 +15,9 @@
 #include <cstdlib>
 #include <sstream>
 
-// An additional vehicle in a flight: a separate chip, with the firmware's ARM binary. It must run
-// after the first vehicle, which also runs the air; otherwise its pins would change too early.
+// An additional vehicle in a flight: a separate chip that runs the firmware's ARM binary. It must
+// be advanced after the first vehicle, which also advances the air; otherwise its pins would change
+// too early.
 class Follower {
 public:
     Follower(RfChannel& air, const XBee::Options& modem, const M3Machine::Config& config)
@@ -25,7 +26,8 @@ public:
         soc.onTime([this](uint64_t now) { return std::max(until_, now + 1); });
         soc.reset(true);
     }
-    // Runs up to this time. The air has delivered no packet since the last call.
+    // Runs up to this time. Since the last call, the air must not have delivered a packet to this
+    // vehicle.
     void advance(uint64_t now) {
         until_ = now;
         machine_.advance(now);
@@ -37,8 +39,8 @@ private:
     uint64_t until_ = 0;
 };
 
-// A ground station in the air of a flight: a modem on a pty, or on the recording of a replayed
-// flight, with a separate clock and recording. Simulated time waits for the station's program.
+// A ground station in a flight: a modem on a pty, or on the recording of a replayed flight, with
+// its own clock and recording. Simulated time waits for the station's program.
 struct Station {
     static constexpr uint32_t second = 0x00F0; // modem address of a second ground station
 
@@ -53,12 +55,12 @@ struct Station {
                                   pty, out + "/flight" + number + ".jsonl", head)),
           modem(line(), air, options), step(*status, pty, std::move(goOn)) {}
     SerialLine& line() { return replayed ? static_cast<SerialLine&>(*replayed) : *recorded; }
-    // Advances the station. Returns the time at which it must be called next. With `isWired`, a
-    // cable replaces the modem.
+    // Advances the station. Returns the time at which this must be called next. If `isWired` is
+    // true, a cable replaces the modem.
     uint64_t advance(uint64_t now, bool isWired = false) {
         if (!isWired)
             modem.advance(now);
-        status.set(now); // clock of the station's program
+        status.set(now); // updates the clock that the station's program reads
         step.wait(now);
         return std::min(isWired ? never : modem.nextEvent(), std::max(step.nextEvent(), now + 1));
     }
@@ -71,7 +73,7 @@ struct Station {
     GroundStep step;
 };
 
-// Returns a vehicle's key from a file, or an empty key. While a next key is pending, returns the
+// Returns a vehicle's key from a file, or an empty key. While a key change is pending, returns the
 // old key.
 inline std::vector<uint8_t> keyOf(const std::string& file, int address) {
     if (file.empty())
@@ -80,9 +82,9 @@ inline std::vector<uint8_t> keyOf(const std::string& file, int address) {
     return {key.begin(), key.end()};
 }
 
-// Gives a vehicle its keys from the ground's file. With several vehicles it also gets the keys of
-// the observer, a second ground station; with four or more, the first two vehicles get each other's
-// key.
+// Gives a vehicle its keys from the ground's file. If there are several vehicles, it also gets the
+// keys of the observer, a second ground station. If there are at least four, the first two vehicles
+// get each other's key.
 inline void giveKeys(M3Machine::Config& config, unsigned vehicles, const std::string& file,
                      const std::string& observer) {
     config.key = keyOf(file, static_cast<int>(config.address));
@@ -98,9 +100,10 @@ inline void giveKeys(M3Machine::Config& config, unsigned vehicles, const std::st
         config.peers.push_back({UAV_VEHICLE, 3 - config.address, keyOf(observer, 1)});
 }
 
-// A fault, described by a text: `away:2:1.5:3` takes the modem with the address 2 out of reach, 1.5
-// s after the beginning, for 3 s; `twin:2:...` brings another vehicle into reach, with this address
-// and a different key; `babble:2:...` adds a modem that continuously sends noise to this address.
+// A fault, described by a text: `away:2:1.5:3` takes the modem with the address 2 out of reach for
+// 3 s, 1.5 s after the beginning of the flight. `twin:2:...` brings another vehicle with this
+// address and a different key into reach. `babble:2:...` adds a modem that continuously sends noise
+// to this address.
 class Trouble {
 public:
     explicit Trouble(const std::string& text) {
@@ -114,7 +117,8 @@ public:
         from_ = static_cast<uint64_t>(std::atof(from.c_str()) * 1e9);
         until_ = from_ + static_cast<uint64_t>(std::atof(seconds.c_str()) * 1e9);
     }
-    // `modem` is the modem with this address, or the twin's modem; null for babble.
+    // Prepares the fault. `modem` is the modem with the fault's address, or the modem of the twin;
+    // null for babble.
     void begin(RfChannel& air, const XBee* modem) {
         air_ = &air;
         modem_ = modem;
@@ -122,7 +126,7 @@ public:
         options.set = {{"MY", 0x0BAB}, {"DL", static_cast<uint32_t>(address)}, {"BD", 7}};
         babbler_ = std::make_unique<XBee>(line_, air, options);
     }
-    // Advances the fault. Returns the time at which it must be called next.
+    // Starts or ends the fault if it is time. Returns the time at which this must be called next.
     uint64_t advance(uint64_t now) {
         const bool isOn = now >= from_ && now < until_;
         if (modem_)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // vision-reference: computes the corners in a picture with the model of the vision core, and prints
-// as JSON the answer that the UAV must give. Usage: vision-reference picture threshold
+// the answer that the UAV must give, as JSON. Usage: vision-reference PICTURE THRESHOLD
 
 #include "camera.h"
 #include "vision_model.h"
@@ -19,7 +19,8 @@ int main(int argc, char** argv) {
         Frame frame = loadFrame(argv[1], 1024, 4096);
         auto corners =
             detectCorners(frame.pixels.data(), frame.width, frame.height, std::atoi(argv[2]));
-        if (corners.size() > VISION_RECORDS) // the core counts and stores no more than this number
+        // the core counts and stores at most this number of corners
+        if (corners.size() > VISION_RECORDS)
             corners.resize(VISION_RECORDS);
         std::printf("{\"found\": %zu, \"best\": [", corners.size());
         const char* separator = "";

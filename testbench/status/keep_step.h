@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// keep_step: the members of SimStatus that keep a program in step with simulated time.
+// keep_step: accesses the members of SimStatus with which a program keeps step with simulated time.
 //
-// Simulated time stops while the program works, and until the program has read all bytes that its
-// serial port has received.
+// Simulated time stops while the program works. It also stops until the program has read all bytes
+// that its serial port has received.
 
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// simulated_clock: reads simulated time from memory that the simulator writes.
+// simulated_clock: reads the simulated time, which the simulator writes to shared memory.
 
 #include "simulated_clock.h"
 #include "keep_step.h"
@@ -17,7 +17,7 @@
 namespace {
 
 constexpr uint32_t shortestUs = 50; // shortest interval between two reads of simulated time, us
-// us; longest interval while simulated time waits for this program
+// longest interval between two reads while simulated time waits for this program, us
 constexpr uint32_t longestUs = 500;
 constexpr uint64_t endOfTime = ~uint64_t(0);
 
@@ -67,12 +67,13 @@ uint32_t SimulatedClock::nowUs() const {
     return static_cast<uint32_t>(nowNs() / 1000);
 }
 
-// Simulated time usually runs no faster than real time, so the program sleeps for the remaining
-// time before it reads again.
+// Waits for file descriptors or a simulated time. Simulated time rarely runs faster than real time,
+// so the program first sleeps for the remaining time in real time, and then reads simulated time
+// again.
 int SimulatedClock::wait(pollfd* fds, nfds_t count, uint32_t us) {
     const uint64_t begin = nowNs() / 1000;
-    // A program that keeps step waits for at least shortestUs. If it waited for 0, it would stop
-    // time and might wait forever for time to pass.
+    // A program that keeps step waits at least shortestUs. If it waited for 0 us, it would stop
+    // simulated time, and might then wait for ever for time to pass.
     const uint64_t end =
         us == forever ? endOfTime : begin + (inStep() ? std::max(us, shortestUs) : us);
     const bool reads = std::any_of(fds, fds + count, [this](const pollfd& p) {
@@ -113,8 +114,8 @@ void SimulatedClock::keepStep(int serial, const std::string& device) {
     store(simulation_->keeper, token_);
 }
 
-// Clears the entry only if it is this program's: another program on the same port may keep step by
-// now.
+// Clears the entry only if it belongs to this program, because another program on the same port may
+// keep step now.
 void SimulatedClock::leaveStep() {
     uint64_t mine = token_;
     if (mine)

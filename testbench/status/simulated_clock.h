@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// simulated_clock: lets a ground engine use the time of a simulated modem as its clock. A simulator
-// sets XBEEAT_CLOCK (clock.h) for the programs that it starts: it names this library, with the
-// simulator's SimStatus file as the argument.
+// simulated_clock: lets a ground engine use simulated time as its clock. A simulator sets the
+// environment variable XBEEAT_CLOCK (clock.h) for the programs that it starts: the variable
+// contains the path of this library and, as the library's argument, the simulator's SimStatus file.
 
 #pragma once
 
@@ -12,7 +12,7 @@ struct SimStatus;
 
 class SimulatedClock : public XBeeAT::Clock {
 public:
-    // Maps a SimStatus file into memory. Throws std::system_error.
+    // Maps a SimStatus file into memory. Throws std::system_error if this fails.
     explicit SimulatedClock(const std::string& file);
     ~SimulatedClock() override;
     SimulatedClock(const SimulatedClock&) = delete;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// status_file: keeps a simulator's counters (SimStatus) in a file that other programs map.
+// status_file: keeps a simulator's counters (SimStatus) in a file that other programs map into
+// memory.
 
 #pragma once
 
@@ -15,10 +16,10 @@
 
 class StatusFile {
 public:
-    // Creates a file at `path`. Throws std::system_error; this includes a full disk, where writing
-    // to a sparse file would raise SIGBUS later.
+    // Creates a file at `path`. Throws std::system_error if this fails, also if the disk is full:
+    // otherwise a write to the mapped file would later end the program with SIGBUS.
     explicit StatusFile(const std::string& path) {
-        unlink(path.c_str()); // never writes through a symbolic link
+        unlink(path.c_str()); // replaces a symbolic link instead of writing to its target
         const int fd = open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
         const int error = fd < 0 ? errno : map(fd);
         if (fd >= 0)
@@ -26,7 +27,7 @@ public:
         if (error)
             throw std::system_error(error, std::generic_category(), "cannot write '" + path + "'");
     }
-    // Uses an empty file that is open for writing; the caller closes it.
+    // Uses an empty file that is open for writing. The caller remains responsible for closing it.
     explicit StatusFile(int fd) {
         if (const int error = map(fd))
             throw std::system_error(error, std::generic_category(), "no file for simulated time");
@@ -41,7 +42,7 @@ public:
     void set(uint64_t ns) { __atomic_store_n(&status_->ns, ns, __ATOMIC_RELEASE); }
 
 private:
-    // Returns 0, or the number of the error.
+    // Returns 0, or errno if the file cannot be mapped.
     int map(int fd) {
         if (const int error = posix_fallocate(fd, 0, sizeof(SimStatus)))
             return error;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// fpga_pins: configuration of the FPGA and its flash, as seen at the pins of the processor: SPI 1
-// (PA4 to PA7; driven by the FPGA while it configures itself), PROGRAM_B and DONE. Without a flash
-// the FPGA is always configured.
+// fpga_pins: models the configuration of the FPGA and its flash, as the processor sees it at its
+// pins: SPI 1 (PA4 to PA7; the FPGA drives them while it configures itself), PROGRAM_B and DONE. If
+// no flash is connected, the FPGA is always configured.
 
 #pragma once
 
@@ -12,7 +12,7 @@
 
 class FpgaPins {
 public:
-    // `now` is simulated time in ns.
+    // `now` returns simulated time, ns.
     explicit FpgaPins(std::function<uint64_t()> now) : now_(std::move(now)) {}
 
     void wire(SpiFlash& flash) { flash_ = &flash; }
@@ -37,15 +37,16 @@ public:
         }
     }
     bool isDone() const { return isDoneWired && (!flash_ || (boot_.running && now_() >= doneAt_)); }
-    bool isDoneWired = true; // if false, DONE is read as low
+    bool isDoneWired = true; // if it is false, DONE always reads as low
     const Spartan6Boot& boot() const { return boot_; }
-    // Called when the FPGA has lost its configuration, and starts to load one.
+    // called when the FPGA has lost its configuration and begins to load a new one
     std::function<void()> onReconfigured;
 
-    // Transfers a byte in both directions; the processor is the master.
+    // Transfers one byte in both directions, with the processor as the master.
     uint8_t transfer(uint8_t byte) { return flash_ ? flash_->transfer(byte) : 0xFF; }
-    // State while the FPGA is the master: whether its chip select is low, the number of bytes sent
-    // since then, and the bytes.
+    // The state while the FPGA is the master: isReading returns true if the FPGA's chip select is
+    // low, bytesSent returns the number of bytes sent since it fell, and byteSent returns one of
+    // these bytes.
     bool isReading() const { return current() != nullptr; }
     uint64_t bytesSent() const {
         const Spartan6Boot::Read* read = current();
@@ -57,7 +58,7 @@ public:
             return 0xFF;
         return static_cast<uint8_t>((0x03000000 | read->address) >> (24 - 8 * index));
     }
-    // Time of the next change of the chip select; ~0 if none is due.
+    // Returns the time of the next change of the chip select; ~0 if no change is due.
     uint64_t nextEdgeNs() const {
         for (const Spartan6Boot::Read& read : boot_.reads)
             for (uint64_t edge : {read.from, read.to})
@@ -83,7 +84,7 @@ private:
         return nullptr;
     }
     uint64_t clock() const { return (now_() - begunAt_) * Spartan6Boot::cclkHz / second; }
-    // Returns the first nanosecond at which clock() has reached `clock`.
+    // Returns the time, ns, at which clock() reaches `clock`.
     uint64_t nsOf(uint64_t clock) const {
         return begunAt_ + (clock * second + Spartan6Boot::cclkHz - 1) / Spartan6Boot::cclkHz;
     }

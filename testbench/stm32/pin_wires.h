@@ -6,22 +6,22 @@
 
 #include <cstdint>
 
-// Function of a pin, from its GPIO registers (RM0033, 6.4).
+// Setting of a pin in the GPIO registers (RM0033, 6.4).
 struct PinSetting {
     enum Mode { Input, Output, Alternate, Analog } mode = Input;
     bool level = false;     // output level
-    bool openDrain = false; // open drain: drives only the low level
-    int pull = 0;           // 1 for a pull-up, -1 for a pull-down, 0 for neither
+    bool openDrain = false; // open drain: the pin drives only the low level
+    int pull = 0;           // 1: pull-up; -1: pull-down; 0: none
     unsigned function = 0;  // alternate function, 0 to 15
-    unsigned speed = 0;     // 0 (2 MHz) to 3 (100 MHz)
+    unsigned speed = 0;     // speed: 0 (2 MHz) to 3 (100 MHz)
 };
 
 class PinWires {
 public:
     virtual ~PinWires() = default;
-    // Returns the levels at the 16 pins of a port. `inside`: levels that the model of the
-    // microcontroller knows without the wires.
+    // Returns the levels at the 16 pins of a port. `inside` are the levels without any wires, as
+    // computed by the model of the microcontroller.
     virtual uint16_t levels(unsigned port, uint16_t inside) = 0;
-    // Called when settings of a port's pins have changed.
+    // Called when the settings of a port's pins have changed.
     virtual void changed(unsigned port) = 0;
 };

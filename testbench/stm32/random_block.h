@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // random_block: models the random number generator of the STM32F2 (RM0033, 20). It delivers a
-// number every 40 periods of its 48 MHz clock, from a seed instead of noise.
+// number every 40 periods of its 48 MHz clock. The numbers come from a seed instead of noise.
 //
 //   0  CR  bit 2 RNGEN
 //   4  SR  bit 0 DRDY, 1 CECS, 2 SECS: current state; 5 CEIS, 6 SEIS: set until 0 is written
@@ -41,11 +41,12 @@ public:
         }
         control_ = value & (enable | 8);
     }
-    // Simulates a failure of the noise source, until RNGEN is cleared and set.
+    // Simulates a failure of the noise source. The failure ends when the program clears and sets
+    // RNGEN.
     void fail() { errors_ |= 0x44; }
 
-    // Advances the state and returns the next number, by SplitMix64: the state counts in constant
-    // steps, the result mixes its bits.
+    // Advances the state by a constant step and returns the next number, which is a mix of the
+    // state's bits (SplitMix64).
     static uint32_t next(uint64_t& state) {
         uint64_t x = state += 0x9E3779B97F4A7C15ull;
         x = (x ^ x >> 30) * 0xBF58476D1CE4E5B9ull;

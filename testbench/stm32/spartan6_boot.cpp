@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// spartan6_boot: interprets a bitstream's packets (UG380, tables 5-23 to 5-30). The CRC of 22 bits
-// is known from public programs that read bitstreams (prjcombine).
+// spartan6_boot: interprets the packets of a bitstream (UG380, tables 5-23 to 5-30). The CRC of 22
+// bits is documented only by public programs that read bitstreams (prjcombine).
 
 #include "spartan6_boot.h"
 #include <random>
@@ -32,7 +32,7 @@ void addCrc(uint32_t& crc, unsigned reg, uint16_t word) {
 } // namespace
 
 void Spartan6Boot::configure(const std::vector<uint8_t>& flash) {
-    // time to clear the configuration memory, clocks: about a millisecond
+    // duration of clearing the configuration memory, clocks; about a millisecond
     constexpr uint64_t clearing = 2000;
     running.reset();
     isStuck = false;
@@ -40,14 +40,16 @@ void Spartan6Boot::configure(const std::vector<uint8_t>& flash) {
     clocks = 0;
     reads.clear();
     uint32_t address = 0;
-    for (unsigned stage = 0; stage < 3; ++stage) { // the three stages: header, MultiBoot, golden
+    // The FPGA tries three addresses: the header, the MultiBoot bitstream, the golden bitstream.
+    for (unsigned stage = 0; stage < 3; ++stage) {
         if (stage)
             address = uint32_t(general_[2 * stage - 1] & 0xFF) << 16 | general_[2 * stage - 2];
         End end = End::Failed;
         for (unsigned i = 0; i < 3 && end == End::Failed; ++i) {
             clocks += clearing;
             reads.push_back({address, clocks, clocks});
-            clocks += 32; // the read instruction and the address, sent to the flash
+            // clocks in which the read instruction and the address are sent to the flash
+            clocks += 32;
             end = load(flash, address);
             reads.back().to = end == End::Stuck ? ~0ull : clocks;
             strikes += end == End::Failed;
@@ -91,7 +93,7 @@ Spartan6Boot::End Spartan6Boot::load(const std::vector<uint8_t>& flash, uint32_t
             if (reg != Crc && reg != Lout && reg != Csbo)
                 addCrc(crc, reg, data);
         }
-        if (reg == Fdri) { // the CRC follows the data without a separate command
+        if (reg == Fdri) { // frame data is followed by the CRC, without a separate command
             if (!isOurs)
                 return End::Failed;
             value = read(4);
@@ -115,7 +117,7 @@ Spartan6Boot::End Spartan6Boot::load(const std::vector<uint8_t>& flash, uint32_t
             return isStarted ? End::Done : End::Stuck;
         }
     }
-    return End::Stuck; // the configuration never ends
+    return End::Stuck; // the configuration never ends after this fault
 }
 
 std::vector<uint8_t> standInBitstream(uint32_t seed, uint32_t frameWords, uint32_t idCode) {
@@ -140,7 +142,7 @@ std::vector<uint8_t> standInBitstream(uint32_t seed, uint32_t frameWords, uint32
     write(Cmd, {Rcrc});
     crc = 0;
     write(IdCode, {static_cast<uint16_t>(idCode >> 16), static_cast<uint16_t>(idCode)});
-    // about as many words as ISE writes between the sync word and the frames
+    // ISE writes about this number of words between the sync word and the frames
     for (int i = 0; i < 32; ++i)
         put(0x2000);
     write(Cmd, {Wcfg});
@@ -148,7 +150,7 @@ std::vector<uint8_t> standInBitstream(uint32_t seed, uint32_t frameWords, uint32
     put32(frameWords);
     std::mt19937 random(seed);
     for (uint32_t i = 0; i < frameWords; ++i) {
-        // Most frames of a design are empty.
+        // Most frames of a real design are empty, so most words here are 0.
         const auto word = i % 64 < 16 ? static_cast<uint16_t>(random()) : uint16_t(0);
         put(word);
         addCrc(crc, Fdri, word);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// spi_flash: a 2 MiB serial NOR flash like Winbond's W25Q16: it takes instructions byte by byte, as
-// the SPI master clocks them, with realistic erase and write times. Programming can only clear
-// bits. If a loss of power interrupts an operation, the affected bits are random; a seed makes them
-// repeatable.
+// spi_flash: models a 2 MiB serial NOR flash like Winbond's W25Q16. It receives instructions byte
+// by byte from the SPI master, and takes realistic times for erases and writes. A write can only
+// clear bits. If a loss of power interrupts an operation, the affected bits become random; a seed
+// makes them repeatable.
 
 #pragma once
 
@@ -16,11 +16,11 @@ class SpiFlash {
 public:
     static constexpr uint32_t bytes = 0x200000;
 
-    // `now` returns the time in ns.
+    // `now` returns the time, ns.
     explicit SpiFlash(std::function<uint64_t()> now, uint64_t seed = 1)
         : memory(bytes, 0xFF), now_(std::move(now)), random_(seed) {}
 
-    // Sets chip select. An instruction that changes something begins when chip select rises.
+    // Sets chip select. An instruction that changes the flash begins when chip select rises.
     void select(bool isLow) {
         settle();
         if (isSelected_ && !isLow && !in_.empty() && !isUnder_) {
@@ -31,7 +31,8 @@ public:
             if (instruction == WriteEnable || instruction == WriteDisable) {
                 mayWrite_ = instruction == WriteEnable;
             } else if (mayWrite_ && instruction == PageProgram && in_.size() > 4) {
-                const uint32_t page = at & ~(pageBytes - 1); // wraps at the end of the page
+                // after the last byte of the page, the address continues with the first
+                const uint32_t page = at & ~(pageBytes - 1);
                 page_.assign(pageBytes, 0xFF);
                 for (size_t i = 4; i < in_.size(); ++i)
                     page_[(at + i - 4) % pageBytes] = in_[i];
@@ -48,11 +49,12 @@ public:
             in_.clear();
         isSelected_ = isLow;
     }
-    // Clocks one byte: reads `in`, and returns the byte that the flash drives at the same time.
+    // Clocks one byte: the flash receives `in` and sends the returned byte at the same time.
     uint8_t transfer(uint8_t in) {
         settle();
         in_.push_back(in);
-        const size_t behind = in_.size() - 1; // bytes after the first byte of the instruction
+        // number of bytes that follow the first byte of the instruction
+        const size_t behind = in_.size() - 1;
         if (!isSelected_ || behind == 0)
             return 0xFF;
         if (in_[0] == ReadStatus)
@@ -67,9 +69,9 @@ public:
         }
         return 0xFF;
     }
-    // Interrupts the current operation by a loss of power. An interrupted write has cleared some of
-    // its bits. An erase first clears all bits and then sets them; after an interruption each row
-    // of 64 bytes is unchanged, cleared, erased, or partly erased.
+    // Interrupts the current operation by a loss of power. A write that is interrupted has cleared
+    // only some of its bits. An erase first clears all bits and then sets them; if it is
+    // interrupted, each row of 64 bytes is unchanged, cleared, erased, or partly erased.
     void powerOff() {
         settle();
         for (uint32_t row = at_; isUnder_ && row < at_ + size_; row += 64) {
@@ -85,11 +87,11 @@ public:
         isUnder_ = mayWrite_ = isSelected_ = false;
         end_ = 0;
     }
-    // Returns the remaining time of an erase or a write, in ns.
+    // Returns the remaining time of the current erase or write, ns.
     uint64_t busyNs() const { return end_ > now_() ? end_ - now_() : 0; }
 
     std::vector<uint8_t> memory;
-    // Returns the number of erases and writes that have begun.
+    // Returns the number of erases and writes that have begun so far.
     uint64_t operations() const { return operations_; }
     // Called when an erase or a write has begun.
     std::function<void()> onOperation;
@@ -131,7 +133,8 @@ private:
 
     std::function<uint64_t()> now_;
     std::mt19937_64 random_;
-    // in_: the instruction; page_: the page that is being written, empty during an erase
+    // in_: bytes of the instruction; page_: contents of the page that is being written, empty
+    // during an erase
     std::vector<uint8_t> in_, page_;
     bool isSelected_ = false, mayWrite_ = false, isUnder_ = false;
     uint32_t at_ = 0, size_ = 0; // address and size of the current operation

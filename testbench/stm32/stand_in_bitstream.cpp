@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // stand_in_bitstream: writes a bitstream that configures the model of the FPGA, for machines
-// without ISE. The simulated design does not depend on it.
+// without ISE. The simulated design itself does not depend on this bitstream.
 
 #include "spartan6_boot.h"
 #include <cstdlib>
@@ -9,7 +9,7 @@
 #include <iostream>
 
 int main(int argc, char** argv) {
-    // number of words that makes the file as long as a bitstream of the XC6SLX16, 466,408 bytes
+    // number of words with which the file is as long as a bitstream of the XC6SLX16, 466,408 bytes
     const uint32_t frames = 233'127;
     if (argc < 3) {
         std::cerr << "Usage: stand_in_bitstream OUT.bin SEED [WORDS OF FRAMES, else " << frames

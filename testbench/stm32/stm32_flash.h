@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// stm32_flash: the 1 MiB flash memory of an STM32F2, and the registers of its interface (ST's
-// PM0059, and the data sheet's table of erase and programming times). The flash has one bank, so
-// every read waits until an erase or a write has ended. Programming can only clear bits. If a reset
-// or a loss of power interrupts an operation, the affected bits are random; a seed makes them
-// repeatable.
+// stm32_flash: models the 1 MiB flash memory of an STM32F2, and the registers of its interface
+// (ST's PM0059; erase and programming times from the data sheet). The flash has one bank, so during
+// an erase or a write every read waits until it has ended. Programming can only clear bits. If a
+// reset or a loss of power interrupts an operation, the affected bits become random; a seed makes
+// them repeatable.
 
 #pragma once
 
@@ -19,29 +19,32 @@ public:
     static constexpr uint32_t bytes = 0x100000, sectors = 12;
     // Returns the offset of a sector.
     static uint32_t sectorAt(unsigned n) { return n <= 4 ? n * 0x4000u : (n - 4) * 0x20000u; }
-    // Returns the size of a sector: 4 sectors have 16 KiB, one has 64 KiB, 7 have 128 KiB.
+    // Returns the size of a sector: sectors 0 to 3 have 16 KiB, sector 4 has 64 KiB, sectors 5 to
+    // 11 have 128 KiB.
     static uint32_t sectorBytes(unsigned n) { return n < 4 ? 0x4000 : n == 4 ? 0x10000 : 0x20000; }
     static unsigned sectorOf(uint32_t offset) {
         return offset < 0x10000 ? offset / 0x4000 : offset < 0x20000 ? 4 : 4 + offset / 0x20000;
     }
 
     enum Register : uint32_t { Acr = 0, Keyr = 4, Optkeyr = 8, Sr = 12, Cr = 16, Optcr = 20 };
-    enum : uint32_t { Pg = 1, Ser = 2, Strt = 1u << 16, Lock = 1u << 31 }; // bits of CR
-    enum : uint32_t {                                                      // bits of SR
+    // bits of the register CR
+    enum : uint32_t { Pg = 1, Ser = 2, Strt = 1u << 16, Lock = 1u << 31 };
+    // bits of the register SR
+    enum : uint32_t {
         Eop = 1,
         Pgaerr = 1u << 5,
         Pgperr = 1u << 6,
         Pgserr = 1u << 7,
         Bsy = 1u << 16
     };
-    // Thrown for a wrong key. On the chip this is a bus error, and the register stays locked until
-    // the next reset.
+    // Exception for a wrong key. On the chip a wrong key is a bus error, and the register stays
+    // locked until the next reset.
     class WrongKey : public std::runtime_error {
     public:
         using std::runtime_error::runtime_error;
     };
 
-    // `memory` has `bytes` bytes; `now` returns the time in ns.
+    // `memory` is the flash's contents of `bytes` bytes; `now` returns the time, ns.
     Stm32Flash(uint8_t* memory, std::function<uint64_t()> now, uint64_t seed = 1)
         : memory_(memory), now_(std::move(now)), random_(seed) {}
 
@@ -57,7 +60,7 @@ public:
         case Optcr:
             return optcr_;
         default:
-            return 0; // the key registers read as 0
+            return 0; // the key registers always read as 0
         }
     }
     void write(uint32_t reg, uint32_t value) {
@@ -84,10 +87,10 @@ public:
             begin({0, sectorAt(sector), sectorBytes(sector), 0, false, true},
                   eraseMs[kind] * millisecond);
     }
-    // Stores 1, 2 or 4 bytes to flash.
+    // Handles a store of 1, 2 or 4 bytes to flash.
     void store(uint32_t offset, unsigned size, uint32_t value) {
         settle();
-        if (operation_.under) // the bus waits for the current operation
+        if (operation_.under) // the bus waits until the current operation has ended
             finish();
         if (!(cr_ & Pg))
             sr_ |= Pgserr;
@@ -98,7 +101,7 @@ public:
         else
             begin({0, offset, size, value, false, false}, programNs);
     }
-    // Returns the time until the memory can be read again, in ns.
+    // Returns the time until the memory can be read again, ns.
     uint64_t busyNs() const {
         const uint64_t now = now_();
         return operation_.under && operation_.end > now ? operation_.end - now : 0;
@@ -115,7 +118,7 @@ public:
 
     // Returns the level of the read protection; 0xAA means not protected.
     uint8_t protection() const { return protection_; }
-    // Returns the number of erases and writes that have begun.
+    // Returns the number of erases and writes that have begun so far.
     uint64_t operations() const { return operations_; }
     // Called when an erase or a write has begun.
     std::function<void()> onOperation;
@@ -124,8 +127,8 @@ public:
 
 private:
     static constexpr uint32_t keys[2] = {0x45670123, 0xCDEF89AB};
-    // Typical times (STM32F207 data sheet, flash memory characteristics) with a parallelism of 32
-    // bits, for sectors of 16, 64 and 128 KiB and for a word.
+    // Typical durations (STM32F207 data sheet, flash memory characteristics) with a parallelism of
+    // 32 bits: of an erase for sectors of 16, 64 and 128 KiB, and of programming a word.
     static constexpr uint64_t eraseMs[] = {250, 550, 1000}, millisecond = 1'000'000,
                               programNs = 16'000;
 
@@ -136,7 +139,7 @@ private:
     };
     void unlock(uint32_t key) {
         if (keyStep_ > 1 || key != keys[keyStep_]) {
-            keyStep_ = 3; // locked until the next reset
+            keyStep_ = 3; // after a wrong key, the register is locked until the next reset
             throw WrongKey("a wrong key, or one too many: the flash stays locked until a reset");
         }
         if (++keyStep_ == 2) {
@@ -144,7 +147,7 @@ private:
             keyStep_ = 0;
         }
     }
-    // Option bytes; only the read protection is stored (PM0059, 2.5).
+    // Option bytes: of these, only the read protection is stored (PM0059, 2.5).
     void unlockOptions(uint32_t key) {
         static constexpr uint32_t optionKeys[2] = {0x08192A3B, 0x4C5D6E7F};
         optionStep_ = optionStep_ < 2 && key == optionKeys[optionStep_] ? optionStep_ + 1 : 3;
@@ -178,9 +181,9 @@ private:
         if (operation_.under && now_() >= operation_.end)
             finish();
     }
-    // Leaves an interrupted write with some of its bits cleared. An erase first clears all bits and
-    // then sets them. If it is interrupted, each row of 64 bytes is unchanged, cleared, erased, or
-    // partly erased.
+    // Interrupts the current operation. A write then has cleared only some of its bits. An erase
+    // first clears all bits and then sets them; if it is interrupted, each row of 64 bytes is
+    // unchanged, cleared, erased, or partly erased.
     void cut() {
         operation_.under = false;
         const auto [end, offset, size, value, under, erases] = operation_;
@@ -195,7 +198,7 @@ private:
         }
         changed(offset, size);
     }
-    // Clears the bits that are 0 in `value`.
+    // Clears those bits of the flash that are 0 in `value`.
     void put(uint32_t offset, unsigned size, uint32_t value) {
         for (unsigned i = 0; i < size; ++i)
             memory_[offset + i] &= static_cast<uint8_t>(value >> 8 * i);

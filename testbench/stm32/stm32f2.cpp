@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// stm32f2: routes accesses by address, and handles what depends on time.
+// stm32f2: the part of Stm32F2 that selects the peripheral or memory by address, and handles
+// everything that depends on time.
 
 #include "stm32f2_map.h"
 #include <algorithm>
@@ -9,7 +10,7 @@ using namespace stm32f2;
 
 namespace {
 
-// The pins of ports D to G that the FSMC can use (data sheet of the STM32F207, alternate
+// Pins of ports D to G that can be switched to the FSMC (STM32F207 data sheet, alternate
 // functions).
 struct Pins {
     unsigned port;
@@ -66,10 +67,10 @@ void Stm32F2::powerOn() {
 void Stm32F2::resetPeripherals() {
     flash_.reset();
     registers_.clear();
-    registers_[rcc] = 0x83;           // reset value: HSI is on and ready
+    registers_[rcc] = 0x83;           // reset value of RCC_CR: HSI is on and ready
     registers_[rcc + 4] = 0x24003010; // PLLCFGR
-    registers_[gpio] = 0xA8000000;    // reset value: debug pins of port A
-    registers_[gpio + 0x400] = 0x280; // reset value of the same register of port B
+    registers_[gpio] = 0xA8000000;    // reset value of port A's MODER: debug pins
+    registers_[gpio + 0x400] = 0x280; // reset value of port B's MODER: debug pins
     updateFpgaPins();
     for (unsigned port = 0; wires_ && port < 9; ++port)
         wires_->changed(port);
@@ -94,7 +95,7 @@ void Stm32F2::pass(unsigned cycles) {
     lookAround();
 }
 
-// Does what is due: the watchdog, a changed level of the FPGA, the listener for passed time.
+// Handles what is due: the watchdog, a change of the FPGA's pins, and the function set by onTime.
 void Stm32F2::lookAround() {
     if (watchdog_.on && now_() >= watchdog_.due) {
         watchdog_.fired = true;
@@ -113,7 +114,8 @@ unsigned Stm32F2::sleep(unsigned limit) {
     unsigned passed = 0;
     lineChanged_ = false;
     do {
-        // While the design is idle, skips many HCLK cycles at once; otherwise advances by one.
+        // While the design is idle, skips many HCLK cycles at once; otherwise advances by one HCLK
+        // cycle.
         const uint64_t now = now_();
         const unsigned hclks =
             now < until ? fsmc_.idleQuiet((carry_ + limit - passed) / each, until - now) : 0;
@@ -189,7 +191,7 @@ void Stm32F2::writeFlash(uint32_t offset, unsigned bytes, uint32_t value) {
     waitForFlash();
 }
 
-// Flash has one bank: no instruction can be fetched while it is erased or written.
+// The flash has one bank, so no instruction can be fetched while it is being erased or written.
 void Stm32F2::waitForFlash() {
     if (const uint64_t ns = flash_.busyNs())
         cpu_.stallFlash(ns * (config_.hclkHz / 1000) / 1'000'000 + 1);
@@ -200,7 +202,8 @@ void Stm32F2::requireFsmc() {
         return;
     if (!(stored(ahb3Enable) & 1))
         throw Error("the FSMC's clock is off (RCC_AHB3ENR)");
-    // a pin that is not switched to the FSMC does not drive its wire, so there is nothing to check
+    // with a board, a pin that is not switched to the FSMC does not drive its wire, so this check
+    // is not needed
     if (wires_) {
         fsmcUsable_ = true;
         return;

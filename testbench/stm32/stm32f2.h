@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// stm32f2: the parts of an STM32F2 that the firmware uses: the Cortex-M3, flash, RAM, FSMC, clock,
-// pins, EXTI, CRC unit, watchdog, random number generator and backup SRAM, as described in RM0033.
-// An access is a bus fault if it goes to any other address, to a peripheral with its clock off, or
-// to the FSMC while one of the FSMC's pins is not switched to it.
+// stm32f2: models the parts of an STM32F2 that the firmware uses: the Cortex-M3, flash, RAM, FSMC,
+// clock, pins, EXTI, CRC unit, watchdog, random number generator and backup SRAM, as described in
+// RM0033. An access is a bus fault in three cases: it goes to any other address, its peripheral's
+// clock is off, or it goes to the FSMC while one of the FSMC's pins is not switched to the FSMC.
 
 #pragma once
 
@@ -23,13 +23,13 @@
 class Stm32F2 : private CpuBus {
 public:
     struct Config {
-        // Number of HCLK cycles of the processor in one HCLK cycle at the FSMC pins. It is more
-        // than 1 if the FPGA's clock is scaled down, because the pins then have fewer cycles in
-        // simulated time.
+        // Number of the processor's HCLK cycles per HCLK cycle of the FSMC pins. It is more than 1
+        // if the FPGA's clock is scaled down, because the pins then have fewer cycles in simulated
+        // time.
         unsigned coreCyclesPerHclk = 1;
-        uint32_t hclkHz = 120'000'000;     // processor clock in simulated time, Hz
+        uint32_t hclkHz = 120'000'000;     // processor clock, Hz in simulated time
         uint64_t seed = 1;                 // seed of the random number generator
-        uint32_t oscillatorHz = 8'000'000; // clock or crystal at OSC_IN (HSE)
+        uint32_t oscillatorHz = 8'000'000; // frequency of the clock or crystal at OSC_IN (HSE), Hz
     };
     // Creates the chip. `now` returns simulated time in ns.
     Stm32F2(FsmcMaster& fsmc, std::function<uint64_t()> now, Config config);
@@ -39,37 +39,39 @@ public:
     const ElfImage* image() const { return image_ ? &*image_ : nullptr; }
 
     void load(const std::string& elf);
-    // Loads a program into RAM and starts it, as a debugger does. Call it after powerOn().
+    // Loads a program into RAM and starts it, as a debugger does. Call powerOn() first.
     void startInRam(const std::string& elf);
     void powerOn();
     CortexM3::Stop run(bool singleStep = false) { return cpu_.run(singleStep); }
-    // Sets the level at a pin of port B, 0..4. These pins can be inputs of EXTI.
+    // Sets the level at one of the pins 0 to 4 of port B, which can be inputs of EXTI.
     void setPinB(unsigned pin, bool high) { setPin(1, pin, high); }
-    // Sets a function that is called whenever time has passed, at the pace of the pins. The
-    // function returns the time, ns, at which it must be called next; a processor that sleeps need
-    // not call it earlier.
+    // Sets a function that is called when time has passed, after each step of the pins. It returns
+    // the time, ns, at which it must be called next; while the processor sleeps, it may be called
+    // only then.
     void onTime(std::function<uint64_t()> called) { onTime_ = std::move(called); }
 
-    // The FPGA's flash, connected to SPI 1 (PA4..7), with PROGRAM_B on PC0 and DONE on PC1. Flash
-    // and processor lose their power together.
+    // Model of the FPGA's flash, connected to SPI 1 (PA4..7), with PROGRAM_B on PC0 and DONE on
+    // PC1. Flash and processor lose power together.
     FpgaPins fpga;
 
-    // Sets the board's wires at all pins. With 0, only the connections in this class exist.
+    // Connects the wires of the board to all pins. With a null pointer, only the connections that
+    // this class models exist.
     void wire(PinWires* wires) { wires_ = wires; }
     // Returns the function of a pin according to its GPIO registers. Port 0 is A.
     PinSetting pinSetting(unsigned port, unsigned pin) const;
 
-    // Called when the program changes HCLK (Hz). Without this function, HCLK stays as in Config.
+    // Called when the program changes HCLK, with the frequency in Hz. If this function is empty,
+    // HCLK stays as configured.
     std::function<void(uint64_t hz)> onHclk;
 
-    // USART 1 with its baud rate: bytes that the firmware will receive (PA10); whether that line is
-    // in a break; and the listener for bytes that the firmware sends.
+    // USART 1, with its baud rate: bytes that the firmware has not received yet (PA10), whether
+    // this line is in a break, and a function that is called for each byte that the firmware sends.
     std::deque<uint8_t> serialIn;
     bool isSerialBreak = false;
     bool isJumperWired = false; // true if the jumper connects PC2 to ground
     std::function<void(uint8_t)> onSerial;
 
-    // The 4 KiB of SRAM that VBAT preserves without power and through resets.
+    // Returns the 4 KiB of SRAM that VBAT preserves through resets and without power.
     std::array<uint32_t, 1024>& backup() { return backup_; }
 
     struct Resets {
@@ -104,7 +106,7 @@ private:
     void followFpga();
     bool drivesLow(uint32_t port, unsigned pin) const;
     void resetPeripherals();
-    // Functions for the words of each peripheral, by their offset.
+    // Functions that read and write a word of each peripheral, at an offset.
     uint32_t readGpio(uint32_t offset), readCrc(uint32_t offset), readBackup(uint32_t offset),
         readRandom(uint32_t offset), readPower(uint32_t offset), readUsart(uint32_t offset),
         readSpi(uint32_t offset), readSyscfg(uint32_t offset), readRcc(uint32_t offset),
@@ -125,7 +127,7 @@ private:
     Config config_;
     PinWires* wires_ = nullptr;
     std::function<uint64_t()> onTime_;
-    uint64_t wantedNs_ = 0; // time at which the function of onTime must be called next
+    uint64_t wantedNs_ = 0; // time at which the function set by onTime wants to be called next, ns
     CortexM3 cpu_;
     Stm32Flash flash_;
     std::optional<ElfImage> image_;
@@ -136,8 +138,8 @@ private:
     uint32_t resetFlags_ = 0, crc_ = 0xFFFFFFFF, pendingExti_ = 0;
     uint32_t pins_[2] = {0x410, 2}; // levels of the pins of ports A and B
     bool fsmcUsable_ = false, lineChanged_ = false;
-    uint64_t fpgaEdgeNs_ = ~0ull; // time of the next change of PA4
-    uint64_t spiTaken_ = 0;       // number of bytes from the FPGA that were received
+    uint64_t fpgaEdgeNs_ = ~0ull; // time of the next change of the pin PA4, ns
+    uint64_t spiTaken_ = 0;       // number of bytes from the FPGA that the program has received
     uint8_t spiIn_ = 0xFF;
     struct {
         bool on = false, unlocked = false, fired = false;

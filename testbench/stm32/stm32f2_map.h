@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// stm32f2_map: addresses and bits of the registers in Stm32F2 (RM0033). Only its own files include
-// this header.
+// stm32f2_map: defines addresses and bits of the registers in Stm32F2 (RM0033), for the source
+// files of Stm32F2 only.
 
 #pragma once
 

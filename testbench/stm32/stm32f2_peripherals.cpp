@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// stm32f2_peripherals: the peripherals of Stm32F2. Most of them only store written values.
+// stm32f2_peripherals: models the peripherals of Stm32F2. Most of them only store the values that
+// are written.
 
 #include "stm32f2_map.h"
 #include <algorithm>
@@ -11,9 +12,10 @@ namespace {
 
 constexpr uint64_t lsiNs = 31'250; // period of the LSI oscillator, 32 kHz
 constexpr uint64_t hsiHz = 16'000'000;
-// HCLK frequency up to which each wait state of the flash suffices, at 2.7 to 3.6 V, Hz
+// highest HCLK frequency without wait states of the flash, at 2.7 to 3.6 V, Hz; each wait state
+// allows the same again
 constexpr uint64_t waitStateHz = 30'000'000;
-// vector of EXTI line 0; lines 0 to 4 have a vector each
+// interrupt number of EXTI line 0; each of the lines 0 to 4 has a separate interrupt
 constexpr unsigned extiVector = 6;
 
 } // namespace
@@ -25,15 +27,15 @@ bool Stm32F2::isSet(uint32_t address, unsigned bit) const {
 
 // ---- the table of peripherals ----
 
-// A peripheral: the addresses of its registers; the bit of RCC that enables its clock (`enable` 0:
-// the clock is always on); and functions that read and write a word.
+// A peripheral: the address range of its registers; the bit in RCC that enables its clock (if
+// `enable` is 0, the clock is always on); and the functions that read and write a word.
 struct Stm32F2::Peripheral {
     uint32_t base, bytes, enable;
     unsigned bit;
     uint32_t (Stm32F2::*read)(uint32_t offset);
     void (Stm32F2::*write)(uint32_t offset, uint32_t value);
 
-    // Returns the clock bit of the peripheral; each GPIO port has a separate bit.
+    // Returns the clock bit of the peripheral; each GPIO port has a bit of its own.
     unsigned clockBit(uint32_t address) const {
         return base == gpio ? (address - gpio) / 0x400 : bit;
     }
@@ -54,7 +56,7 @@ const Stm32F2::Peripheral Stm32F2::peripherals[] = {
     {iwdg, 0x10, 0, 0, &Stm32F2::readWatchdog, &Stm32F2::writeWatchdog},
 };
 
-// Returns the peripheral at an address. Its clock must be enabled.
+// Returns the peripheral at an address; throws an exception if its clock is off.
 const Stm32F2::Peripheral& Stm32F2::peripheralAt(uint32_t address) const {
     for (const Peripheral& p : peripherals) {
         if (!isIn(address, p.base, p.bytes))
@@ -80,8 +82,8 @@ void Stm32F2::writePeripheral(uint32_t address, uint32_t value) {
     (this->*p.write)(address - p.base, value);
 }
 
-// Returns a register that only stores a value: one of the registers in the first `bytes` of a
-// peripheral.
+// Returns the stored value of a register. The register must be one of those in the first `bytes`
+// bytes of the peripheral; all of them only store a value.
 uint32_t& Stm32F2::storedIn(uint32_t base, uint32_t offset, uint32_t bytes) {
     if (offset >= bytes)
         throw noRegister();
@@ -137,9 +139,9 @@ void Stm32F2::writeGpio(uint32_t offset, uint32_t value) {
     updateFpgaPins();
 }
 
-// ---- RCC: oscillators and PLL are ready immediately ----
+// ---- RCC: oscillators and PLL are ready as soon as they are switched on ----
 
-// Returns HCLK in Hz, computed from the registers of the clock tree.
+// Returns HCLK, Hz, computed from the registers of the clock tree.
 uint64_t Stm32F2::hclk() {
     const uint32_t pll = stored(rcc + 4), config = stored(rcc + 8);
     const uint64_t source = pll >> 22 & 1 ? config_.oscillatorHz : hsiHz;
@@ -156,8 +158,8 @@ uint64_t Stm32F2::hclk() {
     return hz >> (ahb < 8 ? 0 : ahb < 12 ? ahb - 7 : ahb - 6);
 }
 
-// Checks that the flash has the wait states for HCLK (RM0033, table 3): with fewer wait states the
-// chip would read wrong instructions.
+// Checks that the flash has the number of wait states that HCLK needs (RM0033, table 3). With fewer
+// wait states the chip would read wrong instructions.
 void Stm32F2::checkWaitStates() {
     const uint64_t hz = hclk();
     const uint64_t needed = (hz - 1) / waitStateHz, given = flash_.read(Stm32Flash::Acr) & 7;
@@ -172,7 +174,7 @@ uint32_t Stm32F2::readRcc(uint32_t offset) {
     switch (offset) {
     case 0: // CR
         return value | (value & 0x05010001) << 1;
-    case 8: // CFGR reports that the clock switch is complete
+    case 8: // CFGR reports at once that the clock has been switched
         return (value & ~0xCu) | (value & 3) << 2;
     case csr - rcc:
         return (value & 0x00FFFFFF) | resetFlags_;
@@ -257,7 +259,7 @@ void Stm32F2::writeCrc(uint32_t offset, uint32_t value) {
     }
 }
 
-uint32_t Stm32F2::readPower(uint32_t offset) { // the regulator is always ready
+uint32_t Stm32F2::readPower(uint32_t offset) { // the voltage regulator is always ready
     const uint32_t value = stored(power + offset);
     return value | (value >> 6 & 8);
 }
@@ -271,11 +273,11 @@ uint32_t Stm32F2::readBackup(uint32_t offset) {
 }
 
 void Stm32F2::writeBackup(uint32_t offset, uint32_t value) {
-    if (isSet(power, 8)) // PWR_CR.DBP is set; without it the write has no effect, as on the chip
+    if (isSet(power, 8)) // requires PWR_CR.DBP; without it a write has no effect, as on the chip
         backup_[offset / 4] = value;
 }
 
-uint32_t Stm32F2::readRandom(uint32_t offset) { // the generator is clocked by the PLL
+uint32_t Stm32F2::readRandom(uint32_t offset) { // the generator needs the clock of the PLL
     return random_.read(offset, now_(), isSet(rcc, 24));
 }
 
@@ -286,7 +288,7 @@ void Stm32F2::writeRandom(uint32_t offset, uint32_t value) {
 // ---- USART 1 and SPI 1 ----
 
 uint32_t Stm32F2::readUsart(uint32_t offset) {
-    if (offset == 0) // a written byte is sent at once
+    if (offset == 0) // a byte that is written is sent at once
         return 0xC0 | uint32_t(!serialIn.empty()) << 5;
     if (offset != 4)
         return storedIn(usart, offset, 0x1C);
@@ -303,7 +305,8 @@ void Stm32F2::writeUsart(uint32_t offset, uint32_t value) {
         onSerial(static_cast<uint8_t>(value));
 }
 
-// A master's byte is transferred when it is written. A slave that reads too slowly loses bytes.
+// In master mode, a byte is transferred as soon as it is written. In slave mode, bytes are lost if
+// the program reads too slowly.
 uint32_t Stm32F2::readSpi(uint32_t offset) {
     uint32_t& value = storedIn(spi, offset, 0x24);
     const bool isMaster = stored(spi) & 4;
@@ -319,7 +322,8 @@ uint32_t Stm32F2::readSpi(uint32_t offset) {
 void Stm32F2::writeSpi(uint32_t offset, uint32_t value) {
     if (offset == 12) {
         spiIn_ = fpga.transfer(static_cast<uint8_t>(value));
-        waited_ += 32; // the transfer takes 32 cycles, because the driver selects half of PCLK2
+        // a transfer takes 32 cycles, because the driver sets the SPI clock to half of PCLK2
+        waited_ += 32;
         return;
     }
     storedIn(spi, offset, 0x24) = value;
@@ -331,7 +335,7 @@ void Stm32F2::writeSpi(uint32_t offset, uint32_t value) {
 
 uint64_t Stm32F2::watchdogNs() const {
     const uint32_t divider =
-        4u << std::min(watchdog_.prescaler, 6u); // codes 6 and 7 both divide by 256
+        4u << std::min(watchdog_.prescaler, 6u); // codes 6 and 7 both select a division by 256
     return (uint64_t(watchdog_.reload) + 1) * divider * lsiNs;
 }
 

@@ -1,25 +1,27 @@
 // SPDX-License-Identifier: MIT
 //
 // air: measures the radio link over two modems and the air between them, without chip and kernel:
-// goodput in one direction and in both at once, and round trips, unencrypted and encrypted
-// (docs/link.md). Both modems are in API mode, unless --api gives another number. The ground modem
-// uses 111,111 baud and the vehicle modem 250,000, as with the firmware. Where goodput is
-// measured in one direction, the ground sends. Where calls are measured during a picture transfer,
-// the vehicle sends the pictures.
+// goodput in one direction and in both directions at the same time, and round trips, unencrypted
+// and encrypted (docs/link.md). Both modems are in API mode, unless --api selects another number.
+// The ground modem uses 111,111 baud and the vehicle modem 250,000, as with the firmware. Goodput
+// in one direction is measured from ground to vehicle. If calls are measured during a picture
+// transfer, the vehicle sends the pictures.
 
 #include "figures.h"
 #include "modem_pair.h"
 
 namespace {
 
-unsigned leastExponent = 2;            // RN of the modems, set by controller and ground
-unsigned apiEnds = 2;                  // number of modems in API mode: 0; 1, the ground's; or 2
-unsigned rates[2] = {7, 250000};       // BD in API mode of the ground modem and of the vehicle
-                                       // modem
+// parameter RN of the modems, set by the controller and by the ground
+unsigned leastExponent = 2;
+// number of modems in API mode: 0, 1 (only the ground's) or 2
+unsigned apiEnds = 2;
+// parameter BD in API mode, for the ground modem and for the vehicle modem
+unsigned rates[2] = {7, 250000};
 constexpr int pictures = 0, calls = 1; // channels
 const char* const key = "0123456789ABCDEF0123456789ABCDEF";
 
-// Clear: not encrypted. Encrypted: by the modems. Keyed: by the link layer, with a key
+// Clear: no encryption. Encrypted: the modems encrypt. Keyed: the link layer encrypts, with a key
 // (docs/link.md).
 enum Mode { Clear, Encrypted, Keyed };
 const char* const names[] = {"in the clear", "encrypted", "with a key"};
@@ -36,12 +38,14 @@ public:
             fill();
         return ModemEnd::advance(now);
     }
-    U32 echoSize = 0, called = 0;                 // size of the echo, bytes; number of messages
-                                                  // received on channel `calls`
-    uint64_t bytes = 0, lastAt = 0, calledAt = 0; // bytes received on channel `pictures` and time
-                                                  // of the last one; time of the last call
-    bool feed = false;                            // sends pictures continuously
-    // Fills a picture with its number.
+    // echoSize: size of the reply to a call, bytes; called: number of messages received on channel
+    // `calls`
+    U32 echoSize = 0, called = 0;
+    // bytes: number of bytes received on channel `pictures`; lastAt: time of the last of them;
+    // calledAt: time of the last call
+    uint64_t bytes = 0, lastAt = 0, calledAt = 0;
+    bool feed = false; // true: pictures are sent continuously
+    // Queues pictures for sending; all bytes of a picture are its number.
     void fill(U32 size = LINK_MAX_MESSAGE) {
         for (;; ++sent_) {
             const std::vector<U8> message(size, static_cast<U8>(sent_));
@@ -86,7 +90,8 @@ public:
 
 Figures figures("The radio link on a half-duplex air with the modems' own limits.");
 
-// Returns the bytes per second that arrive at both modems together during this time.
+// Returns the number of bytes per second that arrive at both modems together, measured for this
+// time.
 double flow(AirPair& w, bool both, uint64_t seconds) {
     const uint64_t start = w.now;
     w.until(
@@ -104,8 +109,8 @@ double flow(AirPair& w, bool both, uint64_t seconds) {
     return rate;
 }
 
-// Returns the bytes per second that modems and air allow in this weather, with the best RN; a key
-// of the link does not change this limit.
+// Returns the number of bytes per second that modems and air can transfer in this weather, with the
+// best RN. A key of the link does not change this limit.
 double limitOf(const std::string& what, const RfWeather& weather, bool isEncrypted, bool both) {
     static std::map<std::string, double> known;
     double& most = known[what + (isEncrypted ? ", encrypted" : "") + (both ? ", both ways" : "")];
@@ -115,8 +120,8 @@ double limitOf(const std::string& what, const RfWeather& weather, bool isEncrypt
     return most;
 }
 
-// Returns the smallest share of the limit that the link must reach in API mode; for both directions
-// it is 5 points lower than for one direction.
+// Returns the smallest share of the limit that the link must reach in API mode. For both
+// directions, the share is 5 percentage points lower than for one direction.
 double wantedShare(const std::string& what, bool both, double share) {
     static double oneWay;
     if (both)
@@ -127,8 +132,8 @@ double wantedShare(const std::string& what, bool both, double share) {
     return isClear ? 0.95 : isTried ? 0.92 : 0.9;
 }
 
-// Measures the mean over several seeds, because single runs differ by a tenth. Both the figure and
-// the limit count the bytes of a program, without the overhead of frames.
+// Measures goodput as the mean over several seeds, because single runs differ by a tenth. Both the
+// figure and its limit count the bytes of a program, without the overhead of frames.
 void goodput(const std::string& what, const RfWeather& weather, Mode mode, bool both) {
     const unsigned runs = figures.brief ? 1 : 9;
     const double packet = mode == Encrypted ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME;
@@ -169,8 +174,8 @@ void allWeather(Mode mode) {
                 goodput(what, weather, mode, both);
 }
 
-// Makes `count` calls, each with a message of `size` bytes that is echoed. Returns the times in ms,
-// sorted.
+// Makes `count` calls, each with a message of `size` bytes and a reply of the same size. Returns
+// the durations in ms, sorted.
 std::vector<double> callTimes(AirPair& w, U32 size, int count) {
     std::vector<double> times;
     const std::vector<U8> message(size, 1);
@@ -198,7 +203,7 @@ void roundTrips(Mode mode) {
         const U32 check = mode == Keyed || size <= LINK_UNCHECKED ? 0 : LINK_CHECK;
         const U32 frames = size + check + overhead > packet ? 2 : 1;
         const U32 onLine = size + check + frames * overhead;
-        // The reply also contains the acknowledgement, which takes one byte.
+        // The reply has one byte more, because it also contains the acknowledgement.
         const double floor = floorMs(onLine, onLine + 1, mode == Encrypted);
         figures.add("round trip of " + std::to_string(size) + " bytes " + names[mode], median, "ms",
                     floor);
@@ -206,23 +211,23 @@ void roundTrips(Mode mode) {
 }
 
 // Measures MAVLink 2's COMMAND_LONG and COMMAND_ACK, sent as plain bytes without retransmission
-// over the same air; with a key they are signed.
+// over the same air. With a key, they are signed.
 void peers(Mode mode) {
     const bool isSigned = mode == Keyed;
     const double ms = floorMs(isSigned ? 58 : 45, isSigned ? 35 : 22, mode == Encrypted);
     AirPair w(RfWeather(), mode);
-    const auto times = callTimes(w, 3, 31); // setParameterA(short) takes 3 bytes
+    const auto times = callTimes(w, 3, 31); // a call of setParameterA(short) takes 3 bytes
     const double own = times[times.size() / 2];
     figures.add(std::string("round trip of a command ") + names[mode] + ", limit: MAVLink 2", own,
                 "ms", ms);
 }
 
-// Measures calls of one byte while the called side continuously sends pictures of 8 KB.
+// Measures calls of one byte to a vehicle that continuously sends pictures of 8 KB.
 void headOfLine(Mode mode) {
     for (double loss : {0.0, 0.1}) {
         RfWeather weather;
         weather.loss = loss;
-        double median[2] = {0, 0}, late = 0; // late: time that one call in twenty exceeds
+        double median[2] = {0, 0}, late = 0; // late: time that one of twenty calls exceeds
         for (bool isBusy : {false, true}) {
             AirPair w(weather, mode);
             w.b.feed = isBusy;

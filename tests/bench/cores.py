@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""cores: throughput of the cores in their block tests, compared with their memory ports; and the
-duration of the first `ip-test` in a fresh clone, compared with Verilator alone.
+"""cores: measures the throughput of cores in their block tests and compares it with their memory
+ports; also measures the duration of the first `ip-test` in a fresh clone, compared with Verilator
+alone.
 
     cores.py BUILD-FOLDER OUTPUT.json [--brief]
 
@@ -17,8 +18,9 @@ from pathlib import Path
 
 from figures import figure, leave
 
-FIGURES = (  # name, test, case, expression that finds the figure, bytes per clock that the figure
-             # stands for
+# name, test program, test case, expression that finds the figure in the output, function that
+# converts the figure to bytes per clock
+FIGURES = (
     ("vision core, frame read", "vision", "OnePixelAClock", "^(.*) clocks a pixel",
      lambda clocks: 1 / clocks),
     ("Ascon-AEAD128, each direction", "ascon", "Speed", "AEAD128 (.*) bytes", float),
@@ -26,7 +28,7 @@ FIGURES = (  # name, test, case, expression that finds the figure, bytes per clo
     ("FIR filter, each direction", "fir", "OneSampleAClock", "^(.*) clocks a sample",
      lambda clocks: 2 / clocks),
     ("camera, written", "camera", "APixelEach", "^(.*) pixels a clock", float))
-# A minimal program around a Verilated model: it only advances the clock.
+# A minimal program that runs a Verilated model by advancing its clock.
 PROGRAM = """#include "Vfir.h"
 int main() {
     Vfir top;
@@ -36,7 +38,7 @@ int main() {
 
 
 def seconds(*words):
-    """Measures the time in s of a command, without ccache."""
+    """Runs a command without ccache, and returns its duration in seconds."""
     begin = time.monotonic()
     done = subprocess.run(list(map(str, words)), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
                           text=True, env={**os.environ, "CCACHE_DISABLE": "1"})
@@ -44,8 +46,8 @@ def seconds(*words):
 
 
 def first_test(build, brief):
-    """Measures the test of fir in a fresh clone, and Verilator alone with the same core and a
-    program that clocks it. Brief: the test in this build."""
+    """Measures two durations: the test of fir in a fresh clone, and Verilator alone, with the same
+    core and a minimal program. Brief: the test in this build instead of a clone."""
     source = Path(__file__).resolve().parents[2]
     with tempfile.TemporaryDirectory() as work:
         clone, words = Path(work, "icesoc"), []
@@ -69,7 +71,7 @@ def main(build, output, *brief):
     entries = [first_test(build, brief)] if Path(build, "ip/fir/test_ip_fir").exists() else []
     for name, core, case, expression, bytes_of in FIGURES:
         program = Path(build, f"ip/{core}/test_ip_{core}")
-        if not program.exists():  # the chip of this build does not contain the core
+        if not program.exists():  # the chip of this build does not contain this core
             continue
         said = subprocess.run([program, f"--gtest_filter=*{case}*"], stdout=subprocess.PIPE,
                               text=True).stdout

@@ -1,9 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """directory: measures IceGrid's registry and IceStorm: look-ups, registrations and events per
-second of CPU time, which hardly depends on the load of the machine.
+second of CPU time. CPU time hardly depends on the load of the machine.
 
-    directory.py FOLDER OUTPUT.json [--brief]      FOLDER: where icesoc.util.fetch icegrid put both
+    directory.py FOLDER OUTPUT.json [--brief]
+
+FOLDER is the folder in which icesoc.util.fetch icegrid has installed both.
 """
 import os
 import pathlib
@@ -19,14 +21,14 @@ import Ice
 from figures import figure, leave
 
 Ice.loadSlice(f"-I{Ice.getSliceDir()} {Ice.getSliceDir()}/IceStorm/IceStorm.ice")
-import IceStorm  # module defined by the line above
+import IceStorm  # module that the line above generates
 
-UNDER_WAY = 64  # number of calls in progress at the same time
+UNDER_WAY = 64  # number of calls that are in progress at the same time
 HERE = "tcp -h 127.0.0.1"
 
 
 class Service:
-    """A program with an object adapter. Ice's trace prints its endpoint."""
+    """A program with an object adapter. It is traced, so that Ice prints its endpoint."""
 
     def __init__(self, adapter, *words):
         self.process = subprocess.Popen([*words], text=True, stdout=subprocess.PIPE,
@@ -40,7 +42,7 @@ class Service:
         self.endpoint = found[1]
 
     def spent(self):
-        """Returns the CPU time used so far, s."""
+        """Returns the CPU time that the program has used so far, s."""
         words = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rsplit(") ")[1].split()
         return (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
 
@@ -53,8 +55,8 @@ class Service:
 
 
 def rate(service, calls):
-    """Makes calls, given as functions, and returns the number that the service handles per second
-    of its CPU time."""
+    """Makes the calls (a list of functions). Returns the number of calls that the service handles
+    per second of its CPU time."""
     begin, waiting = service.spent(), []
     for call in calls:
         if len(waiting) == UNDER_WAY:
@@ -96,7 +98,7 @@ class Counter(Ice.Blobject):
 
 
 def storm(ic, folder, subscribers, events):
-    """Publishes events of the size that vehicles send, and counts the events that arrive at the
+    """Publishes events of the size that vehicles send. Counts the events that arrive at the
     subscribers."""
     adapter, counters = ic.createObjectAdapterWithEndpoints("", HERE), []
     adapter.activate()

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// figures: collects a bench's figures into the JSON file of `make bench`.
+// figures: collects the figures of a bench, and writes them to the JSON file of `make bench`.
 //
 //   int main(int argc, char** argv) {
 //       Figures figures("Speed of the FSMC bridge.");
 //       return figures.run(argc, argv, [&] {
-//           figures.add("read", 12.5, "clocks", 10); // 10 is what the pins allow
+//           figures.add("read", 12.5, "clocks", 10); // 10 is the limit of the pins
 //       });
 //   }
 //
@@ -26,10 +26,11 @@ public:
         app.add_option("output", output_, "JSON file for the figures")->required();
         app.add_flag("--brief", brief, "measures just enough to show that the bench works");
     }
-    CLI::App app;       // for options of a bench
-    bool brief = false; // a short measurement; no figure is judged
+    CLI::App app;       // command line of the bench, to which it can add options
+    bool brief = false; // true: the measurement is short, and its figures are not judged
 
-    // Adds a figure and prints it, compared with `limit`, a physical bound or a budget.
+    // Adds a figure and prints it. `limit` is a physical limit or a budget with which the figure is
+    // compared.
     nlohmann::json& add(const std::string& name, double value, const std::string& unit,
                         double limit = 0) {
         nlohmann::json entry = {
@@ -43,12 +44,12 @@ public:
         std::puts("");
         return entries_.emplace_back(std::move(entry));
     }
-    // Reports a figure that is too bad; the bench then ends with status 1.
+    // Reports a figure that is too bad; the exit status of the bench is then 1.
     void miss(const std::string& what) {
         if (!brief)
             missed_ += app.get_name() + ": " + what + "\n";
     }
-    // Reads the command line, measures, writes the file. Returns the exit status.
+    // Reads the command line, measures, and writes the file. Returns the exit status.
     template <class Measure> int run(int argc, char** argv, const Measure& measure) {
         namespace fs = std::filesystem;
         app.name(fs::path(argv[0]).filename().string());

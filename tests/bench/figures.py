@@ -1,13 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""figures: writes docs/figures.md, a table for each JSON file that `./icesoc bench`, `size` and
-`firmware` have left; benches in Python make their files with `figure` and `leave`.
+"""figures: writes docs/figures.md, with a table for each JSON file that `./icesoc bench`, `size`
+and `firmware` have written. Benches in Python write their files with the functions `figure` and
+`leave`.
 
     figures.py OUTPUT.md FILE.json...
 
-A file is a list of entries, or an object with the list in "entries". An entry has name, value and
-unit. It may have limit and share (value / limit; gross: value / a limit that counts more), or peer
-and ratio.
+A file is a list of entries, or an object with this list in "entries". An entry has name, value and
+unit. It may also have limit and share (value / limit; gross: value / a limit that includes
+overhead), or peer and ratio.
 """
 import datetime
 import json
@@ -27,12 +28,12 @@ TITLES = {
     "cores": "Cores", "slice": "Slice compiler", "size": "Bytes of the firmware's layers",
 }
 
-NOTES = {  # notes printed below the titles
+NOTES = {  # notes that are printed below the titles
     "size": "The limit of each layer is the paper's figure for it (Table II). A build also fails "
             "if a layer\nexceeds its smaller budget in "
             "[`sw/size_budget.json`](../sw/size_budget.json)."}
 
-# Parts of a name that become columns of a table, if it has two to six of them
+# Parts of a name that become the columns of a table, if it has two to six of these parts
 AXES = [r"\d+ vehicles?", r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", r"interferer \d+ %",
         "in the clear|encrypted|with a key", r"of \d+ bytes", r"\d+ ports", r"HCLK \d+ MHz"]
 HEAD = """# Figures
@@ -47,8 +48,8 @@ modems could transfer. """
 
 
 def figure(name, value, unit, limit=None, peer=None, ratio=None):
-    """Returns an entry with a figure, and the limit or another system's figure with which it is
-    compared."""
+    """Returns an entry for the figure. `limit`, or the figure `peer` of another system, is compared
+    with it."""
     entry = {"name": name, "value": value, "unit": unit, "command": "make bench"}
     if limit:
         entry.update(limit=limit, share=round(value / limit, 3))
@@ -78,7 +79,7 @@ def compared(entry):
 
 
 def split(name):
-    """Splits a name; returns it without its first axis, and the text of the axis."""
+    """Splits a name. Returns the name without its first axis, and the text of this axis."""
     for axis in AXES:
         found = re.search(f",? ({axis})", name)
         if found:
@@ -87,8 +88,9 @@ def split(name):
 
 
 def tables(rows):
-    """Returns the lines of the tables of (name, value, unit, compared)."""
-    series, plain = {}, []  # cells by axis and by the rest of the name
+    """Returns the lines of the tables for rows of (name, value, unit, compared)."""
+    # series: cells by axis and by the rest of the name; plain: rows without an axis
+    series, plain = {}, []
     for name, value, unit, limit in rows:
         key, column = split(name)
         cells = series.setdefault((*key, unit), {})

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// firmware: the firmware's cost on the Cortex-M3, measured while it flies against the RTL.
+// firmware: measures the cost of the firmware on the Cortex-M3, while it flies against the RTL.
 //
-// Cycles are cycles of the board: of the processor, and for accesses the HCLK cycles at the FSMC
-// pins (the simulator's fabric is slower than the board's; its pins keep the ratio of 6 to 5).
+// Cycles are those of the board: processor cycles, and for accesses the HCLK cycles at the FSMC
+// pins (the simulator's fabric is slower than the board's, but its pins keep the ratio of 6 to 5).
 
 #include "figures.h"
 #include "ground.h"
@@ -16,13 +16,13 @@ namespace {
 constexpr double hclk = 120e6; // the board's
 const Ground::Call isAlive = {"uav", "isAlive", 0, {7, 0}};
 
-// A flight of the vehicle's ARM binary with its ground station, which measures the cycles of the
+// A flight of the vehicle's ARM binary with a ground station; it measures the cycles of the
 // vehicle's processor.
 class MeasuredFlight : public GroundAndChip {
 public:
-    // `scaled`: 1 for the ratio of clocks on the board; 50 for processor time scaled to radio time.
-    // `key`: key of the link, or empty. `isTransparent`: the modem of the vehicle is in transparent
-    // mode.
+    // `scaled`: 1 for the ratio of clocks on the board; 50 makes processor time realistic in
+    // proportion to radio time. `key`: key of the link, or empty. `isTransparent`: the modem of the
+    // vehicle is in transparent mode.
     MeasuredFlight(const std::string& elf, double scaled, const std::vector<uint8_t>& key = {},
                    bool isTransparent = false)
         : GroundAndChip(1), warp(scaled),
@@ -33,8 +33,8 @@ public:
         provide(48, 32, nullptr);
         until([this] { return ground.validated; }, 25, "the connection");
     }
-    // Runs until `done`, which is called every simulated millisecond, returns true; fails after
-    // `seconds`.
+    // Runs until `done` returns true; it is called every simulated millisecond. Fails with the
+    // message `what` after `seconds`.
     void until(std::function<bool()> done, double seconds, const char* what) {
         done_ = std::move(done);
         uint64_t end = soc.now() + static_cast<uint64_t>(seconds * 1e9);
@@ -49,13 +49,13 @@ public:
         uint64_t end = soc.now() + static_cast<uint64_t>(seconds * 1e9);
         until([this, end] { return soc.now() >= end; }, seconds + 1, "waiting");
     }
-    // Makes the calls one after the other: each begins when the previous one has been answered.
+    // Makes the calls one after the other; each begins when the previous call has been answered.
     void inTurn(const std::vector<Ground::Call>& calls, double seconds) {
         ground.replies.clear();
         until(ground.calling(calls), seconds, "the calls");
     }
-    // Cycles on the board in which the processor was awake, and the share of these cycles in which
-    // it waited for the FSMC.
+    // awake: cycles on the board in which the processor was awake; the other functions return the
+    // part in which it computed and the part in which it waited for the FSMC.
     double awake() { return own() + waiting(); }
     double waiting() { return static_cast<double>(cpu().busCycles()) / warp; }
     double own() {
@@ -90,11 +90,12 @@ private:
 
 constexpr double hclkPerClk = 1.2;
 constexpr double entering = 12,
-                 leaving = 10; // cycles of exceptions, which the model counts in addition to its
-                               // calls
+                 // cycles of exception entry and exit, which are added to the cycles between the
+                 // calls of the listener
+    leaving = 10;
 constexpr unsigned fpgaInterrupt = FirstInterrupt + 6; // EXTI0
 constexpr uint8_t fpgaPriority = 0x50;
-constexpr double serialLimit = 11'111; // bytes a second at 111,111 baud
+constexpr double serialLimit = 11'111; // number of bytes per second at 111,111 baud
 
 Figures figures("The firmware on the Cortex-M3 model against the RTL.");
 
@@ -129,7 +130,9 @@ void measureLatencies(MeasuredFlight& f) {
     auto switches = std::make_shared<Range>();
     auto routines = std::make_shared<Range>();
     auto rose =
-        std::make_shared<uint64_t>(0); // in fabric clocks; exact during an access and during sleep
+        // time at which the interrupt rose, in fabric clocks; exact during an access and during
+        // sleep
+        std::make_shared<uint64_t>(0);
     auto begin = std::make_shared<std::array<double, Exceptions::count>>();
     f.soc.onIrq([&f, rose](bool high) {
         if (high)
@@ -207,9 +210,9 @@ void measureCalls(MeasuredFlight& f, unsigned calls, const std::string& what, do
 }
 
 void measureStream(MeasuredFlight& f, const std::string& what) {
-    // Floods the vehicle with one-way requests of 1 KB to a missing object: a link window, and more
-    // in the queue. This loads the link and IceC's dispatcher, but no servant, and there are no
-    // replies.
+    // Floods the vehicle with one-way requests of 1 KB to an object that does not exist, so many
+    // that a window of the link is full and more requests wait in the queue. This loads the link
+    // and IceC's dispatcher, but no servant, and there are no replies.
     f.ground.replies.clear();
     uint64_t bytes = 0;
     const std::vector<uint8_t> load(1000, 0x55);
@@ -218,7 +221,7 @@ void measureStream(MeasuredFlight& f, const std::string& what) {
             f.ground.call(0, "missing", "listen", 0, load);
         return false;
     };
-    double end = f.seconds() + 1; // calls in progress
+    double end = f.seconds() + 1; // time at which calls have been in progress long enough
     f.until([&] { return feed() || f.seconds() > end; }, 3, "the stream");
     double awake = f.awake(), waiting = f.waiting(), began = f.seconds();
     bytes = f.ground.deliveredBytes;
@@ -234,8 +237,8 @@ void measureStream(MeasuredFlight& f, const std::string& what) {
     say(what + ": cycles per byte", (f.awake() - awake) / (goodput * took), "cycles");
 }
 
-// Measures a ping: the time from the last byte of the request at the endpoint to the first frame of
-// the reply.
+// Measures a ping: the time from the last byte of the request, at the endpoint, to the first frame
+// of the reply.
 void measurePings(MeasuredFlight& f, const std::string& program) {
     const ElfImage& image = *f.machine.stm32().image();
     const uint32_t message = image.symbol("XBeeATEndpoint_onMessage"),
@@ -255,19 +258,18 @@ void measurePings(MeasuredFlight& f, const std::string& program) {
     f.inTurn(std::vector<Ground::Call>(20, {"hwengine1", "ice_ping", 2}), 60);
     stopListening(f);
     say(program + ": ping, message to first frame of the reply", took.mean(), "cycles");
-    // RAM is measured from the first variable to the top of the main stack, on which interrupts
-    // run.
+    // RAM is measured from the first variable to the top of the main stack, which interrupts use.
     say(program + ": RAM with all objects and all stacks, including the main stack",
         image.symbol("stack_top") - image.symbol("data_begin"), "bytes", 131072);
 }
 
-// High-water marks: stacks are filled with zeros at the start, and the bytes changed since are
-// counted.
+// Measures the largest use of each stack: stacks contain zeros at the start, and the bytes that
+// have changed are counted.
 void measureStacks(MeasuredFlight& f, const std::string& what) {
     const ElfImage& image = *f.machine.stm32().image();
     for (const char* name : {"radioStack", "serverStack", "clientStack", "coresStack", "watchStack",
                              "idleStack", "OSTaskIdleStk"}) {
-        if (!image.has(name)) // the real uC/OS-II uses another name
+        if (!image.has(name)) // the name of this variable in the real uC/OS-II
             continue;
         uint32_t words = image.size(name) / 4, free = 0;
         while (free < words && f.cpu().word(image.symbol(name) + 4 * free) == 0)
@@ -276,7 +278,7 @@ void measureStacks(MeasuredFlight& f, const std::string& what) {
     }
 }
 
-// Measures the only stack of the minimal program; RAM is zero at power-on.
+// Measures the only stack of the minimal program; at power-on RAM contains zeros.
 void measureMinimal(const std::string& elf) {
     MeasuredFlight f(elf, 1);
     measurePings(f, "minimal");

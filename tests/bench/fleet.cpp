@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// fleet: measures calls per second on one channel. The vehicles are called one after the other or
-// all at once, by one ground station, by one ground station for each vehicle, or by two ground
-// stations that share them. Links, modems in API mode and air are as in air.cpp; a ground station
-// shares its modem as the engine does.
+// fleet: measures calls per second on one channel, to several vehicles. They are called one after
+// the other or all at once, by one ground station, by one ground station for each vehicle, or by
+// two ground stations that share the vehicles. Links, modems in API mode and air are the same as in
+// air.cpp; the links of a ground station share its modem, as in the engine.
 
 #include "figures.h"
 #include "modem_pair.h"
@@ -13,10 +13,10 @@ namespace {
 
 Figures figures("Calls a second of several vehicles on one channel.");
 
-constexpr U32 callBytes = 3; // size of setParameterA(short) with a compressed head
+constexpr U32 callBytes = 3; // size of a call of setParameterA(short) with a compressed head, bytes
 
-// A ground station makes a new call on each of its links as soon as the previous call is answered;
-// a vehicle replies with the request's bytes.
+// A ground station or a vehicle. A ground station makes a new call on each of its links as soon as
+// the previous call has been answered. A vehicle replies with the bytes of the request.
 class Station : public ModemEnd {
 public:
     Station(RfChannel& air, int address, bool isGround, bool isKeyed,
@@ -24,7 +24,8 @@ public:
         : ModemEnd(air, options(address, isGround), seed, targets), isGround_(isGround),
           calls_(targets.size()) {
         for (size_t i = 0; i < peers(); ++i) {
-            const int vehicle = isGround ? targets[i] : address; // each vehicle has a separate key
+            // number of the vehicle, which has a key of its own
+            const int vehicle = isGround ? targets[i] : address;
             const std::vector<U8> key(LINK_KEY_BYTES, static_cast<U8>(vehicle));
             if (isKeyed)
                 Link_setKey(link(i), 0, key.data(),
@@ -38,7 +39,7 @@ public:
             call(i);
         return ModemEnd::advance(now);
     }
-    std::vector<double> times; // durations of calls, ms
+    std::vector<double> times; // durations of the calls, ms
     bool calls = false;
 
 private:
@@ -76,10 +77,11 @@ private:
         return 0;
     }
     const bool isGround_;
-    std::vector<Call> calls_; // calls by peer
+    std::vector<Call> calls_; // current call to each peer
 };
 
-// Measures `grounds` ground stations that call separate vehicles, `vehicles` in all.
+// Measures `grounds` ground stations that share `vehicles` vehicles; each station calls different
+// vehicles.
 void measure(const std::string& what, int grounds, int vehicles, bool isKeyed,
              double foundOutside) {
     std::vector<double> times;
@@ -138,7 +140,8 @@ void measure(const std::string& what, int grounds, int vehicles, bool isKeyed,
 
 int main(int argc, char** argv) {
     return figures.run(argc, argv, [&] {
-        // Published results for models of the same modems, without encryption.
+        // Published results for models of the same modems, without encryption: number of vehicles,
+        // calls per second with one ground station, and with one ground station per vehicle.
         const std::vector<std::tuple<int, double, double>> fleets = {
             {1, 34.6, 34.6}, {2, 60.4, 69}, {5, 78, 125}, {10, 80, 130}, {20, 80, 128}};
         for (bool isKeyed : {false, true})

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc: the FSMC bridge's speed in the whole chip: the real driver, the pins, the bridge,
-// the arbiter, the MCB and DDR3.
+// fsmc: measures the speed of the FSMC bridge in the whole chip: the real driver, the pins, the
+// bridge, the arbiter, the MCB and DDR3.
 
 #include "driver_port.h"
 #include "figures.h"
@@ -18,7 +18,7 @@ constexpr uint32_t ddr = MAP_DDR_WINDOW, control = MAP_CONTROL_WINDOW;
 
 Figures figures("Speed of the FSMC bridge with the real driver, up to DDR3.");
 
-// A chip with its driver, at an HCLK in MHz; the fabric runs at 100 MHz.
+// A chip and its driver. HCLK is given in MHz; the fabric runs at 100 MHz.
 struct Chip {
     Chip(unsigned hclkMhz, uint64_t seed) : air(seed), soc(air, {}, hclkMhz, 100) {
         soc.reset();
@@ -36,7 +36,7 @@ struct Chip {
     SocModel soc;
 };
 
-// Measures block transfers by the driver, including setting up the bank, reading ahead, and the
+// Measures block transfers by the driver. They include setting up the bank, reading ahead, and the
 // check at the end.
 double streams(unsigned hclk, uint64_t seed, uint32_t halfwords, bool& right) {
     Chip chip(hclk, seed);
@@ -45,7 +45,7 @@ double streams(unsigned hclk, uint64_t seed, uint32_t halfwords, bool& right) {
     std::vector<U16> in(halfwords);
     U32 repeated = 0;
     double least = 1;
-    // An access takes a whole number of HCLK cycles, so the limit of the pins follows from the
+    // An access takes a whole number of HCLK cycles. Therefore the limit of the pins depends on the
     // driver's timing at this HCLK (docs/fsmc.md).
     auto show = [&](const char* what, double clocks, unsigned cycles, double wanted) {
         double rate = halfwords / clocks * fabricHz, limit = hclk * 1e6 / cycles;
@@ -70,8 +70,8 @@ double streams(unsigned hclk, uint64_t seed, uint32_t halfwords, bool& right) {
     return least;
 }
 
-// Copies a picture of 320 x 240 bytes into DDR3 and back, as the firmware does: with NWAIT, and as
-// a stream.
+// Copies a picture of 320 x 240 bytes to DDR3 and back in two ways, like the firmware: with NWAIT,
+// and as a stream.
 void frame(unsigned hclk, uint64_t seed, bool& right, uint32_t halfwords = 320 * 240 / 2) {
     Chip chip(hclk, seed);
     Random random(seed);
@@ -102,7 +102,7 @@ void single(unsigned hclk, uint64_t seed, int count) {
     Chip chip(hclk, seed);
     Random random(seed);
     FsmcMaster& master = chip.soc.fsmc();
-    double hclks = 100.0 / hclk; // number of fabric clocks in one HCLK
+    double hclks = 100.0 / hclk; // number of fabric clocks per HCLK cycle
     auto show = [&](const char* what, double least, const std::function<void()>& access) {
         double sum = chip.clocks([&] {
             for (int i = 0; i < count; ++i)
@@ -110,9 +110,9 @@ void single(unsigned hclk, uint64_t seed, int count) {
         });
         figures.add(fmt::format("FSMC, HCLK {} MHz, {}", hclk, what), sum / count, "clocks", least);
     };
-    // Least time of an access: ADDSET 2, DATAST 4 and 1 HCLK of hold or turnaround. A read that
-    // waits ends 4 HCLK after NWAIT. Its request passes two flip-flops (1 to 2 clocks, 1.5 on
-    // average), and takes one clock each to be registered, requested and answered.
+    // Shortest access: ADDSET 2, DATAST 4 and 1 HCLK of hold or turnaround. A read that waits ends
+    // 4 HCLK after NWAIT is released. Its request passes two flip-flops (1 to 2 clocks, 1.5 on
+    // average), and needs one clock each to be registered, to be requested and to be answered.
     double access = 7 * hclks, waits = (2 + 4 + 1) * hclks + 1.5;
     show("register word, 32 bits, write", 2 * access,
          [&] { master.write32(control + 4 * SYSTEM_SCRATCH, 1); });

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// load: many programs use the ground's engine, one after the other on its three channels, and many
-// clients call through the gateway at once. No call may be lost, duplicated or answered wrongly,
-// and memory use must stay constant.
+// load: puts the engine and the gateway of the ground under load. Many programs use the engine one
+// after the other, on its three channels. Many clients call through the gateway at once. No call
+// may be lost, duplicated or answered wrongly, and memory use must stay constant.
 
 #include "../sw/ground/ice/world.h"
 #include "../sw/ground/wire.h"
@@ -14,7 +14,7 @@
 namespace {
 
 constexpr size_t callBytes = 40;
-constexpr int patienceMs = 600'000; // ms; greatest time for which a client waits for its channel
+constexpr int patienceMs = 600'000; // longest time for which a client waits for its channel, ms
 
 double residentKiB(const std::string& process) {
     size_t pages = 0, resident = 0;
@@ -22,13 +22,13 @@ double residentKiB(const std::string& process) {
     return static_cast<double>(resident) * 4;
 }
 
-// Programs that use the engine in this process, eight at a time; each call has a unique number.
+// Programs in this process that use the engine, eight at a time. Each call has a number of its own.
 class Programs {
 public:
     Programs(unsigned programs, unsigned calls)
         : programs_(programs), calls_(calls), latencies_(calls) {}
 
-    // Runs the programs, and watches this process' memory.
+    // Runs the programs, and watches the memory use of this process.
     void run(Figures& figures) {
         constexpr unsigned threads = 8;
         const std::string process = "self", where = "engine: ";
@@ -62,7 +62,8 @@ public:
     }
 
 private:
-    // Runs one program after another, until all have been served.
+    // Runs one program after another, until there are no more; several threads do this at the same
+    // time.
     void work() {
         for (unsigned program; (program = next_++) < programs_;) {
             int fd;
@@ -101,12 +102,12 @@ private:
     Wire wire_;
     std::shared_ptr<XBeeAT::Peer> engine_ = wire_.engine();
     const unsigned programs_, calls_;
-    std::vector<float> latencies_; // allocated at the start, because the use of memory is measured
+    std::vector<float> latencies_; // allocated at the start, because memory use is measured later
     std::atomic<unsigned> next_{0}, answered_{0}, ended_{0};
 };
 
-// Stock Ice clients that all call at once through the gateway, a separate process, over modems and
-// air.
+// Stock Ice clients that all call at the same time through the gateway, which is a separate
+// process, over modems and air.
 class Clients {
 public:
     Clients(const std::string& gateway, unsigned clients)
@@ -117,7 +118,7 @@ public:
             "echo:tcp -h 127.0.0.1 -t 600000 -p " + std::to_string(gateway_.port())));
     }
     void run(Figures& figures, unsigned callsEach) {
-        echo_->ice_ping(); // after this call the modem is set up
+        echo_->ice_ping(); // when this call returns, the modem is set up
         std::vector<double> alone, together;
         call(0, 20, alone);
         const double before = residentKiB(std::to_string(gateway_.pid()));
@@ -144,7 +145,7 @@ public:
     }
 
 private:
-    // Makes calls on a separate connection; records the duration of each correct reply.
+    // Makes calls on a connection of its own, and records the duration of each correct reply.
     void call(unsigned client, unsigned count, std::vector<double>& took) {
         auto echo = echo_->ice_connectionId(std::to_string(client));
         for (unsigned i = 0; i < count; ++i) {

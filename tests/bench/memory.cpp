@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// memory: measures speed, latency and fairness of the memory controller, compared with the limit of
-// the MCB.
+// memory: measures speed, latency and fairness of the memory controller, and compares them with the
+// limit of the MCB.
 
 #include "VMemoryMcb2.h"
 #include "VMemoryMcb4.h"
@@ -13,28 +13,31 @@
 namespace {
 
 Figures figures("Speed, latency and fairness of the memory controller.");
-unsigned outstanding = 64; // words that a port may request ahead
-double leastFairness = 1;  // lowest fairness of the streams, as Jain's index: 1 if all get the same
-                           // share
+unsigned outstanding = 64; // number of words that a port may request ahead
+// lowest fairness of the streams as Jain's index, which is 1 if all streams get the same share
+double leastFairness = 1;
 
 struct Mix {
     const char* name;
-    double evenPorts, oddPorts; // share of writes at ports with even and with odd numbers
+    // fraction of the requests that are writes, at ports with an even number and at ports with an
+    // odd number
+    double evenPorts, oddPorts;
 };
 constexpr Mix mixes[] = {{"reads", 0, 0},
                          {"writes", 1, 1},
                          {"even ports read, odd ports write", 0, 1},
                          {"each port reads and writes", 0.5, 0.5}};
 
-// Returns the clocks that the MCB needs for the requests, from the first command to the last word,
-// with a driver that loses no clock and always has words and room. Request: any type with address,
-// words, read.
+// Returns the number of clocks that the MCB needs for the requests, from the first command to the
+// last word. The driver loses no clock, and always has words to write and room for words. Request
+// is any type with the members address, words and read.
 template <class Request> uint64_t directMcb(size_t bytes, const std::vector<Request>& requests) {
     McbModel memory(bytes);
     while (!memory.pins.calibDone)
         memory.cycle();
-    size_t pushing = 0, issuing = 0; // pushing: request whose words are pushed next; issuing:
-                                     // request that is issued next
+    // pushing: index of the request whose words are pushed next; issuing: index of the request that
+    // is issued next
+    size_t pushing = 0, issuing = 0;
     unsigned pushed = 0, promised = 0;
     uint64_t words = 0, popped = 0, clocks = 0;
     for (const Request& r : requests)
@@ -72,7 +75,8 @@ template <class Request> uint64_t directMcb(size_t bytes, const std::vector<Requ
     return clocks;
 }
 
-// Streams on every port through its own part of the memory. Returns the worst share of the limit.
+// Runs streams on all ports, each through a separate part of the memory. Returns the worst share of
+// the limit.
 template <class Module, unsigned ports>
 double stream(const Mix& mix, unsigned size, uint64_t cycles, uint64_t seed) {
     using Bench = MemoryBench<Module, ports>;
@@ -134,8 +138,8 @@ double streams(uint64_t cycles, uint64_t seed) {
     return worst;
 }
 
-// Measures the time from a request to the first word popped, with one port alone and with all other
-// ports streaming.
+// Measures the time from a request to the first word that is popped, with only one port in use and
+// with all other ports streaming.
 template <class Module, unsigned ports> void latency(uint64_t cycles, uint64_t seed) {
     for (unsigned size = 0; size <= 5; ++size) {
         double mean[2];

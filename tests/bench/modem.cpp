@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// modem: measures the simulated time of the modem's set-up for several guard times and rates at
-// which the modem is found: by the modem controller, from CONFIGURE to CONFIGURED, and by the
-// engine on the ground.
+// modem: measures the simulated time for setting up the modem, with several guard times and several
+// initial baud rates: by the modem controller (from CONFIGURE to CONFIGURED), and by the engine on
+// the ground.
 
 #include "VModem.h"
 #include "bench.h"
@@ -55,8 +55,8 @@ double setUpMs(uint32_t guardMs, uint32_t bd) {
     return done ? static_cast<double>((bench.cycles() - begin) * clkNs) / 1e6 : 0;
 }
 
-// Returns the time of a set-up by the program on the ground, on a pty; simulated time passes while
-// the program pauses.
+// Returns the time in which the ground program sets up the modem over a pty, ms. Simulated time
+// also passes while the program waits.
 double groundSetUpMs(uint32_t guardMs, uint32_t bd) {
     RfChannel air(1);
     PtyLine pty;
@@ -110,8 +110,8 @@ int main(int argc, char** argv) {
                 if (figures.brief && (c.guardMs > 20 || c.bd != 7))
                     continue;
                 double ms = side.measure(c.guardMs, c.bd);
-                // The limit consists of the two guard times from the modem's manual; commands and
-                // search are added to it.
+                // The limit is the two guard times that the modem's manual demands; the commands
+                // and the search for the baud rate take additional time.
                 double floor = 2.0 * c.guardMs;
                 std::string name = std::string(side.name) + ": " + c.name;
                 if (ms == 0)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // modem_pair: simulates link layers over modem models and the air between them, event by event. All
-// ends are like the ground: link layer, pacer, and a serial line at 111,111 baud.
+// ends are like a ground station: link layer, pacer, and a serial line at 111,111 baud.
 
 #pragma once
 
@@ -19,7 +19,7 @@ extern "C" {
 #include "link.h"
 }
 
-// A serial line to a modem: each byte takes the time that it takes on a wire, and CTS is obeyed.
+// A serial line to a modem on which each byte takes the same time as on a wire, and CTS is obeyed.
 class TimedLine : public SerialLine {
 public:
     void send(const uint8_t* bytes, size_t count, uint64_t now) {
@@ -28,12 +28,12 @@ public:
         out_.insert(out_.end(), bytes, bytes + count);
     }
     size_t waiting() const { return out_.size(); }
-    void forget() { // Discards all bytes in transit, as a host does that restarts.
+    void forget() { // Discards all bytes in transit, as when the host restarts.
         out_.clear();
         received.clear();
     }
     std::vector<uint8_t> received;
-    bool hangs = false; // true: the host hangs, and nothing is transferred
+    bool hangs = false; // true: the host hangs, so nothing is transferred
 
     void advance(uint64_t now) override {
         if (hangs)
@@ -74,8 +74,8 @@ private:
     uint8_t byte_ = 0;
 };
 
-// Returns the settings of modem 0 or 1, which send to each other. RN is `leastExponent`; in API
-// mode the end changes it.
+// Returns the settings of modem 0 or 1; the modems send to each other. RN is `leastExponent`. In
+// API mode, ModemEnd changes RN.
 inline XBee::Options modemOptions(unsigned address, bool encrypts = false,
                                   unsigned leastExponent = 2, bool isApi = false) {
     XBee::Options o;
@@ -84,11 +84,13 @@ inline XBee::Options modemOptions(unsigned address, bool encrypts = false,
     return o;
 }
 
-// One end: a modem and its links, one per peer. As in the engine, the link that has used the least
-// air time sends first. A derived class handles the messages and calls Link_setKey and Link_start.
+// One end: a modem and its links, one for each peer. As in the engine, the link that has used the
+// least air time sends first. A derived class handles the messages, and calls Link_setKey and
+// Link_start.
 class ModemEnd {
 public:
-    // `targets`: addresses of the peers; empty: the only peer is the modem's DL.
+    // `targets`: addresses of the peers; if it is empty, the only peer is the address in the
+    // modem's DL.
     ModemEnd(RfChannel& air, const XBee::Options& options, uint64_t seed,
              std::vector<int> targets = {})
         : modem(line, air, options), encrypts_(options.set.at("EE") != 0),
@@ -104,11 +106,12 @@ public:
     virtual ~ModemEnd() = default;
     ModemEnd(const ModemEnd&) = delete;
     ModemEnd& operator=(const ModemEnd&) = delete;
-    // Handles a message from peer number `peer` in `targets`. Returns 0 if it is taken.
+    // Handles a message from the peer with index `peer` in `targets`. Returns 0 if the message is
+    // accepted.
     virtual int onMessage(size_t peer, int channel, const U8* message, U32 size) = 0;
     virtual void onOutcome(size_t, U32, Link_Outcome) {}
 
-    // Begins without earlier state, as a program that has just been started.
+    // Begins without earlier state, like a program that has just been started.
     void begin() {
         if (modem.parameter("AP"))
             api_ = std::make_unique<XBeeAT::ApiModem>(modem.parameter("AP") == 2);
@@ -152,14 +155,14 @@ public:
     }
     TimedLine line;
     XBee modem;
-    U32 longestRestUs = 1000; // us; longest time between two polls
+    U32 longestRestUs = 1000; // longest time between two polls, us
 
 protected:
     U32 us() const { return static_cast<U32>(now_ / 1000); }
     uint64_t now_ = 0;
 
 private:
-    struct Target : LinkEnd { // the link to one of the peers
+    struct Target : LinkEnd { // The link to one peer.
         Target(ModemEnd& e, size_t n, int t) : end(e), number(n), target(t) {}
         using LinkEnd::begin;
         bool transmit(const U8* frame, U32 size) override {
@@ -216,7 +219,7 @@ private:
     uint64_t nextPoll_ = 0, airUs_ = 0;
 };
 
-// Advances time until `done` returns true, or until `end`. Returns the last result of `done`.
+// Advances time until `done` returns true or time reaches `end`. Returns the last result of `done`.
 template <class Ends, class Done>
 bool passUntil(uint64_t& now, uint64_t end, RfChannel& air, Ends& ends, Done done) {
     while (!done()) {
@@ -231,8 +234,8 @@ bool passUntil(uint64_t& now, uint64_t end, RfChannel& air, Ends& ends, Done don
     return true;
 }
 
-// Two ends of a class derived from ModemEnd, and the air between them. The first end has called;
-// both are up, with channels 0 to `channels` - 1 open.
+// Two ends of a class that is derived from ModemEnd, and the air between them. The first end has
+// called; both links are up, and channels 0 to `channels` - 1 are open.
 template <class End> class ModemPair {
 public:
     template <class... Arguments>
@@ -269,8 +272,8 @@ public:
     End &a = ends_[0], &b = ends_[1];
 };
 
-// Two modems with serial lines of 111,111 baud and the air, nothing else: the upper bound for a
-// link.
+// Two modems with serial lines of 111,111 baud, and the air, without any link layer. Their
+// throughput is the upper limit for a link.
 struct BareModems {
     struct End {
         End(RfChannel& channel, const XBee::Options& options) : modem(line, channel, options) {}
@@ -296,9 +299,9 @@ struct BareModems {
     uint64_t now = 1'000'000;
 };
 
-// Measures the lower bound of a round trip on half-duplex air (formula in docs/link.md): `out`
-// bytes are sent and, after the last of them has arrived, `back` bytes are returned. Each is at
-// most one packet. RN is 2. Returns the median in ms.
+// Returns the lower limit of a round trip on half-duplex air (formula in docs/link.md), ms, as the
+// median of simulated trips. `out` bytes are sent; after the last of them has arrived, `back` bytes
+// are returned. Each of the two fits into one packet. RN is 2.
 inline double floorMs(size_t out, size_t back, bool isEncrypted = false) {
     BareModems w(RfWeather(), 1, isEncrypted, 2);
     const std::vector<uint8_t> bytes(std::max(out, back), 1);
@@ -325,9 +328,9 @@ inline double floorMs(size_t out, size_t back, bool isEncrypted = false) {
     return times[times.size() / 2];
 }
 
-// Returns the greatest number of bytes per second that two modems can transfer in this weather, in
-// one direction or both. Full packets are always ready, and a lost packet only costs its air time,
-// as if its sender learned of the loss immediately.
+// Returns the largest number of bytes per second that two modems can transfer in this weather, in
+// one direction or in both. A full packet is always ready, and a lost packet costs only its air
+// time, as if the sender noticed the loss immediately.
 inline double mostBytesPerSecond(const RfWeather& weather, bool both, bool isEncrypted,
                                  unsigned leastExponent, uint64_t seconds, uint64_t seed) {
     BareModems w(weather, seed, isEncrypted, leastExponent);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// plugin: measures the radio link as a program sees it: stock ZeroC Ice with the plugin, and IceC
-// on the chip's RTL; in simulated time, with and without a key.
+// plugin: measures the radio link as a program sees it, in simulated time, with and without a key.
+// The program uses stock ZeroC Ice with the plugin; the other side is IceC on the chip's RTL.
 
 #include "chip_world.h"
 #include "figures.h"
@@ -15,10 +15,11 @@ extern "C" {
 namespace {
 
 const char* const modes[] = {"in the clear", "with a key"}; // index: hasKey
-// Limit in one direction: full packets through the modem with RN 2 (docs/simulation.md).
+// Limit for one direction, in bytes per second: full packets through the modem with RN 2
+// (docs/simulation.md).
 constexpr double mostBytesPerSecond = 100 / (4.688 + 1.5 * 0.320 + 5.312) * 1000;
-constexpr int size = 7900, messages = 6; // size: bytes of the sequence in a message; a message may
-                                         // have 8192
+// size: number of bytes of the sequence in each message; a message may have up to 8192
+constexpr int size = 7900, messages = 6;
 
 struct Heard {
     std::atomic<int> count{0};
@@ -56,24 +57,24 @@ public:
         std::snprintf(name, sizeof name, "Ice, goodput %s %s, loss %.2f",
                       down ? "UAV to ground" : "ground to UAV", modes[hasKey_], loss);
         figures_.add(name, rate, "bytes/s", mostBytesPerSecond);
-        echo_->ice_ping(); // after this call, late messages no longer disturb the next measurement
+        echo_->ice_ping(); // after this call no late message can disturb the next measurement
     }
 
-    // Makes small calls, one by one, and returns their times in ms, sorted.
+    // Makes small calls, one after another. Returns their durations in ms, sorted.
     std::vector<double> times(int calls, const std::function<void()>& call) {
         std::vector<double> ms;
         for (int i = 0; i < (figures_.brief ? 4 : calls + 2); ++i) {
             const uint64_t begin = world_.ns();
             call();
-            if (i > 1) // the first calls are not counted, because they transfer the full head
+            if (i > 1) // the first two calls are not counted, because they transfer the full head
                 ms.push_back(static_cast<double>(world_.ns() - begin) / 1e6);
             world_.sleep(0.06 + i * 0.0003);
         }
         std::sort(ms.begin(), ms.end());
         return ms;
     }
-    // Measures round trips. `out`, `back`: bytes of the two frames (docs/link.md, heads of Ice
-    // messages); the reply also contains the acknowledgement.
+    // Measures round trips. `out` and `back` are the numbers of bytes of the two frames
+    // (docs/link.md, heads of Ice messages); the reply also contains the acknowledgement.
     void roundTrip(const char* what, size_t out, size_t back, const std::function<void()>& call) {
         const size_t overhead = hasKey_ ? LINK_SECURE_OVERHEAD : LINK_OVERHEAD;
         const auto ms = times(31, call);
@@ -83,7 +84,7 @@ public:
         figures_.add(std::string("Ice, round trip of ") + what + " " + modes[hasKey_], median, "ms",
                      floor);
     }
-    // Measures small calls on a separate connection while pictures from the UAV arrive
+    // Measures small calls on a separate connection, while pictures from the UAV arrive
     // continuously.
     void headOfLine() {
         const auto fast = world_.echo(ic_, "fast");
@@ -118,7 +119,8 @@ private:
             world_.sleep(0.001);
         return since(begin, heard_.lastNs);
     }
-    // Two calls are in progress, so that the line is never idle between them.
+    // Fetches messages; two or three calls are in progress at the same time, so that the line is
+    // never idle between them.
     double fetched(uint64_t begin) {
         std::deque<std::future<RadioTest::Bytes>> calls;
         for (int i = 0; i < messages; ++i) {

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""simulator: measures simulated clocks per second, the best of three alternating runs: of the UAV
-alone, with quiet clocks skipped and with each clock evaluated; and of the replayed mission, on the
-host and on the Cortex-M3.
+"""simulator: measures simulated clocks per second, as the best of three alternating runs. It
+measures the UAV alone, with quiet clocks skipped and with each clock evaluated, and a replayed
+mission, on the host and on the Cortex-M3.
 
     simulator.py SOURCE-FOLDER BUILD-FOLDER OUTPUT.json [--brief]
 """
@@ -33,8 +33,8 @@ def main(source, build, output, brief=""):
              "every": (build, *IMAGE, "--duration", "0.02", "--every-clock"),
              "flight": (build, "--replay", f"{work.name}/host"),
              "flight m3": (build, "--replay", f"{work.name}/m3")}
-    best = dict.fromkeys(kinds, (0, 0))  # millions of clocks per second, and percentage of clocks
-                                         # that were evaluated
+    # for each kind: millions of clocks per second, and percentage of clocks that were evaluated
+    best = dict.fromkeys(kinds, (0, 0))
     for run in range(runs):
         for kind, (folder, *options) in kinds.items():
             said = logged(f"{folder}/testbench/sim/icesoc-sim", "--speed", "max", "--out",

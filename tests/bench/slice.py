@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""slice: measures the processor time of slice2c and slice2cpp on the five largest files of Debian's
-zeroc-ice-slice. The two alternate on each file, and the best of several rounds counts, because
-everything else on the machine only makes them slower.
+"""slice: measures the CPU time of slice2c and slice2cpp for the five largest files of Debian's
+zeroc-ice-slice. The two compilers alternate on each file, and the best of several rounds counts,
+because other programs on the machine can only make them slower.
 
     slice.py SLICE2C OUTPUT.json [--brief]
 """
@@ -19,7 +19,7 @@ SLICES = pathlib.Path("/usr/share/ice/slice")
 
 
 def once(program, file, folder):
-    """Returns the processor time of one run, ms, as the mean of ten runs."""
+    """Returns the CPU time of one run, ms, as the mean of ten runs."""
     spent = lambda: sum(resource.getrusage(resource.RUSAGE_CHILDREN)[:2])
     begin = spent()
     for _ in range(10):

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """trust: reports the results of attacks on the link and of power losses during updates, and the
-cost of a key in bytes on the air, as the tests have counted them.
+number of additional bytes on the air if the link has a key. The tests count all these figures.
 
     trust.py TEST_UPDATE TEST_LINK OUTPUT.json [--brief]
 """
@@ -15,7 +15,7 @@ from figures import figure, leave
 
 CALL = "Tags/CallBytes.ACallAndItsReplyTakeFewerThanMavlink/"
 HOSTILE = "Vehicles/Attacked.NothingHostileIsAcceptedAndNothingLegalLostOrDoubled/"
-FIGURES = [  # program, names of tests, property, text in the table
+FIGURES = [  # program, names of the tests, property that the tests record, text in the table
     (0, "Update.WhereverThePowerIsCutThereIsAnImageThatBoots", "cuts",
      "new firmware: power losses, in each operation and later"),
     (0, "Fpga.WhereverThePowerIsCutABitstreamConfiguresIt", "cuts",
@@ -30,7 +30,7 @@ HARM = {"cuts": "vehicle or FPGA does not start again",
 
 
 def run(program, tests, hostile):
-    """Returns the properties that the tests recorded, and the expectations that failed."""
+    """Runs tests. Returns the properties that they recorded, and the expectations that failed."""
     with tempfile.NamedTemporaryFile() as out:
         subprocess.run([program, "--gtest_filter=" + tests, "--gtest_output=json:" + out.name],
                        env={**os.environ, "HOSTILE": hostile}, stdout=subprocess.DEVNULL)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""board_test: all boards of the tree can be read. Boards without unknown facts can be built, and
-their generated files agree with the chip, with the facts about parts, and with the pages in
-docs/boards."""
+"""board_test: checks that all boards of the tree can be read, and that boards without unknown facts
+can be built. Their generated files must agree with the chip, with the facts about parts, and with
+the pages in docs/boards."""
 import re
 import subprocess
 import sys

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""bringup_test: `board bringup` reads what the self-test prints, also if it is damaged or ends too
-early, and writes the report as JSON and as a page."""
+"""bringup_test: checks that `board bringup` reads the output of the self-test, even if the output
+is damaged or ends too early, and writes the report as JSON and as a page."""
 import html.parser
 import json
 import os
@@ -40,7 +40,8 @@ def report_of(text):
 
 
 class Page(html.parser.HTMLParser):
-    """Collects texts and tags, and checks that tags are closed in order."""
+    """Collects the texts and tags of a page, and checks that tags are closed in the correct
+    order."""
     EMPTY = {"meta", "br"}
 
     def __init__(self, text):
@@ -108,7 +109,8 @@ class Reports(unittest.TestCase):
 
 class Listening(unittest.TestCase):
     def listen(self, text, silence=5.0, closes=False):
-        """Writes a text to a pseudo-terminal and returns the report of what arrived."""
+        """Writes a text to a pseudo-terminal, and returns the report about the text that
+        arrived."""
         ours, theirs = os.openpty()
         command.set_rate(theirs)
         report = bringup.Report(KIT)
@@ -147,7 +149,7 @@ class Programs(unittest.TestCase):
         self.addCleanup(said.stop)
 
     def programs(self, **scripts):
-        """Puts programs into the only folder of PATH."""
+        """Creates programs in a folder, which is the only folder in PATH."""
         for name, text in scripts.items():
             path = self.folder / name
             path.write_text("#!/bin/sh\n" + text)
@@ -177,8 +179,8 @@ class Programs(unittest.TestCase):
             command.on_board(values, self.build(), self.report, self.folder)
 
     def call(self, **scripts):
-        """Makes the last step with programs that replace OpenOCD, the key's program and the
-        call."""
+        """Runs the last step of the bring-up with programs that replace OpenOCD, the program that
+        sets the key, and the call."""
         keys = self.folder / "sw/ground/clients/provide_key.py"
         keys.parent.mkdir(parents=True)
         self.programs(**{"openocd": "exit 0", "icesoc": "exit 0", "key": "exit 0", **scripts})

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""wrong_test: `board check` rejects boards that cannot work, each for the right reason and for no
-other. Each line of WRONG contains a change of the kit and the expected message."""
+"""wrong_test: checks that `board check` rejects boards that cannot work, with the correct message
+and no other. Each line of WRONG contains a change to the kit and the expected message."""
 import copy
 import sys
 import unittest
@@ -11,7 +11,7 @@ KIT = model.find("nucleo-qmtech")
 
 
 def net(name, **changes):
-    """Returns a change of one net; None removes a key."""
+    """Returns a function that changes one net; the value None removes a key."""
     def change(facts):
         entry = next(n for n in facts["nets"] if n["name"] == name)
         entry.update(changes)
@@ -21,7 +21,7 @@ def net(name, **changes):
 
 
 def swap(first, second, end):
-    """Returns a change that swaps the ends of two nets."""
+    """Returns a function that swaps the ends of two nets."""
     def change(facts):
         one, two = (next(n for n in facts["nets"] if n["name"] == name)
                     for name in (first, second))
@@ -42,7 +42,7 @@ def put(table, key, value):
 
 
 def shut(bridge):
-    """Returns a change that keeps a solder bridge closed."""
+    """Returns a function that closes a solder bridge."""
     def change(facts):
         facts["open"].remove(bridge)
     return change
@@ -148,7 +148,8 @@ def case(change, expected):
 class Wrong(unittest.TestCase):
     @staticmethod
     def reason(text):
-        """Returns a message without names and figures, which identifies the kind of error."""
+        """Returns a message without its names and figures; the result identifies the kind of
+        error."""
         return " ".join(word for word in text.partition(": ")[2].split()
                         if word.isalpha() and word.islower())[:14]
 

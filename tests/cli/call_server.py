@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""call_server: a server of stock Ice with the object `try` of call.ice, for call_test.py. Prints
-its port. Arguments are properties of Ice, such as --Trial.AdapterId=uav7."""
+"""call_server: a server of stock Ice with the object `try` of call.ice, for call_test.py. It prints
+its port. Arguments are Ice properties, such as --Trial.AdapterId=uav7."""
 import sys
 import threading
 import time

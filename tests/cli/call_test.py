@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""call_test: tests ./icesoc call with a server of stock Ice, without a flight: values of all types,
-including hostile ones, options, exit statuses, events, completion.
+"""call_test: tests ./icesoc call with a server of stock Ice instead of a flight: values of all
+types, including hostile ones, options, exit statuses, events, completion.
 
 Usage: call_test.py case build-folder
 """
@@ -30,7 +30,7 @@ from icesoc.cli.commands.call import choices  # noqa: E402
 from icesoc.call.objects import Catalogue  # noqa: E402
 from icesoc.util.errors import Stop  # noqa: E402
 
-# Arguments of `try`, and the output with --json.
+# Arguments for operations of `try`, each with the output that --json must give.
 CALLS = [
     ("add 1 2", {"result": 3}), ("add threshold=0x10 left=-5", {"result": 11}),
     ("add -32768 255", {"result": -32513}),
@@ -59,7 +59,7 @@ CALLS = [
     ("add 1 2 --encoding 1.0", {"result": 3}), ("ice_id", {"result": "::Trial::Try"}),
     ("ice_isA ::Trial::Base", {"result": True}), ("--json add 1 --timeout 5 2", {"result": 3}),
 ]
-# Arguments that are refused before anything is sent, each with the message.
+# Arguments that must be rejected before anything is sent, each with the message.
 REFUSED = {
     "add 1 300": "threshold: expected 0 to 255, got 300",
     "add 1 -1": "threshold: expected 0 to 255, got -1",
@@ -114,7 +114,7 @@ REFUSED = {
     "nothing --device /dev/null --flight x": "--flight, --device exclude each other: give only one",
     "echo " + "\udcff": "text: expected text in UTF-8",
 }
-# Failures: exit status and message
+# Calls that fail, each with exit status and message
 FAILURES = {
     "fail 42": (3, "try.fail: Trial.Overflow: why = too large, code = 42, colour = green"),
     "sleep 2000 --timeout 0.2": (4, "no answer from 127.0.0.1:"),
@@ -142,7 +142,7 @@ class Call(unittest.TestCase):
         cls.work.cleanup()
 
     def ask(self, words, *more, operation=True):
-        """Calls `try` in this process; returns exit status, output and messages."""
+        """Runs `call` in this process. Returns exit status, output and messages."""
         words = words.split(" ") if isinstance(words, str) else list(words)
         if operation:
             at = 1 if words[0] == "--json" else 0
@@ -171,7 +171,7 @@ class Call(unittest.TestCase):
                          {"result": 200200})
 
     def test_text(self):
-        """Results are printed in a form for people."""
+        """Without --json, results are printed in a form for people."""
         self.assertEqual(self.ask("add 1 2")[1], "3\n")
         self.assertEqual(self.ask("next green")[1], 'result: "blue"\nnumber: 5\n')
         self.assertEqual(self.ask("move @json 1")[1], "  x: 10\n  y: 7\n")
@@ -179,11 +179,12 @@ class Call(unittest.TestCase):
         self.assertRegex(self.ask("nothing")[2], r"^done in [0-9.]+ ms\n$")
 
     def test_refused(self):
-        """Nothing is sent: no server listens at this address."""
+        """Wrong arguments are rejected before anything is sent; no server listens at this
+        address."""
         for words, message in REFUSED.items():
-            unknown = words.split()[0] in ("ad", "ice_pong")  # an unknown operation is an error
-                                                              # only after the object was asked for
-                                                              # its interface
+            # whether an operation exists is known only after the object has been asked for its
+            # interface
+            unknown = words.split()[0] in ("ad", "ice_pong")
             target = () if unknown or {"--gateway", "--device"} & set(words.split()) \
                 else ("--gateway", "127.0.0.1:1")
             status, out, err = self.ask(words.split(" ") + list(target))
@@ -223,7 +224,7 @@ class Call(unittest.TestCase):
                       self.ask("watch events=1 --watch --events 1")[1])
 
     def test_lists(self):
-        """Objects of the chip with their doc comments, and words for completion."""
+        """Lists the objects of the chip with their doc comments, and the words for completion."""
         status, out, err = self.ask("--list", operation=False)
         self.assertEqual(status, 0, err)
         self.assertRegex(out, r"(?s)hwengine1: Autopilot.HwProcessingEngine\n.*"
@@ -253,7 +254,7 @@ class Call(unittest.TestCase):
             Catalogue(str(BUILD)).find("fri.filter")
 
     def test_registers(self):
-        """A core that is called by its registers: names and values are checked."""
+        """Calls a core by its registers; names and values are checked."""
         build = Path(self.work.name, "build")
         (build / "gen").mkdir(parents=True)
         (build / "slice").symlink_to(BUILD / "slice")
@@ -276,7 +277,7 @@ class Call(unittest.TestCase):
         self.assertIn("name=THRESHOLD", choices(Catalogue(str(build)), ["eye.set"]))
 
     def test_locator(self):
-        """The vehicle is found by its name in IceGrid."""
+        """IceGrid finds the vehicle by its name."""
         work, endpoint = Path(self.work.name, "registry"), "tcp -h 127.0.0.1"
         work.mkdir()
         log = open(Path(self.work.name, "registry.log"), "w+")
@@ -312,7 +313,7 @@ class Call(unittest.TestCase):
         self.assertEqual(self.ask(["add", "1", "2", "--locator", f"x:{endpoint} -p 1"])[0], 4)
 
     def test_speed(self):
-        """The first call takes at most 1.5 times as long as in a small program that only makes this
+        """The first call takes at most 1.5 times as long as in a small program that makes only this
         call."""
         program = ["/usr/bin/python3", "-c", f"""
 import Ice
@@ -325,7 +326,8 @@ with Ice.initialize() as communicator:
                   f"127.0.0.1:{self.port}", "--slice", HERE / "call.ice", "--build", BUILD]
 
         times = {"own": [], "ours": []}
-        for _ in range(5):  # alternating, so that the load of the machine is the same for both
+        # the two programs alternate, so that both run under the same load of the machine
+        for _ in range(5):
             for name, words in ("own", program), ("ours", called):
                 begin = time.perf_counter()
                 said = subprocess.run(words, capture_output=True, text=True)

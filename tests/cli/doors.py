@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""doors: ./icesoc and make take the same options, report errors with advice, and never pass a value
-to a shell. lists.py tests the lists of commands."""
+"""doors: checks that ./icesoc and make accept the same options, report errors with advice, and
+never pass a value to a shell. lists.py tests the lists of commands."""
 import concurrent.futures, importlib.util, json, os, shutil, subprocess, tempfile, time, unittest
 from pathlib import Path
 
@@ -14,15 +14,15 @@ from script import LONGEST
 
 
 def clean(**more):
-    """Returns an environment without the variables of options and of the make that runs the
-    tests."""
+    """Returns an environment without the variables of options, and without those of the make that
+    runs the tests."""
     ours = {option.variable for each in command.COMMANDS.values() for option in each.options}
     ours |= {"MAKEFLAGS", "MFLAGS", "MAKELEVEL"}
     return {**{name: value for name, value in os.environ.items() if name not in ours}, **more}
 
 
 def ask(*words, **environment):
-    """Returns (exit status, output) of a program in the tree."""
+    """Runs a program in the tree. Returns (exit status, output)."""
     done = subprocess.run(words, cwd=TREE, env=clean(**environment), stdin=subprocess.DEVNULL,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           timeout=LONGEST)
@@ -34,7 +34,7 @@ class Work(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.work = Path(folder.name)
-        # An empty tree, in which every command ends soon.
+        # A tree without sources, in which every command ends soon.
         (self.work / "tree/cmake").mkdir(parents=True)
         (self.work / "tree/ip").mkdir()
         self.script("tree/cmake/setup.sh", "")
@@ -79,7 +79,7 @@ class Values(Work):
             options = [o for o in each.options if o.listed and not o.positional
                        and o.kind.metavar in samples and o.kind not in (SWITCH, FLIGHT)
                        and o.name not in ("loss", "interference")]
-            # Names come from files of the tree, so there are no names to check here.
+            # If an option accepts names, the first name that exists in the tree is used.
             variables = {o.variable: (o.choices(None) or ["a"])[0] if o.choices and o.is_checked
                          else samples[o.kind.metavar] for o in options}
             words = [word for o in options
@@ -166,7 +166,7 @@ class Values(Work):
                          ask("make", "-s", "run", "OPEN=0", "KEY=Makefile", "OUT=/proc/none")[1])
 
 
-# Commands that are mistyped, each with a part of the answer.
+# Mistyped commands, each with a part of the message that it must cause.
 MISTAKES = {
     "./icesoc rnu": "unknown command 'rnu'; did you mean run?",
     "./icesoc core nwe": "core has no command 'nwe'; did you mean new?",
@@ -327,7 +327,7 @@ class Mistakes(Work):
         run.send_signal(2)
         self.assertEqual(run.communicate()[1], "icesoc: stopped\n")
         self.assertEqual(run.returncode, 130)
-        # The signal about the end of its parent reaches a child that had just been started a little
+        # A child that had just been started may receive the signal about its parent's end a little
         # later.
         while Path("/proc", child.read_text().strip()).exists():
             time.sleep(0.01)
@@ -357,7 +357,7 @@ class Mistakes(Work):
 
 
 class Trees(Work):
-    """Tests of the handling of build folders."""
+    """Tests of commands that use build folders."""
     def configure(self, tree):
         return ask("./icesoc", "build", "configure", "--build", "build", ICESOC_TREE=str(tree),
                    XDG_CONFIG_HOME=str(self.work / "config"))
@@ -376,7 +376,8 @@ class Trees(Work):
         self.assertIn(f"build was configured for the tree in {old}: creating it again", text)
         self.assertEqual(status, 0)
         self.assertEqual((config / "icesoc/update.key").read_bytes(), b"private")
-        # A value that CMake refuses is not stored; otherwise all later commands would fail.
+        # If CMake rejects a value, the value must not be stored; otherwise all later commands would
+        # fail.
         with open(new / "CMakeLists.txt", "a") as file:
             file.write('if(CORE_FOLDERS)\n'
                        '  message(FATAL_ERROR "CORE_FOLDERS is ${CORE_FOLDERS}")\nendif()\n')
@@ -399,8 +400,8 @@ class Trees(Work):
 
         def remove(text):
             (tree / "build/main").mkdir(parents=True, exist_ok=True)
-            (tree / "build/main/update.key").write_text(text)  # folder in which earlier versions
-                                                               # stored the key
+            # file in which earlier versions stored the key
+            (tree / "build/main/update.key").write_text(text)
             ask("make", "-s", "clean", ICESOC_TREE=str(tree), XDG_CONFIG_HOME=str(config))
             self.assertFalse((tree / "build").exists())
             return sorted(key.read_text() for key in (config / "icesoc").glob("update*.key"))

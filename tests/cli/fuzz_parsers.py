@@ -4,11 +4,12 @@
 
     fuzz_parsers.py PARSER BUILD INPUTS [FILE...]
 
-A file must be read, or refused with a proper message and an exit status that is not 0, and a
-refused file must not cause any output file. Everything else is a finding, including more than 5 s
-of CPU time. Inputs that reach a new line of the parser are mutated further. FUZZ=600 runs for 600 s
-instead of INPUTS inputs, starting with the inputs that earlier runs stored (~/.cache/icesoc/fuzz).
-SEED (default 1) selects the mutations. FILE: only these files are read, unchanged.
+The parser must either read a file, or reject it with a proper message and an exit status that is
+not 0. It must not write output for a file that it rejects. Everything else is a finding, also the
+use of more than 5 s of CPU time. Inputs that reach a new line of the parser are mutated further.
+FUZZ=600 runs for 600 s instead of INPUTS inputs, and starts with the inputs that earlier runs
+stored (~/.cache/icesoc/fuzz). SEED (default 1) selects the mutations. If FILE is given, only these
+files are read, unchanged.
 """
 import contextlib
 import dataclasses
@@ -48,7 +49,7 @@ RDL = """addrmap lamp { name = "Lamp // no comment"; default regwidth = 8; defau
     state_r STATE @ 4; reg { field { woclr; } DONE[0:0] = 0; } EVENTS @ 6; };
 """
 KEYS = "# ours\n0x0001 {0}\n0xBEEF {0} {0}\n{0}\n".format("00112233445566778899AABBCCDDEEFF")
-# Words of Python and of libraries that must not occur in our error messages.
+# Words of Python and of libraries that our error messages must not contain.
 FOREIGN = re.compile(
     r"Traceback|[a-z]Error\b|NoneType|'\w+' object|unhashable|subscriptable|not supported between"
     r"|indices must|\b\w+\(\) |unsupported operand|literal for int|must be str|exception\.\w+\.\d+"
@@ -58,10 +59,10 @@ FOREIGN = re.compile(
 @dataclasses.dataclass
 class Parser:
     module: str
-    words: list  # FILE is replaced by the input, OUT by the folder of the output
-    seeds: object  # patterns of files, or a function that returns them
-    function: str = "main"  # function that gets the file if `words` is empty
-    program: str = ""  # program in the build folder that runs instead of the module
+    words: list  # arguments; FILE is replaced by the input file, OUT by the folder for output
+    seeds: object  # patterns of the files to mutate, or a function that returns the files
+    function: str = "main"  # function to call; it gets the input file if `words` is empty
+    program: str = ""  # program in the build folder that is run instead of calling the module
 
 
 def chip_rdl():
@@ -71,7 +72,8 @@ def chip_rdl():
 
 
 def manifests():
-    """Returns the manifests of the tree's cores, and creates empty files for the names in them."""
+    """Returns the manifests of the tree's cores. Creates empty files with the names that occur in
+    them."""
     texts = []
     for pattern in ("ip/*/core.toml", "tests/bus/cores/data/*.toml", "tests/e2e/cores/*/core.toml"):
         for path in sorted(TREE.glob(pattern)):
@@ -109,11 +111,11 @@ PARSERS = {
 
 
 class TooLong(BaseException):
-    """The parser has used more CPU time than allowed."""
+    """Raised when the parser has used more CPU time than allowed."""
 
 
 class Runner:
-    """Runs a parser, and notes which of its lines were reached."""
+    """Runs a parser, and records which of its lines were reached."""
 
     def __init__(self, parser):
         self.parser, self.reached = parser, set()
@@ -141,7 +143,8 @@ class Runner:
         return self.line
 
     def call(self):
-        """Runs the parser. Returns (status, message); a status of at least 128 is a finding."""
+        """Runs the parser on an input. Returns (status, message); a status of at least 128 is a
+        finding."""
         if self.parser.program:
             run = subprocess.run([BUILD / self.parser.program, *self.words],
                                  capture_output=True, timeout=LONGEST)
@@ -173,7 +176,8 @@ class Runner:
         return status or 0, said.getvalue()
 
     def finding(self, data):
-        """Returns the error in the parser's reaction to an input, or None."""
+        """Runs the parser on an input. Returns a description of its error, or None if it behaves
+        correctly."""
         self.file.write_bytes(data)
         for old in self.out.iterdir():
             old.unlink()
@@ -196,7 +200,8 @@ ODD = [b"9" * 25, b"9" * 5000, b"\xff", b"\0", b"\n", b"\xe0\xb9\x95", b"\xc2\xb
 
 
 def mutated(data, corpus, words, draw):
-    """Returns an input derived from `data` by a few changes of words, bytes or halves."""
+    """Returns a copy of `data` with a few random changes: of words, of bytes, or of its two
+    halves."""
     tokens = TOKEN.findall(data) or [b""]
     for _ in range(draw.choice((1, 1, 1, 2, 3, 6))):
         at = draw.randrange(len(tokens) + 1)
@@ -231,8 +236,8 @@ def kept_in(name):
 
 
 def fuzz(name, runs, seconds):
-    """Mutates inputs until the number or the time is reached; returns (inputs run, findings by
-    message)."""
+    """Mutates inputs until the number of inputs or the time is reached. Returns the number of
+    inputs, and the findings by message."""
     runner, seed = Runner(PARSERS[name]), PARSERS[name].seeds
     corpus = [text.encode() for text in seed()] if callable(seed) else [
         path.read_bytes() for pattern in seed for path in sorted(TREE.glob(pattern))]

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""lists: tests the list of commands, their help and manual, and the output to files and
+"""lists: tests the list of commands, the help and the manual page, and the output to files and
 terminals."""
 import contextlib, io, re, shlex, shutil, subprocess, sys, tempfile, unittest
 from pathlib import Path
@@ -92,7 +92,7 @@ class Lists(unittest.TestCase):
             self.assertEqual((status, said.count("OK")), (0, 2), said)
             subject = ask("openssl", "x509", "-noout", "-subject", "-in", f"{work}/pilot.pem")[1]
             self.assertRegex(subject, "subject=CN ?= ?pilot")
-            # The certificate is not allowed to sign other certificates.
+            # The certificate must not be allowed to sign other certificates.
             self.assertIn("CA:FALSE", ask("openssl", "x509", "-noout", "-text", "-in",
                                           f"{work}/pilot.pem")[1])
             self.assertEqual(Path(work, "pilot.pem").stat().st_mode & 0o777, 0o600)

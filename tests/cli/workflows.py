@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""workflows: tests the commands of the container and of the workflows for GitHub and GitLab, in
-this tree and in a user's repository of cores.
+"""workflows: runs the commands of the container and of the workflows for GitHub and GitLab, in this
+tree and in a user's repository of cores.
 
 Usage: workflows.py case work-folder build-folder
 """
@@ -23,13 +23,14 @@ WORK, BUILD = map(Path, sys.argv[2:4])
 
 
 def container():
-    """Returns the instructions of the Containerfile: (name, arguments)."""
+    """Returns the instructions of the Containerfile as pairs of name and arguments."""
     text = (TREE / "Containerfile").read_text()
     return [line.split(" ", 1) for line in text.splitlines() if not line.startswith("#")]
 
 
 def workflows(tree):
-    """Returns, for each workflow, its file, the image, its commands, and paths of its artifacts."""
+    """Returns, for each workflow, its file, its image, its commands, and the paths of its
+    artifacts."""
     hub, lab = (tree / name for name in (".github/workflows/icesoc.yml", ".gitlab-ci.yml"))
     job = yaml.safe_load(hub.read_text())["jobs"]["icesoc"]
     yield (hub, job["container"], [step["run"] for step in job["steps"] if "run" in step],
@@ -40,7 +41,8 @@ def workflows(tree):
 
 
 def linked(tree):
-    """Returns a tree of links to this tree, with separate folders ip and build."""
+    """Fills a folder with links to the entries of this tree, but with folders ip and build of its
+    own. Returns this folder."""
     for path in TREE.iterdir():
         if path.name not in ("build", "ip", ".git"):
             (tree / path.name).symlink_to(path)
@@ -52,15 +54,15 @@ def linked(tree):
 
 
 def entries(tree):
-    """Returns the names, link targets and modification times of the entries in a tree of links."""
+    """Returns names, link targets and modification times of the entries in a tree of links."""
     return sorted((str(path), os.readlink(path) if path.is_symlink() else path.stat().st_mtime_ns)
                   for folder in (tree, tree / "ip") for path in folder.iterdir())
 
 
 class Cases(Script):
     def test_repository_in_chip(self):
-        """A build folder remembers the cores of a repository, and the repository's list, until
-        another command names other cores."""
+        """A build folder keeps the cores of a repository, and the list of the repository, until a
+        command names other cores."""
         work = fresh(WORK)
         mine, list_ = work / "mine", work / "mine/cores.list"
         for name in "first", "second":
@@ -82,8 +84,8 @@ class Cases(Script):
         self.assertEqual(folders("none"), ([], Path("ip/cores.list").absolute()))
 
     def test_container(self):
-        """Each command of the container is run with the files that it copies, on a machine that
-        lacks all packages."""
+        """Each command of the Containerfile runs with the files that the container copies, on a
+        machine on which no package is installed."""
         work = fresh(WORK)
         write(work / "bin/dpkg-query", "#!/bin/sh\n")
         for program in ("apt-get", "git"):
@@ -133,8 +135,8 @@ class Cases(Script):
         self.carried_out(tree, ICESOC_TREE=str(tree), NAME="^tree[.]pages$")
 
     def test_repository(self):
-        """A repository written by `core new`. Its core has the name of a core that is already
-        built."""
+        """The repository is written by `core new`. Its core has the same name as a core that is
+        already built."""
         work = fresh(WORK)
         icesoc, mine = work / "icesoc", work / "mine"
         icesoc.mkdir()
@@ -151,18 +153,18 @@ class Cases(Script):
         write(mine / "build/main/cores.known", f"{known}sample_verilog\n")
         before = entries(icesoc)
         self.carried_out(mine, ICESOC_TREE=str(icesoc), ICESOC=str(icesoc), CORES="fir")
-        self.assertEqual(entries(icesoc), before)  # the tree itself was not changed
+        self.assertEqual(entries(icesoc), before)  # the tree itself must be unchanged
         self.has("^vision ", "^sample_verilog$", file=mine / "cores.list")
         self.lacks("@[A-Z]+@|make ip-test", file=mine / "Makefile")
         self.lacks(r"\.\./\.\./docs|ip-test", file=mine / "sample_verilog/README.md")
-        # Another core is added; existing files are kept.
+        # Adding another core keeps the existing files.
         write(mine / ".gitlab-ci.yml", "changed\n")
         self.ask(*new, "second")
         self.has("^sample_verilog\nsecond$", file=mine / "cores.list")
         self.has("^changed$", file=mine / ".gitlab-ci.yml")
         self.ask(*new, "second", status=2)
         self.has("second already exists")
-        # The same for a repository with a third-party core; its files are found wherever the
+        # The same for a repository with a third-party core, whose files are found wherever the
         # repository is.
         (mine / "others").mkdir()
         shutil.copy(TREE / "tests/ip/new_foreign/wb_port.v", mine / "others")
@@ -172,7 +174,8 @@ class Cases(Script):
         self.has("^third$", file=mine / "cores.list")
         self.has('"@FOLDER@/../others/wb_port.v"', file=mine / "third/core.toml")
         self.lacks(str(mine), file=mine / "third/core.toml")
-        # The origin of this tree is cloned at its commit; a clone without that commit is removed.
+        # The workflow clones the origin of this tree at this commit; it removes a clone that lacks
+        # the commit.
         if (TREE / ".git").exists():
             commit = git(f"-C {shlex.quote(str(TREE))} rev-parse HEAD")
             text = (mine / "Makefile").read_text()

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// reader: a flip-flop that depends on a pin, or on a register of another clock, without hdl/cdc.
-// Yosys maps such flip-flops to this module (CMakeLists.txt).
+// reader: replaces a flip-flop that depends on a pin, or on a register of another clock, without
+// hdl/cdc. Yosys maps such flip-flops to this module (CMakeLists.txt).
 //
-// Each bit that has changed since the clock's falling edge is sampled with its old or its new
-// value, independently (cdc_random.vh). Benches change synchronous inputs before that edge, and
-// pins after it.
+// Each bit that has changed since the falling edge of the clock is sampled with its old or its new
+// value, independently of the other bits (cdc_random.vh). Benches change synchronous inputs before
+// that edge, and pins after it.
 
 `default_nettype none
 

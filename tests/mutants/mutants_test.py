@@ -69,13 +69,13 @@ class Cases(Script):
         self.work = fresh(sys.argv[2])
 
     def bugs(self, **bugs):
-        """Seeds bugs, each a removed line and an added line."""
+        """Seeds bugs, each given as a line to remove and a line to add."""
         write("tests/mutants/tiny.bugs.json", json.dumps({
             name: {"does": "A bug.", "test": "test_tiny", "file": "tiny.c", "old": old, "new": new}
             for name, (old, new) in bugs.items()}))
 
     def test_run(self):
-        """Each result that a seeded bug can have, and an interrupted run."""
+        """Tests each result that a seeded bug can have, and an interrupted run."""
         write("CMakeLists.txt", PROJECT.format("C") + "add_executable(test_tiny tiny.c)\n"
               "add_test(NAME test_tiny COMMAND test_tiny)\n")
         write("tiny.c", TINY)
@@ -88,7 +88,7 @@ class Cases(Script):
         self.has("^caught *tiny/wrong ")
         self.has("^tiny/wrong\tcaught\ttest_tiny\t", file="build/mutants/results.tsv")
 
-        # The bug of an interrupted run is removed; otherwise the tests would fail without a bug.
+        # A bug that an interrupted run has left is removed; otherwise the tests would run with it.
         copies = [Path("build/mutants", number) for number in "01"]
         write(copies[0] / "tiny.c.orig", TINY)
         edit(copies[0] / "tiny.c", "2 *", "3 *")
@@ -115,7 +115,7 @@ class Cases(Script):
             self.has("wrong.bugs.json: not bugs as")
         malformed.unlink()
 
-        # A test that fails without a bug catches nothing.
+        # A test that fails even without a bug detects nothing.
         edit("tiny.c", "!= 6", "!= 7")
         self.ask(*RUN, "--jobs", "1", status=1)
         self.has("test_tiny fails without any mutant")
@@ -125,9 +125,9 @@ class Cases(Script):
                   status=status)
 
     def test_drawn(self):
-        """The proof of this module covers only half of it. Mutants that the proof misses are
+        """The proof in this test covers only half of the module. Mutants that the proof misses are
         reported with their line, and mutants that are not bugs are excluded. A test with a model
-        that contains all survivors detects them."""
+        that contains all these survivors detects them."""
         pair = "hdl/small/pair.v"
         write(pair, PAIR)
         write("bus/none.v", "")
@@ -139,7 +139,8 @@ class Cases(Script):
         self.draw(status=2)
         self.has("^SURVIVED .*formal.pair .*hdl/small/pair.v:[56] ", "^pair .* [1-9] the same$",
                  "below 95 %: pair$")
-        self.lacks("^SURVIVED .*pair.v:4 ")  # the mutant changes nothing, or the proof detects it
+        # in line 4, each mutant changes nothing or is detected by the proof
+        self.lacks("^SURVIVED .*pair.v:4 ")
         missed = json.loads(Path("build/mutants/drawn.json").read_text())["survived"]
         self.the_model_carries(missed, pair)
         edit(pair, "assert (same_o == a_i);",
@@ -171,12 +172,13 @@ class Cases(Script):
         include = f"{root.strip()}/include"
         self.ask("c++", "-Imodel", f"-I{include}", f"-I{include}/vltstd", "main.cpp",
                  *Path("model").glob("*.cpp"), sys.argv[3], *"-lz -lpthread -o test_pair".split())
-        self.ask("./test_pair")  # without a mutant the model equals the module
+        self.ask("./test_pair")  # without a mutant, the model behaves like the module
         for mutant in range(1, len(missed) + 1):
             self.ask("./test_pair", env={**os.environ, "MUTANT": str(mutant)}, status=3)
 
     def a_test_that_fails_as_it_is_catches_none(self):
-        """The results of the other blocks are still reported."""
+        """If a test fails even without a mutant, the results of the other blocks are still
+        reported."""
         write("copy/build/main/build.ninja", PROGRAMS)
         write("by_tests.py", f"""import pathlib, sys
 from concurrent.futures import ThreadPoolExecutor

@@ -1,17 +1,17 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# boot: boots the systemd of a folder with a Debian system, in separate namespaces, and runs a shell
-# command there as root. Prints the output of the command, and ends with its exit status. The booted
-# system uses this machine's network. It cannot change the kernel's settings.
-# Needs root and cgroup2. Usage: boot.sh ROOT FOLDER COMMAND
+# boot: boots systemd in a folder that contains a Debian system, in separate namespaces, and runs a
+# shell command there as root. Prints the output of the command and returns its exit status. The
+# booted system uses this machine's network. It cannot change settings of the kernel. Needs root and
+# cgroup2. Usage: boot.sh ROOT FOLDER COMMAND
 set -eu
 if [ "$1" != --inside ]; then
     exec unshare --mount sh "$0" --inside "$@"
 fi
 root=$(cd "$2" && pwd) folder=$3 command=$4
 mount --make-rprivate /
-# systemd gets a separate group below the root of cgroup2.
+# systemd needs a separate group below the root of cgroup2.
 groups=$(mktemp -d)
 mount -t cgroup2 cgroup2 "$groups"
 group=$groups/icesoc-machine-$$

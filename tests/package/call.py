@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""call: a user's program, which calls a core through the installed Python module.
+"""call: a user's program that calls a core with the installed Python module.
 
     call.py VEHICLE     with ICESOC_VEHICLES, the file that lists the vehicles
 """

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_bridge_tb: another project's test bench of the installed bridge: writes a register through
-// the FSMC pins, reads it back, and prints PASS.
+// fsmc_bridge_tb: a test bench that another project could have for the installed bridge: it writes
+// a register through the FSMC pins, reads it back, and prints PASS.
 
 `timescale 1ns / 1ps
 `default_nettype none
@@ -16,7 +16,7 @@ module fsmc_bridge_tb;
     wire        nwait_n, valid, write;
     wire [9:0]  addr;
     wire [31:0] wdata;
-    reg  [31:0] word = 0; // the project's register 5
+    reg  [31:0] word = 0; // register 5 of that project
     reg  [15:0] low, high;
 
     always #5 clk = !clk;

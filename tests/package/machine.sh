@@ -1,10 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# machine: installs the packages on an empty Debian by apt, and uses them as a user does: mission,
-# programs with stock ZeroC Ice in Python and C++ by plugin, icesoc-call, a C project by CMake,
-# simulation of a block. service.sh follows. Run as root, on a machine for this test.
-# Usage: machine.sh [FOLDER]    with *.deb, and the files of tests/package; default: this one
+# machine: installs the packages on an empty Debian with apt, and uses them like a user: a mission,
+# programs with stock ZeroC Ice in Python and C++ that use the plugin, icesoc-call, a C project with
+# CMake, and the simulation of a block. Run service.sh after this script. Run as root, on a machine
+# that is used only for this test.
+# Usage: machine.sh [FOLDER]    FOLDER contains *.deb and the files of tests/package; default: the
+# folder of this script
 set -eu
 here=$(cd "${1:-.}" && pwd)
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
@@ -16,7 +18,7 @@ fail() {
 user() { runuser -u tester -- env HOME=/home/tester "$@"; }
 
 step "install"
-# An earlier run that was stopped can have left packages, keys and rights.
+# Removes packages, keys and permissions that an earlier, stopped run may have left.
 apt-get purge -y -qq 'icesoc-*' libicec-dev >/dev/null 2>&1 || true
 rm -rf /etc/icesoc
 apt-get update -qq

@@ -36,7 +36,7 @@ class Cases(Script):
         self.bin = self.prefix / "bin"
         self.python = self.prefix / "lib/python3/dist-packages"
         self.hdl = self.prefix / "share/icesoc/hdl"
-        # An environment without paths to the tree.
+        # An environment that contains no path to the source tree.
         self.env = {"PATH": f"{self.bin}:/usr/bin:/bin", "HOME": str(self.out), "LC_ALL": "C.UTF-8",
                     "PYTHONPATH": str(self.python), "PYTHONDONTWRITEBYTECODE": "1"}
         if "CCACHE_DIR" in os.environ:
@@ -51,8 +51,8 @@ class Cases(Script):
         self.ask(*words, env={**self.env, **how.pop("env", {})}, **how)
 
     def test_install(self):
-        """No installed file contains the path of the tree; programs start; each program has a
-        manual page."""
+        """No installed file contains the path of the source tree, all programs start, and each
+        program has a manual page."""
         self.install(*COMPONENTS)
         files = [path for path in self.prefix.rglob("*") if path.is_file()]
         self.assertGreater(len(files), 80)
@@ -75,7 +75,7 @@ class Cases(Script):
             self.has("^OPTIONS|options")
 
     def test_fly(self):
-        """The mission, flown by the host build and by the ARM binary."""
+        """The installed simulator flies the mission with the host build and with the ARM binary."""
         self.install("icesoc-ground", "icesoc-sim")
         for cpu in "host", "m3":
             self.use("icesoc-fly", "--size", "96x64", "--guard", "20", "--out", cpu, "--cpu", cpu)
@@ -105,9 +105,9 @@ class Cases(Script):
         self.has("vehicle 'uav9': expected one of uav1; add a line Vehicle.uav9=")
 
     def test_call(self):
-        """icesoc-call calls cores through the gateway, by radio and by a vehicle's name. Wrong
-        arguments, unknown vehicles, a device or port in use and missing files are refused with
-        the reason."""
+        """icesoc-call calls cores through the gateway, by radio and by the name of a vehicle. Wrong
+        arguments, unknown vehicles, a device or port that is in use, and missing files are rejected
+        with the reason."""
         self.install("icesoc-ground", "icesoc-sim", "icesoc-slice2c")
         port, other = free_port(), free_port()
         write("vehicles.conf", f"Vehicle.uav1=tcp -h 127.0.0.1 -p {port}\n")
@@ -152,8 +152,8 @@ class Cases(Script):
         self.has("^icesoc-fly: cannot write /proc/missing: No such file or directory$")
 
     def test_page(self):
-        """Checks the gateway's page: its files, and a call like the one the browser makes. The
-        files of the page do not come from the tree."""
+        """Checks the gateway's page: its files, and a call like the one that the browser makes. The
+        files must not come from the source tree."""
         self.install("icesoc-ground", "icesoc-sim", "icesoc-slice2c")
         port, page = free_port(), free_port()
         write("page.sh", "#!/bin/bash\nset -e\n"
@@ -182,7 +182,7 @@ class Cases(Script):
                 server.kill()
 
     def answers(self, program):
-        """Checks that the server answers stock ZeroC Ice."""
+        """Checks that stock ZeroC Ice can call the server."""
         with self.server(program) as port:
             self.use("python3", "-c", f"""
 import Ice
@@ -199,7 +199,8 @@ with Ice.initialize() as ic:
             self.has("^sum 7$", "^busy: b is negative$")
 
     def test_icec(self):
-        """A project of ten lines is built with CMake, and with pkg-config; icesoc-call calls it."""
+        """A project of ten lines can be built with CMake and with pkg-config. icesoc-call calls its
+        program."""
         self.install("icesoc-slice2c", "libicec-dev", "icesoc-ground")
         self.use("cmake", "-S", HERE / "project/server", "-B", "cmake", "-G", "Ninja",
                  f"-DCMAKE_PREFIX_PATH={self.prefix}")
@@ -224,7 +225,8 @@ cc -std=c90 -ffunction-sections -fdata-sections -o by_pkg_config -Imade \\
         self.answers("./by_pkg_config")
 
     def test_hdl(self):
-        """Another project simulates the bridge from its file list; the lists are complete."""
+        """Another project can simulate the bridge from its file list, and the file lists are
+        complete."""
         self.install("icesoc-hdl")
         bench, lists = HERE / "fsmc_bridge_tb.v", self.hdl / "fsmc_bridge.f"
         hdl = {"ICESOC_HDL": str(self.hdl)}
@@ -272,7 +274,8 @@ cc -std=c90 -ffunction-sections -fdata-sections -o by_pkg_config -Imade \\
         self.assertIn("constraints/platform.ucf", scripts)
 
     def test_packages(self):
-        """Debian packages by component, with the files, scripts and dependencies that they need."""
+        """There is a Debian package for each component, with the files, scripts and dependencies
+        that the component needs."""
         if not shutil.which("dpkg-shlibdeps"):
             self.skipTest("dpkg-dev is missing")
         self.ask("cpack", "-G", "DEB", "-B", self.out, "--config", BUILD / "CPackConfig.cmake")
@@ -283,7 +286,8 @@ cc -std=c90 -ffunction-sections -fdata-sections -o by_pkg_config -Imade \\
             print(name, path.stat().st_size, "bytes")
         self.ask("dpkg-deb", "--info", found["icesoc-ground"])
         self.has("Depends: .*python3-zeroc-ice", "libzeroc-ice3.7", "postinst")
-        # Packages of two versions are refused, because each needs the others of its version.
+        # Packages of different versions cannot be installed together, because each package depends
+        # on the same version of the others.
         self.has(r"Depends: icesoc-slice2c \(= [0-9.]+-1~deb[0-9]+\)")
         self.ask("dpkg-deb", "--info", found["icesoc-sim"])
         self.has(r"Depends: icesoc-ground \(= [0-9.]+-1~deb[0-9]+\)")

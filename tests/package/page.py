@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""page: calls a vehicle as the page of an installed gateway does in a browser: loads the page and
-its files, then calls uav.isAlive over a WebSocket with the page's origin and cookie. Needs nothing
-except Python.
+"""page: calls a vehicle in the same way as the page of an installed gateway does in a browser: it
+loads the page and its files, then calls uav.isAlive over a WebSocket with the origin and the cookie
+of the page. It needs only Python.
 
-Usage: page.py HOST:PORT    the gateway's --page
+Usage: page.py HOST:PORT    address of the gateway's option --page
 """
 import json
 import re
@@ -56,11 +56,12 @@ with socket.create_connection((host, int(port)), timeout=60) as connection:
         f"Origin: {origin}\r\nCookie: {cookie}\r\n\r\n").encode())
     stream = connection.makefile("rb")
     while stream.readline().strip():
-        pass  # the headers of the answer
-    # A final binary frame; its mask is zero.
+        pass  # skips the headers of the answer
+    # A final binary frame with a mask of zeros.
     connection.sendall(bytes([0x82, 0x80 | len(message)]) + bytes(4) + message)
     reply = b""
-    while reply[8:9] != b"\2":  # a reply; the gateway first validates the connection
+    while reply[8:9] != b"\2":  # waits for a reply; the gateway first validates the connection
         reply = read_frame(stream)
-# After the header of 14 bytes: request, status, size and encoding of the results, the result.
+# The header has 14 bytes. It is followed by request id, status, size and encoding of the results,
+# and the result.
 print("isAlive:", reply[14 + 4] == 0 and reply[-1] == 1)

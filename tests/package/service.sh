@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# service: uses the gateway's service on a machine that machine.sh has prepared: Python, C++,
-# icesoc-call and the gateway's page call a simulated vehicle through it, with a key. Then upgrades
-# the packages, which keeps keys, rights and settings and restarts the service; removes and purges
-# them.
-# Run as root, with systemd running (boot.sh). Usage: service.sh [FOLDER]    as machine.sh
+# service: uses the gateway's service on a machine that machine.sh has prepared. Python, C++,
+# icesoc-call and the gateway's page call a simulated vehicle through the service, with a key. Then
+# the script upgrades the packages, which must keep keys, permissions and settings and restart the
+# service, and removes and purges the packages. Run as root, with systemd running (boot.sh). Usage:
+# service.sh [FOLDER]    FOLDER as for machine.sh
 set -eu
 here=$(cd "${1:-.}" && pwd)
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
@@ -66,9 +66,9 @@ rm -rf device ended service
 simulate="icesoc-sim --image /usr/share/xplanet/images/earth.jpg --size 96x64 --guard 20"
 simulate="$simulate --speed real"
 install -d -o icesoc /home/tester/service
-chmod a+x /home/tester # in Debian 13 only a user can enter the user's home folder
-# The simulator runs as the gateway's user, because the modem belongs to the user who runs the
-# simulator.
+chmod a+x /home/tester # in Debian 13, only the user can enter the user's home folder
+# The simulator runs as the gateway's user, because the simulated modem belongs to the user who runs
+# the simulator.
 runuser -u icesoc -- $simulate --key /etc/icesoc/uav1.key --out service -- \
     sh -c 'echo "$0" >service/device; until [ -e ended ]; do sleep 0.1; done' '{device}' \
     >simulator.log 2>&1 &
@@ -89,7 +89,7 @@ step "upgrade keeps keys, rights and settings, and restarts the service"
 state() { stat -c '%n %U:%G %a %Y' /etc/icesoc /etc/icesoc/*; sha256sum /etc/icesoc/*; }
 old=$(dpkg-query -W -f '${Version}' icesoc-ground)
 new=$(echo "$old" | sed 's/-/.99-/')
-chmod 710 /etc/icesoc # a setting by the administrator, which an upgrade must keep
+chmod 710 /etc/icesoc # a change by the administrator, which an upgrade must keep
 before=$(state) user=$(id icesoc)
 pid=$(systemctl show -P MainPID icesoc-gateway@uav1)
 rm -rf newer && mkdir newer
@@ -112,7 +112,7 @@ step "remove stops the service and keeps keys and settings, purge keeps keys"
 apt-get remove -y -qq icesoc-ground icesoc-sim icesoc-slice2c libicec-dev icesoc-hdl >/dev/null
 ! systemctl is-active -q icesoc-gateway@uav1 || fail "the service still runs"
 [ -s /etc/icesoc/uav1.key ] && [ -s /etc/icesoc/uav1.conf ] || fail "remove took keys or settings"
-apt-get purge -y -qq icesoc-ground >/dev/null # the other packages have nothing left to purge
+apt-get purge -y -qq icesoc-ground >/dev/null # the other packages have no files left to purge
 [ "$(stat -c '%U %a' /etc/icesoc/uav1.key)" = "icesoc 600" ] || fail "purge took a key"
 [ "$(ls /etc/icesoc)" = uav1.key ] || fail "purge left settings: $(ls /etc/icesoc)"
 left=$(find /usr /lib /etc/systemd -path '*icesoc-g*' -o -path '*/icesoc/*' -o -name '*xbeeat*' \

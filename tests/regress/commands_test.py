@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""commands_test: tests the effects of commands, started by make, with each of their variables.
+"""commands_test: starts commands with make, with each of their variables, and tests their effects.
 
 Usage: commands_test.py commands_... work-folder build-folder
 """
@@ -66,7 +66,7 @@ check_coverage check_fresh check_tutorial"""
 
 class Cases(Project):
     def user(self, words, *more, **how):
-        """Runs make in the whole tree, in which everything is built."""
+        """Runs make in the whole source tree, in which everything has been built."""
         self.make(*words.split(), *more, build=BUILD, **how)
 
     def test_commands_run(self):
@@ -74,7 +74,7 @@ class Cases(Project):
         write(flight / "flight.jsonl", "{}\n")
         write(flight / "status", "up\n")
         for words, said in (
-            # refused before a simulator is built for the replay
+            # these errors are reported before a simulator for the replay is built
             (f"run REPLAY={flight} FROM=x", "FROM: expected a number, at least 0 s, got 'x'"),
             (f"run REPLAY={flight} FROM=2 TO=1", "FROM=2.0 TO=1.0: expected FROM before TO"),
             (f"run IMAGE=/none OUT={flight}", "cannot read '/none'"),
@@ -83,7 +83,8 @@ class Cases(Project):
             with self.subTest(words):
                 self.user(words, status=2)
                 self.has(said)
-                # A replay would repeat an earlier flight that is still in the folder.
+                # The message must not advise a replay, because that would repeat the earlier flight
+                # in this folder.
                 self.lacks("Traceback|--help" + ("|REPLAY=" if "IMAGE" in words else ""))
         with open(self.work / "commands", "w+") as commands:
             commands.write("print $pc\nkill\n")
@@ -96,8 +97,9 @@ class Cases(Project):
         self.has("^faults: 1 moments of seeds 3 to 3, 0 failed")
 
     def test_commands_radio(self):
-        """Runs short parts of commands that take hours."""
-        # soak and fly both run test_chip_soak, which is a separate test; here only fly runs it.
+        """Runs short parts of commands that normally take hours."""
+        # Both soak and fly would run test_chip_soak, which is a test of its own. Here only `fly`
+        # runs it.
         os.environ["GTEST_FILTER"] = "-ChipSoak*"
         self.user("soak MINUTES=0.01 FUZZED=1000")
         self.has("^modem controller: 1000 bytes of noise", "^link layer: 10000 bytes of noise",
@@ -107,7 +109,7 @@ class Cases(Project):
         self.has("^chip soak: .* simulated")
 
     def entrance(self):
-        """Adds to this project everything that commands need from a build."""
+        """Adds to this project all files of a build that commands need."""
         write("cmake/setup.sh", "#!/bin/sh\n")
         write("ip/fir/fir_test.cpp", "")
         write("tests/bench/figures.py", (TREE / "tests/bench/figures.py").read_text())
@@ -134,8 +136,8 @@ class Cases(Project):
         self.bad("test NAME=b.Bad SEED=3", "value 3 is not 7")
         self.bad("test LABEL=nothing")
         self.good("test SEED=7")
-        self.assertEqual(self.said.count("100% tests passed"), 2)  # run a second time with
-                                                                   # sanitizers
+        # the second run is the one with sanitizers
+        self.assertEqual(self.said.count("100% tests passed"), 2)
         self.unchanged_tests_are_left_out()
         self.a_stopped_run_keeps_its_results()
         write("leak", "")
@@ -149,8 +151,8 @@ class Cases(Project):
         self.bad("regress FAILED=1", "^1 tests")
         self.bad("regress KEPT=1", "^1 tests, SEED=2")
         self.good("regress CHANGED=1 NAME=a[.]")
-        # If a bench fails, the figures of the others are still written, and its older figures do
-        # not count as new.
+        # If a bench fails, the figures of the other benches are still written. Earlier figures of
+        # the failed bench do not count as new.
         figures = Path("docs/figures.md")
         figures.parent.mkdir()
         trip = "| trip | 20 ms | limit 40, 50.0 % |\n"
@@ -180,8 +182,8 @@ class Cases(Project):
         self.assertFalse(Path("build").exists())
 
     def unchanged_tests_are_left_out(self):
-        """`make test` runs the tests that have not passed with the current inputs: files, seed,
-        packages."""
+        """`make test` runs only tests that have not passed with the current inputs (files, seed,
+        packages)."""
         self.good("test SEED=7")
         self.has("^build/main: [0-9]+ tests have passed with the present files and packages; --all",
                  "^build/sanitized: 1 tests have")
@@ -194,8 +196,8 @@ class Cases(Project):
         Path("note").unlink()
 
     def a_stopped_run_keeps_its_results(self):
-        """Ctrl-C during `make test`: junit.xml contains the finished tests, their passes count, and
-        no process is left."""
+        """After Ctrl-C during `make test`, junit.xml contains the tests that had finished, their
+        passes count, and no process is left."""
         tests = Path("tests/room/CMakeLists.txt")
         before = tests.read_text()
         append(tests, 'add_test(NAME script.Waits COMMAND sh -c '
@@ -222,7 +224,7 @@ class Cases(Project):
         tests.write_text(before)
 
     def elsewhere(self):
-        """A core outside the tree is passed to one command; all later commands know it."""
+        """If a core outside the tree is passed to one command, all later commands know it."""
         mine = self.work / "elsewhere/mine"
         write(mine / "mine_test.cpp", "")
         write("utilisation", '#!/bin/sh\necho "utilisation $*"\n')
@@ -248,15 +250,16 @@ class Cases(Project):
         self.bad("wave IP=mine TEST=Impulse", "'mine'.*fir")
 
     def test_commands_nightly(self):
-        """Each step runs even if earlier ones failed, and each failure is reported."""
+        """A step runs even if earlier steps failed, and each failure is reported."""
         self.entrance()
-        write("icesoc", STEPS)  # replaces the commands, which would take hours
+        write("icesoc", STEPS)  # replaces commands that would take hours
         os.chmod("icesoc", 0o755)
         edit("tests/room/t.sh", "value $SEED is not 7", "failed with $SEED")
         edit("tests/room/t.sh", '"$SEED" = 7', "! -e ../../../../bad")
         for failing, seeds, status in (("none", 2, 0), ("check_mutants", 2, 2), ("fly", 2, 2),
                                        ("check_fresh", 2, 2), ("a test", 2, 2),
-                                       ("a test", 4, 2)):  # and two seeds that are stored
+                                       # and the two failing seeds that are stored
+                                       ("a test", 4, 2)):
             write("done", "")
             write("failing", failing)
             if failing == "a test":
@@ -266,17 +269,17 @@ class Cases(Project):
             self.assertEqual(len(re.findall("^[0-9]* tests, SEED=", self.said, re.M)), seeds)
 
     def test_make(self):
-        """Set-up, downloads, and the targets that a test needs."""
+        """Tests set-up, downloads, and which targets a test needs."""
         work = self.work / "made"
-        # User names may contain an apostrophe.
+        # The name of the user's folder may contain an apostrophe.
         cache = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "icesoc"
         (work / "it's").mkdir(parents=True)
         (work / "it's/icesoc").symlink_to(cache)
         self.ask(*FETCH, "ghdl", work / "ghdl",
                  env={**os.environ, "XDG_CACHE_HOME": f"{work}/it's"})
         self.ask(work / "ghdl/ghdl", "--version")
-        # The pages' libraries: without a network, or with a wrong checksum, the build continues,
-        # prints a message, and keeps no partial file.
+        # If there is no network, or a checksum is wrong, the build continues without the libraries
+        # for the pages, prints a message, and keeps no partial file.
         archive = "tabulator-tables-6.5.3.tgz"
         write(work / "npm/tabulator-tables/-" / archive, "wrong\n")
         page, empty = work / "page", work / "empty"
@@ -288,13 +291,13 @@ class Cases(Project):
             self.assertFalse((page / "done").exists())
             self.assertEqual(list(empty.glob("icesoc/foreign/*")), [])
         self.has(f"{archive} is not the file that was tested")
-        # The tests of one block need its programs, and no others.
+        # The tests of one block build only the programs that they need.
         self.ask(BUILD / "tests/regress/regress", "--build", BUILD, "--prepare", "--list",
                  "--block", "fir")
         self.has("^(ip/fir/)?test_ip_fir$")
         self.assertLess(self.said.count("\n"), 20)
-        # Programs that `make test` runs with sanitizers; a program without the label would be left
-        # out.
+        # Programs that `make test` runs with sanitizers. A program that lacks the label would not
+        # run with them.
         for program in "test_os_cases", "test_link", "test_ground_engine", "test_icec":
             labels, = BUILD.glob(f"tests/sw/*/{program}_labels.cmake")
             self.has("sanitized", file=labels)

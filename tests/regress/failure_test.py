@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""failure_test: tests the regression tool's report of a failed test: the reason, the changes since
-the test passed, the waveform.
+"""failure_test: tests the report of the regression tool about a failed test: the reason, the
+changes since the test passed, the waveform.
 
 Usage: failure_test.py case work-folder build-folder
 """
@@ -11,7 +11,7 @@ from pathlib import Path
 from project import BREAK, REGRESS, TREE, Project, append, commit, edit, git, main, write
 from icesoc.regress.failures import reason_of
 
-# Tests that misbehave: the action, and the message about it.
+# Tests that misbehave: what the test does, and the message about it.
 RUDE = {
     "Hang": ("exec sleep 1000", "^1 x  Timeout"),
     "Loud": ("yes 'a line' | head -c 1000000; echo; echo 'x is 3'; exit 1", "^1 x  x is 3$"),
@@ -24,7 +24,7 @@ RUDE = {
                r"\(in build/main/tests/room\)$"),
     "Writes": ("echo >../../../../written", "^Changed while the tests ran, .*: written$")}
 IDEMPOTENT = "! error: unexpected operation mode. expected Normal, received Idempotent"
-# Reasons, each with the log in which a tool writes it; {} in the log stands for the reason.
+# Reasons, each with the log of a tool that contains it; {} in the log is replaced by the reason.
 REASONS = {
     "busy is true, not false":
         "g.cpp:4: Failure\nValue of: busy\n  Actual: true\nExpected: false\ng.cpp:7: Failure",
@@ -92,7 +92,8 @@ foreach(m around broken) # as written by Yosys: all cells around, and the end of
      echo '${m}: trace: ${t}'; echo '${m}: an assertion fails'; exit 1")
 endforeach()
 """
-# A failed flight, and the simulator that replays it and writes this waveform.
+# The log of a failed flight. A program that replaces the simulator replays this flight and writes
+# this waveform.
 ENDED = """  0.1 s  UAV -> ground
 mission: the vision core's result differs from the C++ reference: 141 corners, not 140
 -- 11/23/26 06:27:52.116 XBeeAT: link idle
@@ -140,13 +141,15 @@ END
 
 class Cases(Project):
     def test_reasons(self):
-        """The reason of a failure, from the output of each tool that tests run."""
+        """The report extracts the reason of a failure from the output of each tool that tests
+        run."""
         for reason, log in REASONS.items():
             with self.subTest(reason):
                 self.assertEqual(reason_of(log.replace("{}", reason)), reason)
 
     def test_rude(self):
-        """The first line reports tests that misbehave, and the run continues."""
+        """Tests that misbehave are reported in the first line of the report, and the run
+        continues."""
         self.tests("".join(f"add_test(NAME test_r.{name} COMMAND sh -c [=[{does}]=])\n"
                            for name, (does, _) in RUDE.items()) +
                    "add_test(NAME test_r.Gone COMMAND /none)\n"
@@ -154,7 +157,7 @@ class Cases(Project):
         self.regress("--name test_r --jobs 4", 1)
         self.has("^2 passed, 7 failed, 0 skipped", "^1 x  Unable to find executable: /none$",
                  *(said for _, said in RUDE.values()))
-        # A limit of 250 KB on files simulates a full disk.
+        # A limit of 250 KB for files has the same effect as a full disk.
         self.ask("sh", "-c", "trap '' XFSZ; ulimit -f 500; exec $0 --name test_a", REGRESS,
                  status=2)
         self.has("^2 passed, 0 failed",
@@ -163,7 +166,8 @@ class Cases(Project):
         self.assertEqual(Path("build/regress/history.jsonl").read_text().count("\n"), 2)
 
     def test_blame(self):
-        """Failures are grouped by bug; the failure nearest to the cause is the first."""
+        """Failures are grouped by bug. In a group, the failure that is nearest to the cause comes
+        first."""
         self.tests(BLAME.replace("%s", IDEMPOTENT))
         write("hdl/a/broken_proof.vh", "begin\n    assert (full ||\n        !taken);\nend\n")
         self.regress("--name 'test_g|formal|ice'", 1)
@@ -179,8 +183,8 @@ class Cases(Project):
                  f"^wave: {trace}$", file="build/regress/junit.xml")
 
     def test_changed(self):
-        """The files of a failed test that have changed since it passed: committed or not, added or
-        removed; for a program its sources."""
+        """The report lists the files of a failed test that have changed since the test passed,
+        committed or not, added or removed. The files of a program are its sources."""
         files = {"hdl/fifo/fifo.v": "a\nb\nc\nd\n", "hdl/old.v": "1\n", "docs/page.md": "1\n",
                  "hdl/fifo/test.c": '#include "n.h"\nint main(void) { return LIMIT; }\n',
                  "hdl/fifo/n.h": "#define LIMIT 0\n"}
@@ -194,7 +198,7 @@ class Cases(Project):
             for name, source in (("test_u", "hdl/fifo/test.c"), ("test_v", "other.c"))))
         self.ask("ninja", "-C", "build/main", "test_u")
         self.regress("--name 'a.One|u.Unit'")
-        write("docs/page.md", "0\n")  # no commit has the tree that was recorded
+        write("docs/page.md", "0\n")  # no commit contains the tree that was recorded
         commit("two")
         edit("tests/room/t.sh", *BREAK)
         # The test has never passed, so the report lists the uncommitted files.
@@ -208,20 +212,22 @@ class Cases(Project):
         commit("three")
         self.regress("--changed --prepare --list --name u.Unit")
         self.has("^Nothing to run")
-        write("hdl/new.v", "int g;\n")  # this file is not an input of the program, but a header is
+        # a new file is an input of the program only if it is a header
+        write("hdl/new.v", "int g;\n")
         write("hdl/fifo/n.h", "#define LIMIT 3\n")
         self.regress("--changed --prepare --list --name u.Unit")
         self.has("^tests/room/test_u$")
         self.ask("ninja", "-C", "build/main", "test_u")
         self.regress("--name 'a.One|u.Unit' --seed 2", 1)
-        passed = git("rev-parse --short=10 HEAD~2")  # and files that were not committed at that
-                                                     # time
+        # files that were not committed at that time are listed as well
+        passed = git("rev-parse --short=10 HEAD~2")
         since, one = f"^        changed since it passed at {passed}", r"1 \(1 line\)"
         own = rf"hdl/fifo/n.h:{one}, "
         script = r"tests/room/t.sh:3 \(1 line\)$"
         self.has(f"{since} with SEED=1: {own}hdl/new.v:{one}, hdl/fifo/fifo.v:2 "
                  rf"\(3 lines\), hdl/old.v:{one}, {script}")  # mine first
-        self.has(f"{since} with SEED=1: {own}{script}")  # the program of the test, and its folder
+        # only the test's program and the files of its folder
+        self.has(f"{since} with SEED=1: {own}{script}")
         self.has("changed: changed since it passed",
                  file="build/regress/junit.xml")
         self.has('"changed":"changed since it passed', file="build/regress/report.html")
@@ -231,14 +237,15 @@ class Cases(Project):
         write("flicker", "")
         self.regress("--name c.Flicker", 1)
         self.has("^        nothing has changed since it passed at [0-9a-f]*$")
-        self.ask("rm", "-r", "build/regress/tree")  # without recorded trees the commit is used
+        # without a recorded tree, the commit of the run is used
+        self.ask("rm", "-r", "build/regress/tree")
         self.regress("--name a.One", 1)
         self.has(rf"{since}: {own}hdl/new.v:{one}, hdl/fifo/fifo.v:1 \(5 lines\), "
                  ".* tests/room/t.sh")
 
     def test_waves(self):
-        """A test next to a core, outside tests/, and a damaged trace: the report is written in any
-        case."""
+        """The report is written even if the test is next to a core, outside tests/, or if its trace
+        is damaged."""
         join = "testbench/common/join_waves.sh"
         write(join, (TREE / join).read_text())
         write("ip/core/wave.sh", '#!/bin/sh\necho "wrong at clock cycle 5"\n'
@@ -271,8 +278,8 @@ add_custom_target(test_w)
                  file="build/regress/report.html")
 
     def test_vhdl(self):
-        """In the report of a GHDL test, only files that it compiles are listed, and the instance of
-        the first file is the first one in the waveform."""
+        """For a GHDL test, the report lists only files that GHDL compiles for it. The waveform
+        shows the instance of the first file first."""
         join = "testbench/common/join_waves.sh"
         write(join, (TREE / join).read_text())
         write("cmake/vhdl_test.sh", '#!/bin/sh\n[ ! -e wrong ] && exit\n'
@@ -333,13 +340,15 @@ add_custom_target(test_w)
         left = "build/regress/failures/mission.x-1"
         self.has(f"^--replay fly --out {left}.replay --wave .*mission.x-1.fst --from 1.498500 "
                  "--to 1.500500$", file="asked")
-        self.has("141 corners", file="page")  # the value was present before any waveform
+        # the value was set before the recorded waveform begins
+        self.has("141 corners", file="page")
         self.ask("fst2vcd", f"{left}.fst")
         self.assertRegex(self.said.replace("\n", " "),
                          "#3 .*sidleTask .*#10 .*0. .*#20 .*1. .*sradioTask .*#33 sidleTask")
         self.has("^program.task$", file=f"{left}.gtkw")
         self.has(r'"program.task",0,\[3,"idleTask",20,"radioTask",33,"idleTask"\]\],'
-                 r'\["TOP.u_core.busy"', file="build/regress/report.html")  # the core before ports
+                 # signals of the core come before the ports
+                 r'\["TOP.u_core.busy"', file="build/regress/report.html")
 
 
 main(Cases)

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""interrupted: interrupts make regress, make synth and make new-ip at moments drawn from a seed, by
+"""interrupted: interrupts make regress, make synth and make new-ip at times drawn from a seed, by
 Ctrl-C (INT to all processes), TERM or KILL. No process may be left, and the next run must give the
-right result.
+correct result.
 
 Usage: interrupted.py source-folder build-folder work-folder moments tool... (new_ip, regress,
-synth)      SEED=1
+synth); `moments` is the number of interruptions. SEED=1
 """
 import json
 import os
@@ -17,19 +17,19 @@ import subprocess
 import sys
 import time
 
-LONGEST = 600  # s; after this time a run counts as hanging
+LONGEST = 600  # time after which a run is considered to hang, s
 source, build, work = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
 moments, tools = int(sys.argv[4]), sys.argv[5:]
 
 
 def members(session):
-    """Returns the processes of a session that have not ended."""
+    """Returns the processes of a session that are still running."""
     return subprocess.run(["pgrep", "--session", str(session), "--runstates", "D,I,R,S,T,t"],
                           stdout=subprocess.PIPE, text=True).stdout.split()
 
 
 def interrupt(command, number, moment, where):
-    """Starts a command and interrupts it; returns True if it was still running."""
+    """Starts a command and interrupts it. Returns True if the command was still running."""
     with open(work / "log", "w") as log:
         run = subprocess.Popen(command, cwd=where, stdout=log, stderr=log, start_new_session=True)
         try:
@@ -87,7 +87,8 @@ def main():
         right = result()
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGKILL) * moments:
             moment = draw.uniform(0, longest)
-            shutil.rmtree(work / tool, ignore_errors=True)  # result stored by the previous run
+            # removes the result that the previous run stored
+            shutil.rmtree(work / tool, ignore_errors=True)
             cut = interrupt(command, number, moment, where)
             subprocess.run(command, cwd=where, check=True, stdout=subprocess.DEVNULL,
                            timeout=LONGEST)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# kept: tests when tools/icesoc/regress/kept.py computes a result again, and when not.
-# Usage: kept.sh kept.py's-path work-folder
+# kept: tests when tools/icesoc/regress/kept.py computes a result again and when it reuses the
+# stored result. Usage: kept.sh path-of-kept.py work-folder
 set -eu
 kept=$1 work=$2
 rm -rf "$work"
@@ -10,16 +10,16 @@ cp "$kept" "$work/a/tools/icesoc/regress"
 cd "$work/a"
 export XDG_CACHE_HOME="$work/cache" PATH="$work/bin:$PATH"
 unset FRESH
-# The test looks for b.vh in two folders like a compiler, counts the files of one folder, calls a
-# tool, and waits on request.
+# The test script looks for b.vh in two folders like a compiler, counts the files of one folder,
+# calls a tool, and waits on request.
 cat >tests/t.sh <<'END'
 #!/bin/sh
 own=$1
-mkdir "$own" || exit 1 # the folder should have been emptied
+mkdir "$own" || exit 1 # fails if the folder was not emptied
 [ ! -e wait ] || { mkfifo "$own/gate" && touch "$own/waits" && read -r _ <"$own/gate"; }
 for f in first second; do [ ! -f $f/b.vh ] || { cat $f/b.vh; break; }; done
 echo "$(ls second | wc -l) names, $(tool), ${PROVE_LIMIT:-no limit}, ${OTHER:-nothing else}, $own"
-ls "$(dirname "$(command -v tool)")" >"$own/tools" # a file outside the tree
+ls "$(dirname "$(command -v tool)")" >"$own/tools" # lists a folder outside the tree
 [ ! -e linked ] || { ln -s ../prog "$own/link" && "$own/link" 'by a link'; }
 ! grep -q wrong second/b.vh || exit 3
 END
@@ -29,10 +29,10 @@ echo 'b 1' >second/b.vh
 fail() { echo "kept: $*" >&2 && cat "$work/said" >&2 && exit 1; }
 kept=tools/icesoc/regress/kept.py
 run() { status=0; $kept "$PWD/own" tests/t.sh "$PWD/own" >"$work/said" 2>&1 || status=$?; }
-# computed REASON WORDS: expects that the result is computed now, with these words in its output,
-# and reused the next time
+# computed REASON WORDS: expects that the result is computed now, that the output contains these
+# words, and that the result is reused the next time
 computed() {
-    sleep 0.1 # files just written are not trusted
+    sleep 0.1 # a file that has just been written is not trusted
     run
     { [ $status -eq 0 ] && ! grep -q '^kept:' "$work/said"; } || fail "not computed: $1"
     grep -q "$2" "$work/said" || fail "'$2' is not said: $1"
@@ -61,13 +61,14 @@ touch linked && cp /bin/echo prog
 computed 'a program of the tree, by a link of the test' '^by a link$'
 cp /bin/printf prog && computed 'another one there' '^by a link$'
 rm prog linked
-# A test that fails leaves no result.
+# The result of a failed test is not stored.
 echo wrong >second/b.vh
 for _ in 1 2; do
     run
     { [ $status -eq 3 ] && ! grep -q '^kept:' "$work/said"; } || fail "a failure: status $status"
 done
-# A killed test stores no result either, nor does a test with a file that changes while it runs.
+# The result of a killed test is not stored either, nor that of a test whose files change while it
+# runs.
 begun() { # earlier output
     rm -rf own
     $kept "$PWD/own" tests/t.sh "$PWD/own" >"$work/said" 2>&1 &
@@ -83,7 +84,7 @@ begun 'a file that changes' && echo go >own/gate
 wait $! || fail "the third"
 same 'one that came to its end' '^b 5$'
 rm wait
-# Two runs at the same time; one run without strace.
+# Two runs take place at the same time; a later run has no strace.
 echo 'b 6' >second/b.vh && sleep 0.1
 for n in 1 2; do $kept "" tests/t.sh "$PWD/own$n" >"$work/said$n" 2>&1 & done
 wait

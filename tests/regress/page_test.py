@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""page_test: tests the page of the regression tool in Chromium, and its status summary: a bug of
-each kind turns the status for this kind red, and no other. Usage: page_test.py case work-folder
+"""page_test: tests the page of the regression tool in Chromium, and its status summary, in which a
+bug of one kind must turn only the status of this kind red. Usage: page_test.py case work-folder
 build-folder"""
 import json
 import os
@@ -24,7 +24,7 @@ $scope module program $end $var string 1 p.task task $end $upscope $end $enddefi
 FIFO = {"file": "hdl/fifo/fifo.v", "percent": 97, "lines": 200, "gate": 95, "toggles": 96,
         "toggle_points": 9, "toggle_gate": 95, "why": "", "missed": ["12: level_o[3]", "40"]}
 
-# Design for the test of coverage: two bits that count to 2.
+# Design for the coverage test: a counter with two bits that counts to 2.
 COUNTER = """`default_nettype none
 module counter (input wire clk_i, input wire rst_i, input wire enable_i, output reg [1:0] count_o);
     always @(posedge clk_i) begin
@@ -62,7 +62,7 @@ def tree(folders):
 
 
 def measured(name, folders):
-    """Writes a file with figures, as the command of a measurement does."""
+    """Writes a file with figures, in the format of the commands that measure."""
     write(f"build/{name}/tree", tree(folders))
 
 
@@ -83,7 +83,8 @@ class Cases(Project):
         self.regress("", 1)
         page = Path(WRITTEN).read_text()
         self.lacks('src="http|href="http', WRITTEN)  # offline
-        # If the libraries could not be fetched, the page is complete and explains how to get them.
+        # If the libraries could not be downloaded, the page is still complete and explains how to
+        # get them.
         write("plain.html", re.sub("(?m)^(!function.*Tabulator=|.*var uPlot=).*\n", "", page))
         self.browse("plain.html")
         self.has("Tabulator and uPlot could not be fetched. With a network",
@@ -114,7 +115,7 @@ class Cases(Project):
             "earlier UAV_radioTask 0 0 s 0a; readout cursor at time 0, 15 before the failure; .*; "
             "later UAV_radioTask 1 -89 s 0a;",
             'id="results"', "test_c.Flicker",
-            'id="runs".*>one<',  # subject of the commit
+            'id="runs".*>one<',  # the line of a run shows the subject of its commit
             "<div>test_b.Bad: value 1 is not 7", 'class="dot dp"', "12 clauses with 3 flops",
             r'<a href="../../hdl/fifo/fifo.v">hdl/fifo/fifo.v:12: level_o\[3\]</a><br>'
             '<a href="../../hdl/fifo/fifo.v">hdl/fifo/fifo.v:40</a>',
@@ -122,7 +123,8 @@ class Cases(Project):
             'log <a href="failures/test_b.Bad-1.log"',
             'to have passed: <a href="../../tests/room/CMakeLists.txt">'
             r"tests/room/CMakeLists.txt:8</a> \(2 lines\)")
-        self.lacks('id="seeds"')  # these failures are of one seed, and are listed above
+        # the table of seeds is missing, because these failures are of one seed and are listed above
+        self.lacks('id="seeds"')
         self.assertEqual(json.loads(Path("build/regress/report.json").read_text())["blocks"], [
             {"block": "hdl/fifo", "green": "", "lines": [194, 200, 0]},
             {"block": "room", "green": "", "tests": [3, 2, 0], "proofs": [1, 1, 0]}])
@@ -140,8 +142,8 @@ class Cases(Project):
         self.lacks(">It waits<")
 
     def small_and_wrong(self, page):
-        """At a width of 420 pixels, columns without room are shown below their row; an error in a
-        script is found."""
+        """At a width of 420 pixels, columns that do not fit are shown below their row. An error in
+        a script is detected."""
         write("small.html", page.replace("</body>", """<script>setTimeout(() =>
 top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-col, h2")]
   .filter(e => e.getBoundingClientRect().right > 421).map(e => e.innerText) + ";"), 1000);
@@ -161,8 +163,8 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
         self.assertLess(len(picture), 100000)
 
     def test_blocks(self):
-        """A test, a module and a file belong to the block of their folder. The last green commit is
-        that of the last run that had a test of the block and in which no test of the block was
+        """A test, a module and a file belong to the block of their folder. The last green commit of
+        a block is that of the last run in which at least one of its tests ran and none of them was
         failing."""
         for file in ("hdl/fifo/fifo.v", "hdl/fifo/fifo_proof.vh", "hdl/wire/wire_in.v",
                      "ip/fir/fir.v", "sw/link/test/l.c"):
@@ -195,7 +197,7 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
         self.assertEqual(blocks.last_green(SimpleNamespace(runs=runs), of), {"x": "five"})
 
     def lights(self, words="--name 'a[.]'", status=0, **states):
-        """Checks the states of some statuses after a run; by default of the tests that pass."""
+        """Runs tests, by default those that pass, and checks the states of some statuses."""
         self.regress(words, status)
         self.has(*(f"^{name}  *{state}" for name, state in states.items()))
 
@@ -228,9 +230,10 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
         below = "red   *1 files below their gate: hdl/small/counter.v"
         measure()
         self.lights(coverage="green")
-        measure(LAZY="1")  # the stimulus is missing, but the test passes
+        measure(LAZY="1")  # the stimulus is missing, but the test still passes
         self.lights(coverage=below, tests="green")
-        # All lines and all toggles are covered, but one named situation never occurs.
+        # All lines and all toggles are covered, but one situation that a cover point names never
+        # occurs.
         said = measure(SHY="1")
         self.lights(coverage=below)
         self.assertRegex(said, r"toggles 100.0 \(gate 95\), points 0.0 \(gate 100\); "
@@ -256,12 +259,11 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
                   json.dumps({"seed": "1", "tree": tree("hdl").strip(), "gate": 95,
                               "survived": [], "modules": {"fifo": fifo}}))
             self.lights(mutants=state)
-        write("hdl/new.v", "\n")  # the measured sources have changed
+        write("hdl/new.v", "\n")  # the sources have changed since they were measured
         self.lights(mutants="grey   sources have changed since it was green")
 
     def test_lights_figures(self):
-        """Figures as reported by `make synth` and `make bench`: within a limit, beyond it, or
-        missing."""
+        """Figures of `make synth` and `make bench` can be within a limit, beyond it, or missing."""
         def entry(value, unit, limit):
             return [{"name": "whole", "value": value, "unit": unit, "limit": limit}]
 

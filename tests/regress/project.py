@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""project: a small project for tests of the regression tool; its tests pass, fail, crash or give
+"""project: a small project for tests of the regression tool. Its tests pass, fail, crash or give
 varying results.
 
-The programs get: case work-folder build-folder. Each case begins with the project as committed.
+The arguments of the test programs are case, work-folder and build-folder. Each case begins with the
+project as it was committed.
 """
 import os
 import shlex
@@ -15,8 +16,8 @@ from script import (LONGEST, TREE, Script, append, commit, edit, fresh, git,  # 
 BUILD = Path(sys.argv[3]) if len(sys.argv) > 3 else TREE / "build/main"
 REGRESS = BUILD / "tests/regress/regress"
 
-# test_a passes, test_b fails for all seeds except 7, test_c depends on the file `flicker`, test_d
-# crashes.
+# Files of the project: test_a passes, test_b fails for all seeds except 7, test_c depends on the
+# file `flicker`, test_d crashes.
 FILES = {
     "CMakeLists.txt": """cmake_minimum_required(VERSION 3.25)
 project(small NONE)
@@ -49,8 +50,8 @@ formal)
 esac
 """,
     ".gitignore": "build\n"}
-BREAK = ("case $1 in\n", "case $1 in\na.One) exit 1 ;;\n")  # edit of t.sh that makes test_a.One
-                                                            # fail
+# change of t.sh that makes test_a.One fail
+BREAK = ("case $1 in\n", "case $1 in\na.One) exit 1 ;;\n")
 
 
 class Project(Script):
@@ -64,7 +65,7 @@ class Project(Script):
         commit("one")
 
     def tests(self, text):
-        """Adds tests to the project, and configures it."""
+        """Adds tests to the project and configures it again."""
         append("tests/room/CMakeLists.txt", text)
         self.ask("cmake", "-S", ".", "-B", "build/main", "-G", "Ninja")
 

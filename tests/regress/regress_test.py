@@ -75,7 +75,7 @@ class Cases(Project):
 
     def junit_is_valid(self):
         """Checks JUnit files against Jenkins' junit-10.xsd: elements, attributes (required ones
-        first), children. GitLab reads the names, times, failures and outputs in them."""
+        first), children. GitLab reads names, times, failures and outputs from these files."""
         schema = {
             "testsuites": ("", "name time tests failures errors", "testsuite"),
             "testsuite": ("name tests failures errors", "time skipped timestamp",
@@ -102,8 +102,8 @@ class Cases(Project):
             "test_a": "0", "test_b": "1", "test_c": "0", "test_d": "0", "formal": "0"})
 
     def test_ages(self):
-        """A test that takes three times its usual time is reported with its age, and again at twice
-        that age; without history, first at 60 s."""
+        """A test that has taken three times its usual time is reported with its age, and again when
+        its age has doubled. Without a history, it is first reported after 60 s."""
         usual = {"quick": 0.1, "slow": 20.0, "new": None, "formal.long": 40.0}
         tests = [types.SimpleNamespace(name=name) for name in usual]
         progress = runner.Progress(tests, types.SimpleNamespace(seconds=usual.get,
@@ -128,8 +128,8 @@ class Cases(Project):
         self.idle_and_starved(progress, usual)
 
     def idle_and_starved(self, progress, usual):
-        """A test that does not use the CPU for ten seconds hangs. A test that gets a tenth of a CPU
-        does not, until its CPU time is ten times its usual time."""
+        """A test that uses no CPU time for ten seconds is considered to hang. A test that gets only
+        a tenth of a CPU is not, until its CPU time is ten times its usual time."""
         for share, hangs in ((0.001, {"quick": 42, "slow": 212}), (0.15, {"quick": 201})):
             progress.busy, first = {}, {}
             for age in range(1, 300):
@@ -143,8 +143,8 @@ class Cases(Project):
                 self.assertAlmostEqual(first[name], age, delta=3)
 
     def test_hang(self):
-        """A test that takes ten times its usual time is ended, with the stack of its program, and
-        counts as a failure. Here the minimum of 30 s is disabled."""
+        """A test that has taken ten times its usual time is ended. Its stack is printed, and it
+        counts as failed. Here the minimum of 30 s is disabled."""
         write("hang.c", HANG)
         edit("CMakeLists.txt", "small NONE", "small C")
         self.tests("""add_executable(test_h ${CMAKE_SOURCE_DIR}/hang.c)
@@ -166,8 +166,8 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.has('<error message="Hang, ended after', file="build/regress/junit.xml")
 
     def test_stopped(self):
-        """Ctrl-C, or the end of the terminal: page, JUnit and history contain the finished tests,
-        and no process is left."""
+        """After Ctrl-C, or the end of the terminal, the page, JUnit and the history contain the
+        tests that had finished, and no process is left."""
         self.tests('add_test(NAME script.Waits COMMAND sh -c "sleep 1234 & wait")\n')
         self.regress("--name 'a.One|formal'")
         for number, status in ((signal.SIGINT, 130), (signal.SIGHUP, 129)):
@@ -190,8 +190,9 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.has("^2 tests, SEED=1")
 
     def test_unchanged(self):
-        """Inputs that make a test run again: the files that a program contains as paths, all files
-        of the tree for a script, the build's packages and their dependencies; no other package."""
+        """Some changed inputs make a test run again: files whose paths its program contains, all
+        files of the tree for a script, and the build's packages with their dependencies, but no
+        other package."""
         source, build = self.work, self.work / "build/main"
         write("data/one.txt", "1")
         write("build/main/digests.json", "damaged")
@@ -236,8 +237,8 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.assertLess(Path("build/regress/report.html").stat().st_size, 2000000)
 
     def test_plan(self):
-        """Each requirement is reported as proven, failed, not run with these sources, or without a
-        test."""
+        """For each requirement the report shows whether it is proven, has failed, did not run with
+        these sources, or has no test."""
         plan = Path("tests/plan.toml")
         lines = ('[thing]\n"It works" = "test_a.* formal.thing"\n'
                  '"It stands" = "test_a.One test_b.*"\n')
@@ -263,7 +264,8 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.has("^plan  *grey   *0 of 2 requirements")
         self.tests(LATE)
         append(plan, '"It comes" = "test_late.One"\n')
-        self.regress("--plan")  # a program that is not built may contain any test
+        # this is accepted, because a program that is not built may contain any test
+        self.regress("--plan")
         append(plan, '"It has no test" = ""\n')
         self.regress("--plan", 2)
         self.has("plan.toml: It has no test: expected")
@@ -272,9 +274,11 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.has("plan.toml: .*line 6")
 
     def test_company(self):
-        """Progress, one run at a time, messages about mistyped words, no needless builds."""
+        """Tests progress, that there is only one run at a time, messages about mistyped words, and
+        that nothing is built needlessly."""
         self.regress("--name 'a.One|formal'")
-        self.has("^1 of 2, 0 failed, 1 left",  # the duration of the tests is unknown
+        # the number of tests is shown, because their duration is unknown
+        self.has("^1 of 2, 0 failed, 1 left",
                  "^2 of 2, 0 failed, 0:00 left", "^tests  *green  1 passed, 4 did not run$",
                  "^proofs  *green  1 hold, 1 of them")
         self.regress("--jobs none", 2)
@@ -290,9 +294,11 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
             ("--name '^script.whole'", "all"), ("--name '^script.says'", "other tools"),
             ("--name '^test_a'", ""), ("--name '^absent'", "all"),
             ("--name 'soon\\.'", "test_soon"),
-            ("--name 'script\\.after'", "tool"),  # the test is selected by words before the case
-            ("--name One", "test_radio test_soon"),  # programs with unknown cases are built
-            ("--name '^One|^(script|docs).says'", "other tools"),  # no name begins with these words
+            # the text before the case already selects the test
+            ("--name 'script\\.after'", "tool"),
+            ("--name One", "test_radio test_soon"),  # programs whose cases are unknown are built
+            # no test name begins with these words
+            ("--name '^One|^(script|docs).says'", "other tools"),
             ("--name '^test_tame.*Eat'", "test_tame"),
             ("--label 'rtl|radio'", "test_radio"),
             ("--name rue", "test_radio test_soon"),
@@ -304,8 +310,8 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.has("^Building tool ")
         self.assertTrue(Path("build/main/tool").exists())
         self.assertFalse(Path("build/main/other").exists())
-        # With --changed: tests that have never passed here and do not depend on an edit are not
-        # built.
+        # With --changed, tests are not built if they have never passed here and do not depend on an
+        # edit.
         commit("more")
         self.needs("--changed --name '^script|soon|radio'",
                    "Nothing to run: no test changed since the last run.")
@@ -317,8 +323,9 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         git("checkout -q HEAD~1 tests/room/CMakeLists.txt")
         self.tests(LATE)
         self.regress("--label formal", 1)
-        self.has("1 passed, 1 failed")  # programs that are not built may have tests with that label
-        # Another run holds the lock until this run has printed that it waits.
+        # also runs programs that were not built, because they may have tests with this label
+        self.has("1 passed, 1 failed")
+        # Another run holds the lock until this run has reported that it is waiting.
         with open("build/regress/lock", "w") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
             run = subprocess.Popen([REGRESS, "--name", "a.One"], stdout=subprocess.PIPE,
@@ -329,7 +336,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.assertEqual(run.returncode, 0)
 
     def a_plain_word_is_a_whole_one(self):
-        """The word `fir` does not select `first`. A new case in the source of a program is found
+        """The word `fir` does not select `first`. A new case in the source of a program is found,
         although the program has already been built."""
         self.ask("ninja", "-C", "build/main", "test_built")
         self.regress("--name Fir --list")
@@ -360,20 +367,21 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.regress("--rerun-failed", 1)
         self.has("2 tests, SEED=1")
         self.regress("--changed", 1)
-        self.has("2 tests, SEED=1")  # the tests that passed have not changed
+        # the tests that passed do not run, because they have not changed
+        self.has("2 tests, SEED=1")
         append("tests/room/t.sh", "# changed\n")
         self.regress("--changed", 1)
         self.has("6 tests, SEED=1")
         self.regress("--name a.One --repeat 3 --seed 7")
         self.has("SEED=9", "3 passed, 0 failed")
-        # A bug is removed again: the tests that failed run, and a pass counts for the sources with
-        # which the test had passed.
+        # When a bug has been removed, the tests that failed run again. A pass counts for the
+        # sources with which the test passed.
         write("tests/plan.toml", '[thing]\n"It works" = "test_a.One"\n')
         edit("tests/room/t.sh", *BREAK)
         self.regress("--changed --name a[.]", 1)
         self.has("^2 tests", "^plan  *red")
         self.regress("--name formal")
-        # a recorded failing seed
+        # a failing seed has been recorded
         self.has('"test": "test_a.One"', file="build/regress/report.json")
         edit("tests/room/t.sh", *reversed(BREAK))
         self.regress("--name formal")
@@ -398,13 +406,13 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.regress("--name 'test_[ab]' --seed random --repeat 2", 1)
         seeds = re.findall("^3 tests, SEED=(.*)", self.said, re.M)
         self.assertEqual(len(seeds), 2)
-        self.regress("--name 'test_[ab]' --seed 7")  # the tests pass; the failing seeds stay
-                                                     # recorded
+        # these tests pass, but the failing seeds stay recorded
+        self.regress("--name 'test_[ab]' --seed 7")
         self.has("2 failing seeds are kept")
         page = Path("build/regress/report.html")
         before = page.read_bytes()
-        self.regress("--kept --name 'a[.]'")  # no test has a recorded seed, so the page of the
-                                              # earlier run is unchanged
+        # the page of the earlier run is unchanged, because no selected test has a recorded seed
+        self.regress("--kept --name 'a[.]'")
         self.has("no seed is kept")
         self.assertEqual(page.read_bytes(), before)
         self.regress("--kept", 1)
@@ -417,14 +425,14 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.has("no seed is kept")
 
     def test_bisect(self):
-        """Of five commits, the second does not configure and the third breaks test_a.One; the
-        checkout is not changed."""
+        """Of five commits, the second cannot be configured, and the third breaks test_a.One. The
+        search must not change the user's checkout."""
         write("change", "")
         commit("something else")
         append("CMakeLists.txt", "broken(\n")
         commit("does not configure")
         git("revert --no-edit HEAD")
-        self.regress("--name a.One")  # the test passes, and the run is recorded
+        self.regress("--name a.One")  # this run, in which the test passes, is recorded
         edit("tests/room/t.sh", *BREAK)
         commit("breaks it")
         for later in "12":
@@ -446,7 +454,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
             self.assertFalse(Path("build/bisect/tree").exists())
 
     def test_large(self):
-        """With more tests than this project has, the page stays small."""
+        """The page stays small if there are more tests than this project has."""
         write("long.vcd", "$scope module top $end\n" +
               "".join(f"$var wire 16 s{s} a_signal_{s} $end\n" for s in range(100)) +
               "$upscope $end $enddefinitions $end\n" + "".join(

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# kinds: source-folder ghdl work-folder   The register block of kinds.regs.json, which has every
-# kind of register, is proven, is free of warnings, and is the same in VHDL. Each fault that is put
-# into it makes the proof fail.
+# kinds: source-folder ghdl work-folder   Checks the register block of kinds.regs.json, which has
+# every kind of register: it is proven, causes no warnings, and behaves the same in VHDL. If a fault
+# is put into it, the proof must fail.
 set -eu
 source=$1 ghdl=$2 work=$3
 here=$source/tests/regs
@@ -19,7 +19,7 @@ gcc -std=c90 -pedantic -Wall -Wextra -Werror -fsyntax-only "$work/kinds.c"
 prove() { GEN_DIR=$1 "$source/tests/hdl/formal/prove.sh" kinds_regs 4 "$source" "$1/proof"; }
 prove "$work" >"$work/log" || { cat "$work/log" && fail 'not proven'; }
 
-# A block with both LUT RAM and words in a memory of the core.
+# A block with LUT RAM and with words in a memory of the core.
 mkdir "$work/memory"
 sed 's/"block": "kinds"/"block": "memory"/
     s/"name": "SHOWN", "access": "ro"/"name": "SHOWN", "access": "rw", "storage": "memory"/
@@ -30,7 +30,7 @@ sed 's/"block": "kinds"/"block": "memory"/
 verilator --lint-only -Wall -I"$source/bus" -I"$work/memory" --top-module memory_regs \
     "$work/memory/memory_regs.v"
 
-# The register block in VHDL gives the same results, word by word.
+# The register block in VHDL must give the same results as the block in Verilog, word by word.
 "$source/cmake/vhdl_to_verilog.sh" "$ghdl" "$work/vhdl" kinds_regs "$work/vhdl/kinds_regs.v" \
     "$work/kinds_regs_pkg.vhd" "$work/kinds_regs.vhd"
 same() { # vhdl folder
@@ -51,7 +51,8 @@ sed 's/& *clear/\& ~clear/; s/~ *clear/clear/' "$work/vhdl/kinds_regs.v" >"$work
 cmp -s "$work/vhdl/kinds_regs.v" "$work/other/kinds_regs.v" || ! same "$work/other" ||
     fail 'a difference between VHDL and Verilog is not seen'
 
-wrong() { # error, sed command; each fault shows within the clocks of the bounded proof
+# arguments: error, sed command that makes the error; the bounded proof must find each error
+wrong() {
     sed "$2" "$work/kinds_regs.v" >"$work/wrong/kinds_regs.v"
     ! cmp -s "$work/kinds_regs.v" "$work/wrong/kinds_regs.v" || fail "nothing is changed: $1"
     cp "$work"/*.vh "$work/wrong"

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""names_test: names that collide in a generated file, or that are not allowed in a language, are
-rejected before anything is written, and the message contains both names. Texts cannot end a
-comment."""
+"""names_test: checks that names are rejected before anything is written if they collide in a
+generated file or are not allowed in a language. The message must contain both names. Texts must not
+be able to end a comment."""
 import json
 import subprocess
 import sys
@@ -94,8 +94,7 @@ class Names(unittest.TestCase):
         self.refused(["HW", "reserved by the project"], register("A"), block="HW")
 
     def test_keywords_and_texts(self):
-        """Keywords of each language are used as names, and texts end a comment or contain a
-        command."""
+        """Keywords of each language as names, and texts that end a comment or contain a command."""
         texts = ["ends in a backslash \\", "a /* comment", "a trigraph ??/", "verilator lint_off X",
                  "synthesis translate_off", "a | b **c** `d` <e>", "// x", "-- y",
                  "gr\u00f6\u00dfer"]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""newcomer_test: one line in a register description gives a register that works, everywhere.
+"""newcomer_test: checks that one line in a register description is enough for a new register.
 
-A line is added to ip/camera/camera.regs.json; the register is then in the Verilog (where it can be
+A line is added to ip/camera/camera.regs.json. The register is then in the Verilog (where it can be
 written and read), VHDL, C, the page, the reference, SVD, SystemRDL and IP-XACT.
 """
 import re
@@ -73,7 +73,7 @@ class Newcomer(unittest.TestCase):
         self.assertIn("**EXPOSURE**", markdown(block))
         shown = live.register(block, 11, 5, live.WRITTEN)
         self.assertEqual((shown["name"], shown["doc"]), ("EXPOSURE", "lines of exposure"))
-        # In hardware, the register is reset, written and read.
+        # In the hardware, the register can be reset, written and read.
         bench = self.out / "bench.v"
         bench.write_text(BENCH)
         includes = [f"-I{TREE / 'bus'}", f"-I{self.out}"]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""rdl_test: every property of SystemRDL 2.0 is converted, has no effect, or is an error with its
-line; no property is misread."""
+"""rdl_test: checks that each property of SystemRDL 2.0 is converted, has no effect, or causes an
+error with its line; none is misinterpreted."""
 import sys
 import tempfile
 import unittest
@@ -9,7 +9,7 @@ from pathlib import Path
 from icesoc.regs import rdl, rdl_properties
 from icesoc.regs.model import Wrong
 
-# The properties of the standard, by component, typed from its tables; each is handled.
+# All properties of the standard, by component, copied from its tables; each must be handled.
 STANDARD = """name desc ispresent donttest dontcompare hdl_path hdl_path_slice hdl_path_gate
 hdl_path_gate_slice errextbus hw sw reset resetsignal rclr rset onread woset woclr onwrite swwe
 swwel swmod swacc singlepulse we wel anded ored xored fieldwidth hwclr hwset hwenable hwmask counter

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""release_test: IceC's single files and packs, the porting examples, the files of a release.
+"""release_test: tests IceC's single files and packs, the porting examples, and the files of a
+release.
 
 Usage: release_test.py CASE WORK-FOLDER BUILD-FOLDER
 """
@@ -31,7 +32,7 @@ STRICT = "-std=c90 -pedantic -Wall -Wextra -Wconversion -Werror".split()
 ARM = "arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb -Os".split()
 GENERATED = ["Meter_types.c", "Meter_server.c", "Station_types.c", "Station_client.c"]
 PROGRAM = ["icec.c", "icec_link.c", "icec_radio.c", EXAMPLE / "meter.c", EXAMPLE / "mps2.c"]
-# Layers of the build, and for each the component with the same files.
+# Layers of the build, each with the component that has the same files.
 LAYERS = {"icec": "icec", "icec_tcp": "icec_tcp", "link_layer": "icec_link", "crypto": "icec_link",
           "icec_xbee": "icec_radio", "fsmc": "icec_fsmc"}
 SMALL = "# Changelog\n\n## Unreleased\n{}\n## 1.2.3\n\n- second\n\n## 1.2.2\n\n- first\n"
@@ -60,7 +61,7 @@ def undocumented(value):
 
 class Cases(Script):
     def test_components(self):
-        """Each layer of the build has the same files as its component."""
+        """Each layer of the build must have the same files as its component."""
         known, found = components.read(), {}
         for line in (BUILD / "tests/release/layers.txt").read_text().splitlines():
             layer, *files = line.split()
@@ -70,14 +71,15 @@ class Cases(Script):
         self.assertEqual(found, {name: set(its.files()) for name, its in known.items()})
 
     def examples(self):
-        """Writes the single files and the examples' generated code into the current folder."""
+        """Writes the single files, and the generated code of the examples, to the current
+        folder."""
         write_all(single_file.files())
         for name in "Meter", "Station":
             self.ask(BUILD / "slice/slice2c", EXAMPLE / f"{name}.ice", "--output-dir", ".")
 
     def test_single_file(self):
-        """The single files compile without a warning with three compilers and have every function
-        of the sources. A program made of them answers stock Ice over TCP."""
+        """The single files compile without warnings with three compilers, and contain every
+        function of the sources. A program that is built from them can answer stock Ice over TCP."""
         fresh(WORK)
         self.examples()
         known = components.read()
@@ -112,8 +114,8 @@ class Cases(Script):
                 host.kill()
 
     def fly(self, elf, kernel):
-        """Checks that stock Ice calls a program on QEMU's MPS2 board through the ground's plugin,
-        and that the program calls back."""
+        """Checks that stock Ice can call a program on QEMU's MPS2 board through the ground's
+        plugin, and that the program can call back."""
         with subprocess.Popen(
                 ["qemu-system-arm", "-M", "mps2-an385", "-kernel", elf, "-display", "none",
                  "-monitor", "none", "-serial", "pty"], stdin=subprocess.DEVNULL,
@@ -139,7 +141,7 @@ class Cases(Script):
             self.skipTest("qemu-system-arm is missing: apt-get install qemu-system-arm")
 
     def fetched(self, thing):
-        """Returns the folder of a download by icesoc.util.fetch; without a network the case is
+        """Returns the folder that icesoc.util.fetch has downloaded. Without a network, the case is
         skipped."""
         done = subprocess.run([TREE / "tools/python", "-m", "icesoc.util.fetch", thing, thing],
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
@@ -167,14 +169,14 @@ class Cases(Script):
         for path in "tasks.c", "queue.c", "list.c", f"{port}/port.c":
             objects.append(Path(path).with_suffix(".o").name)
             self.ask(*ARM, "-w", f"-I{EXAMPLE}", *folders, "-c", kernel / path, "-o", objects[-1])
-        # The headers of the kernel need C99.
+        # The headers of the kernel require C99.
         self.ask(*ARM, *STRICT[2:], "-std=gnu99", "-I.", f"-I{EXAMPLE}", *folders, "-c",
                  EXAMPLE / "freertos.c")
         self.link("freertos.elf", "freertos.o", *objects)
         self.fly("freertos.elf", "FreeRTOS")
 
     def test_packs(self):
-        """Each form lists exactly the files that it contains, and they compile."""
+        """Each pack lists exactly the files that it contains, and these files compile."""
         fresh(WORK)
         write_all(packs.library("1.2.3"), "library")
         manifest = json.loads(Path("library/library.json").read_text())
@@ -187,7 +189,7 @@ class Cases(Script):
         options = re.findall(r"^config (\w+)$", Path("library/zephyr/Kconfig").read_text(), re.M)
         used = set(re.findall(r"CONFIG_(\w+)", Path("library/zephyr/CMakeLists.txt").read_text()))
         self.assertEqual(used, set(options))
-        # stubs of the functions of Zephyr that the module calls
+        # stubs for the functions of Zephyr that the module calls
         write("CMakeLists.txt", """cmake_minimum_required(VERSION 3.20)
 project(zephyr C)
 macro(zephyr_library_named name)
@@ -232,7 +234,7 @@ add_subdirectory(library/zephyr)
             self.assertIn(its.get("condition"), conditions | {None})
 
     def test_guide(self):
-        """The code in the porting guide equals the code of the examples."""
+        """The code in the porting guide is identical to the code of the examples."""
         page = (TREE / "docs/porting.md").read_text()
         sources = "".join(path.read_text() for path in EXAMPLE.glob("*.c"))
         blocks = re.findall(r"^```c\n(.*?)^```", page, re.M | re.S)
@@ -255,9 +257,9 @@ add_subdirectory(library/zephyr)
         sys.path.insert(0, str((folder / "python").absolute()))
 
         class Refused(Exception):
-            """What PlatformIO raises."""
+            """Exception that PlatformIO raises."""
 
-        # the other modules of PlatformIO that these two import
+        # replacements for the other modules of PlatformIO that these two modules import
         for name, its in {
                 "requests": {"exceptions": SimpleNamespace(RequestException=OSError)},
                 "platformio": {"util": None}, "platformio.util": {
@@ -275,14 +277,14 @@ add_subdirectory(library/zephyr)
         for number in "1.2.3", "1.2.3+git.0123456789ab":
             text = packs.library(number)["library.json"]
             accepted = schema.load_manifest(parser(text).as_dict())
-            # `build` is an instruction to the builder, which the schema does not describe.
+            # `build` is an instruction for the builder; the schema does not describe it.
             self.assertEqual({*accepted, "build"}, {*json.loads(text)})
         for wrong in {"version": "one"}, {"license": "Sauce"}, {"keywords": ["a,b!"]}:
             with self.assertRaises(Refused, msg=wrong):
                 schema.load_manifest(parser(json.dumps(json.loads(text) | wrong)).as_dict())
 
     def test_zephyr(self):
-        """Zephyr's schema accepts zephyr/module.yml; the files that it names exist."""
+        """Zephyr's schema accepts zephyr/module.yml, and the files that it names exist."""
         fresh(WORK)
         folder = self.fetched("zephyr")
         sys.path.insert(0, str((folder / "python").absolute()))
@@ -312,8 +314,8 @@ add_subdirectory(library/zephyr)
             jsonschema.Draft7Validator(schema).validate(bill | {"files": [{"fileName": "./a"}]})
 
     def test_contracts(self):
-        """The registers of a block keep the contract of each recorded version with the same major
-        number. With RECORD in the environment, missing versions are recorded."""
+        """The registers of a block are compatible with each recorded version that has the same
+        major number. If RECORD is in the environment, missing versions are recorded."""
         for path in sorted([*TREE.glob("hdl/*/*.regs.json"), *TREE.glob("ip/*/*.regs.json")]):
             block = Block.read(path)
             if not block.is_slot:
@@ -338,8 +340,8 @@ add_subdirectory(library/zephyr)
                  env={**os.environ, "ICESOC_TREE": str(tree), **environment})
 
     def test_same_objects(self):
-        """Objects of a package have the same bytes in every folder, with and without ccache, also
-        with debug information."""
+        """The object files of a package have the same bytes in every folder, with and without
+        ccache, even with debug information."""
         fresh(WORK)
         made = []
         for folder in "a", "b/deeper":
@@ -368,8 +370,8 @@ target_include_directories(same PRIVATE ${{CMAKE_BINARY_DIR}}/gen ${{CMAKE_SOURC
         self.assertTrue(made[1:] == made[:1] * 3, "the objects differ")
 
     def test_same_bytes(self):
-        """Two runs in different environments give the same bytes. The archive contains all files of
-        the commit, and the bill of materials lists each of them."""
+        """Two runs in different environments produce the same bytes. The archive contains all files
+        of the commit, and the bill of materials lists each of them."""
         fresh(WORK)
         if not (TREE / ".git").exists():
             self.skipTest("this tree is not a git repository")
@@ -406,15 +408,15 @@ target_include_directories(same PRIVATE ${{CMAKE_BINARY_DIR}}/gen ${{CMAKE_SOURC
             self.assertIn("IceSoC.IceC.pdsc", pack.namelist())
 
     def small(self, unreleased):
-        """Turns the work folder into a repository with a changelog."""
+        """Turns the work folder into a repository that contains a changelog."""
         fresh(WORK / "small")
         repository()
         write("CHANGELOG.md", SMALL.format(unreleased))
         commit("First")
 
     def test_versions(self):
-        """The version of a commit with unreleased changes consists of the last version and the
-        number of the commit; a released version belongs to one commit."""
+        """If a commit has unreleased changes, its version consists of the last version and the
+        number of the commit. A released version belongs to one commit."""
         self.assertEqual(version.newest(), re.search(r"badge/version-([\d.]+)-",
                                                      (TREE / "README.md").read_text())[1])
         self.small("\n- third\n")
@@ -436,15 +438,15 @@ target_include_directories(same PRIVATE ${{CMAKE_BINARY_DIR}}/gen ${{CMAKE_SOURC
         self.has("--only: expected parts from source, .*, got 'sauce'")
 
     def package(self, path, seconds):
-        """Writes a Debian package without files, with this time."""
+        """Writes a Debian package that has no files and the time `seconds`."""
         write(path.with_suffix("") / "DEBIAN/control", "Package: a\nVersion: 1\nDescription: a\n"
               "Architecture: all\nMaintainer: a <a@b>\n")
         self.ask("dpkg-deb", "--root-owner-group", "-b", path.with_suffix(""), path,
                  env={**os.environ, "SOURCE_DATE_EPOCH": str(seconds)})
 
     def test_two_debians(self):
-        """A release takes the packages of each release of Debian from a folder. Packages of another
-        commit, and two packages of one name, are refused."""
+        """A release takes the packages for each release of Debian from a folder. Packages of
+        another commit, and two packages with the same name, are rejected."""
         self.small("")
         seconds = int(git("show -s --format=%ct"))
         for number in 12, 13:
@@ -466,7 +468,7 @@ target_include_directories(same PRIVATE ${{CMAKE_BINARY_DIR}}/gen ${{CMAKE_SOURC
         self.has("packages: expected Debian packages in empty, got none")
 
     def test_signature(self):
-        """The signature of SHA256SUMS is valid; a missing key is an error."""
+        """The signature of SHA256SUMS is valid, and a missing key is an error."""
         if not shutil.which("gpg"):
             self.skipTest("gpg is missing: apt-get install gnupg")
         self.small("")

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""site_test: tests the documentation site: reading of HDL files, links, and errors of the build.
+"""site_test: tests the documentation site: how HDL files are read, links, and errors that stop the
+build.
 
 Usage: site_test.py CASE WORK-FOLDER
 """
@@ -35,7 +36,7 @@ endmodule
 
 class Cases(Script):
     def test_hdl(self):
-        """A module's purpose, parameters, ports, groups and clocks are read from its file."""
+        """The purpose, parameters, ports, groups and clocks of a module are read from its file."""
         write(fresh(WORK) / "pair.v", VERILOG)
         entity = hdl.read(WORK / "pair.v", TREE)
         self.assertEqual((entity.name, entity.summary, entity.text),
@@ -50,7 +51,7 @@ class Cases(Script):
         self.assertIn(">data_i [WIDTH-1:0]</text>", symbol.draw(entity))
 
     def test_every_module(self):
-        """Each module of the platform has a purpose and at least one port in the reference."""
+        """In the reference, each module of the platform has a purpose and at least one port."""
         for path in sorted([*TREE.glob("hdl/**/*.v"), *TREE.glob("bus/*.v")]):
             entity = hdl.read(path, TREE)
             if entity and not path.stem.endswith("_proof"):
@@ -58,8 +59,8 @@ class Cases(Script):
                 self.assertTrue(entity.ports, path)
 
     def test_links(self):
-        """Links to pages follow a page to its place in the site; links to other files become
-        code."""
+        """A link to a page becomes a link to the place of this page in the site; a link to another
+        file becomes code."""
         moved = {"docs/bus.md": "bus", "ip/fir/README.md": "reference/cores/fir"}
         text = "[bus](../../docs/bus.md#slots) [code](fir.v) ![p](x.png) [web](https://a.b)"
         self.assertEqual(
@@ -67,7 +68,8 @@ class Cases(Script):
             "[bus](../../bus.md#slots) code (`ip/fir/fir.v`) ![p](x.png) [web](https://a.b)")
 
     def test_comments(self):
-        """Plain C comments become Doxygen's, before and after the item that they describe."""
+        """Plain C comments become Doxygen comments, whether they come before or after the item that
+        they describe."""
         text = doxygen_filter.convert(
             "/* Returns it. */\nint f(void);\nint a; /* bytes */\n", "f.h")
         self.assertEqual(text, "/** Returns it. */\nint f(void);\nint a; /**< bytes */\n")

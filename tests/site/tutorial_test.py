@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""tutorial_test: tests the program that follows the tutorial: it accepts a right page and rejects
-wrong commands, output and exit statuses.
+"""tutorial_test: tests the program that executes the tutorial: it must accept a correct page, and
+reject wrong commands, output and exit statuses.
 
 Usage: tutorial_test.py CASE WORK-FOLDER
 """
@@ -67,8 +67,8 @@ class Cases(Script):
         self.assertFalse((WORK / "log").exists())
 
     def test_wrong(self):
-        """A wrong command, line, missing line, additional line or exit status is reported with its
-        line in the page."""
+        """A wrong command, a wrong, missing or additional line, or a wrong exit status is reported
+        with its line in the page."""
         for old, new, message in (
                 ("$ cat greeting", "$ cat greetings",
                  "page.md:14: cat greetings: .*status 0, got 1"),
@@ -85,8 +85,7 @@ class Cases(Script):
                 self.follow(PAGE.replace(old, new))
 
     def test_page(self):
-        """The tutorial writes files, and quotes the output of each command that prints
-        something."""
+        """The tutorial writes files, and shows the output of each command that prints something."""
         steps = tutorial.steps((TREE / "docs/tutorial.md").read_text())
         self.assertGreater(len([step for step in steps if step.file]), 2)
         for step in steps:

@@ -2,16 +2,17 @@
 # SPDX-License-Identifier: MIT
 # check: golden|hardware|equal|errors|compile slice2c file.ice-or-folder work-folder source-folder
 #        [ghdl]
-# Checks the output of slice2c for a Slice file. The expected results are at the end of the file:
-# messages of the compiler after `//> `; and after `//= ` lines of the generated header, then lines
-# of the server's C, or lines of the registers, each in order. The source line and the caret
-# of a message are only compared if the file contains them. UPDATE_GOLDENS=1 rewrites the messages.
+# Checks the output of slice2c for a Slice file. The end of the file contains the expected results:
+# after `//> ` the messages of the compiler; after `//= ` lines of the generated header, of the
+# server's C code, or of the registers. Each kind must appear in this order. The source line and the
+# caret of a message are only compared if the file contains them. UPDATE_GOLDENS=1 rewrites the
+# messages.
 #
-# golden: the generated C has no warnings.
-# hardware: the wrappers and new cores are Verilog without warnings and without latches.
+# golden: the generated C causes no warnings.
+# hardware: wrappers and new cores are Verilog without warnings and without latches.
 # equal: the VHDL wrapper of each interface, and the new core around it, compile as VHDL-93 and
-# VHDL-2008 without a warning. The VHDL wrapper behaves like the Verilog wrapper: after reset, for
-# any inputs, their outputs are the same in every clock (proven, not bounded).
+# VHDL-2008 without warnings. The VHDL wrapper behaves like the Verilog wrapper: after reset, for
+# any inputs, their outputs are the same in every clock (an unbounded proof).
 # errors: the compiler writes no files.
 set -eu
 kind=$1 slice2c=$2 ice=$3 work=$4 source=$5
@@ -23,7 +24,7 @@ out=$work/out
 hardware="--hw-verilog $out --hw-vhdl $out --hw-regs $out --hw-c $out --hw-cpp $out \
 --hw-new-verilog $out --hw-new-vhdl $out"
 
-has_lines() { # the lines behind `//= ` in the files
+has_lines() { # checks the lines after `//= ` in the files
     grep -q '^//= ' "$ice" || return 0
     sed -n 's/^\/\/= //p' "$ice" | awk 'BEGIN { i = 0 } NR == FNR { wanted[n++] = $0; next }
         $0 == wanted[i] { i++ }
@@ -53,9 +54,10 @@ golden)
     ;;
 hardware)
     "$slice2c" "$ice" --output-dir "$work/c" $hardware
-    # The registers are a contract; test_slice_hardware runs wrappers, servants and proxies,
-    # test_ip_sample new cores.
-    /usr/bin/python3 - "$out"/*.regs.json >"$work/registers" <<'PYTHON' # a line for each thing
+    # The registers are a contract, so they are compared with the file. test_slice_hardware runs
+    # wrappers, servants and proxies; test_ip_sample runs new cores.
+    # prints one line for each register, field or event
+    /usr/bin/python3 - "$out"/*.regs.json >"$work/registers" <<'PYTHON'
 import json, sys
 for path in sys.argv[1:]:
     for key, value in json.load(open(path)).items():
@@ -91,7 +93,7 @@ equal)
                 "${module%_wrapper}"
         done
         "$ghdl" --synth --std=08 --out=verilog "$module" >converted
-        # AIGER has flip-flops without enable only; both begin with zeros, as after a reset
+        # AIGER has only flip-flops without enable; all of them begin with zeros, as after a reset
         yosys -q -l "$module.log" -p "
             read_verilog converted; hierarchy -top $module; proc; flatten; opt_clean
             select -assert-none t:\$dlatch; rename $module from_vhdl; design -stash vhdl
@@ -102,8 +104,8 @@ equal)
             hierarchy -top both; proc; opt_clean; setundef -zero -init; opt -full; techmap
             opt -fast -nosdff -nodffe; dfflegalize -cell \$_DFF_P_ 01
             abc -g AND -fast; opt_clean; delete -output w:*; write_aiger -zinit both.aig"
-        # sat: if scorr alone has found the output constant, newer versions of abc have nothing left
-        # to prove
+        # sat: scorr may already find that the output is constant; newer versions of abc then have
+        # nothing left to prove
         timeout 100 yosys-abc -c 'read_aiger both.aig; fold; strash; scorr; pdr; sat' >proof.log \
             2>&1 || true
         grep -q 'Property proved\|UNSATISFIABLE' proof.log || {
@@ -123,7 +125,8 @@ errors)
     sed -i "s|^/[^:]*/||" "$work/messages"
     has_messages
     ;;
-compile) # every file of a folder compiles without a message, and its C without a warning
+# every file of a folder must compile without a message, and the generated C without a warning
+compile)
     find "$ice" -name '*.ice' | sort >"$work/list"
     while read -r file; do
         folder=${file#"$ice"/}
@@ -131,7 +134,8 @@ compile) # every file of a folder compiles without a message, and its C without 
             2>"$work/messages" || { echo "$file:" && cat "$work/messages" && exit 1; }
         ! grep ': warning: ' "$work/messages" | grep -v deprecated || exit 1
     done <"$work/list"
-    # The sources of a file in one go: a compiler's start takes longer than its work.
+    # All sources of a file are compiled at once, because starting a compiler takes longer than
+    # compiling.
     find "$out" -name '*_types.c' | while read -r types; do
         for part in types client async server; do
             echo "#include \"${types%_types.c}_$part.c\""

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ends: the vehicles and ground stations of the soak test, and the messages between them. The
-// content of a message allows the receiver to check it.
+// ends: the vehicles and ground stations of the soak test, and the messages between them. A
+// receiver can check a message by its content.
 
 #pragma once
 
@@ -26,12 +26,12 @@ struct Totals {
     uint64_t babbles = 0, rivals = 0;
 };
 
-// Messages from one end to another. They are numbered, and use the four channels in turn, so each
+// Messages from one end to another. They are numbered and use the four channels in turn, so each
 // channel carries every fourth message.
 class Mail {
 public:
     Mail(int from, int to, Totals& totals) : from_(from), to_(to), totals_(totals) {}
-    // Returns the next message; it stays the next one until `sent`.
+    // Returns the message that must be sent next; it does not change until `sent` is called.
     Bytes next() const { return message(next_); }
     U32 number() const { return next_; }
     int channel() const { return static_cast<int>(next_ % LINK_CHANNELS); }
@@ -44,13 +44,14 @@ public:
         throwFault(check_.reported(id, outcome == LINK_DELIVERED));
         ++(outcome == LINK_DELIVERED ? totals_.delivered : totals_.unknown);
     }
-    // Forgets the messages that are in transit when the power fails: the program cannot know their
-    // outcome.
+    // Discards the messages that are in transit when the power fails, because the program cannot
+    // know whether they arrive.
     void forget() {
         for (int channel = 0; channel < LINK_CHANNELS; ++channel)
             totals_.unknown += check_.forget(channel);
     }
-    // Checks a message for its receiver. Returns the fault: it may belong to another mail.
+    // Checks a message that has arrived. Returns an error text, or an empty string if the message
+    // is correct; on an error the caller tries the Mail of the other possible sender.
     std::string arrived(int channel, const Bytes& bytes, bool isRival) {
         const std::string fault = check_.arrived(channel, bytes, isRival);
         totals_.received += fault.empty();
@@ -63,7 +64,7 @@ private:
         if (!fault.empty())
             throw Fault(fmt::format("from 0x{:04x} to 0x{:04x}: {}", from_, to_, fault));
     }
-    // Returns a message; its bytes are determined by sender, receiver and number.
+    // Returns a message; its bytes depend only on sender, receiver and number.
     Bytes message(uint32_t id) const {
         Random r(uint64_t(from_) << 48 | uint64_t(to_) << 32 | uint64_t(from_ >> 16) << 31 | id);
         uint32_t kind = r.below(10);
@@ -78,7 +79,7 @@ private:
         if (kind < 8)
             return IceMessages::reply(id, body, kind == 7);
         body.push_back(body[0]);
-        body[0] = static_cast<uint8_t>(r.next()); // any first byte
+        body[0] = static_cast<uint8_t>(r.next()); // the first byte can have any value
         return body;
     }
 
@@ -88,11 +89,12 @@ private:
     DeliveryCheck check_;
 };
 
-// A vehicle or a ground station, and its program. It knows the messages that others send only in
-// order to check them.
+// A vehicle or a ground station, with its program. It knows the messages of the other ends only to
+// check them.
 class End : public ModemEnd {
 public:
-    using MailOf = std::function<Mail*(int from, int to)>; // null if none
+    // returns the messages from one end to another; null if these ends do not communicate
+    using MailOf = std::function<Mail*(int from, int to)>;
     End(RfChannel& air, Random& random, int name, bool isGround, const std::vector<int>& targets,
         const MailOf& mailOf)
         : ModemEnd(air, options(name & 0xFFFF), random.next(), targets), random_(random),
@@ -103,10 +105,10 @@ public:
             out_.push_back(mailOf(name, target));
         }
     }
-    static constexpr int rival = 0x10000; // address in this test of the rival, which uses address 0
-                                          // of the first ground station
-    // Restarts the program. `hasKeys`: each pair of vehicle and ground station has a key, which
-    // depends on the number of changes.
+    // name of the rival in this test; on the air it uses the address 0 of the first ground station
+    static constexpr int rival = 0x10000;
+    // Restarts the program. `hasKeys` is true if each pair of vehicle and ground station has a key,
+    // which depends on the number of key changes.
     void boot(uint64_t now, bool hasKeys) {
         now_ = now;
         begin();
@@ -121,19 +123,20 @@ public:
         }
     }
     unsigned keyOf(size_t peer) const { return keys_[peer]; } // its number
-    // Gives the ground two keys, the current and the next one; the session of the vehicle ends.
+    // Gives the ground station two keys, the current one and the next one. The session of the
+    // vehicle ends.
     void takeNextKey(size_t peer) {
         setKey(peer, ++keys_[peer], true);
         if (!isGround_)
             setKey(peer, keys_[peer] - 1, false);
     }
-    // Makes one step of a program: sends a message to each peer with this probability.
+    // Runs one step of the program: sends a message to each peer with the probability `rate`.
     void work(double rate) {
         for (size_t peer = 0; peer < peers(); ++peer)
             if (out_[peer] && isUp(peer) && random_.chance(rate))
                 offer(peer);
         if (random_.chance(0.002))
-            isBusy_ = random_.chance(0.1); // the program accepts no message for a while
+            isBusy_ = random_.chance(0.1); // while it is busy, the program accepts no messages
     }
     bool isWell() const {
         for (size_t peer = 0; peer < peers(); ++peer)
@@ -173,7 +176,7 @@ private:
     void onOutcome(size_t peer, U32 id, Link_Outcome outcome) override {
         out_[peer]->report(id, outcome);
     }
-    // Link and program accept a message in one step here, unless the program is busy.
+    // Accepts a message for link and program in one step, unless the program is busy.
     int onMessage(size_t peer, int channel, const U8* data, U32 size) override {
         if (isBusy_)
             return 1;
@@ -194,8 +197,9 @@ private:
     Random& random_;
     const bool isGround_, isRival_;
     const int address_;
-    std::vector<std::array<Mail*, 2>> in_; // mail to this end, by peer, and from the peer's rival
+    // for each peer: the messages from this peer to this end, and those from the peer's rival
+    std::vector<std::array<Mail*, 2>> in_;
     std::vector<Mail*> out_;
-    std::vector<unsigned> keys_; // number of key changes by peer
+    std::vector<unsigned> keys_; // number of key changes with each peer
     bool isBusy_ = false;
 };

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
 //
-// soak: tests link layers over XBee models in API mode and a bad radio, for any time. There are one
-// vehicle and one ground station, or several (--vehicles, --grounds); each station talks to all
-// vehicles. Random messages are sent in both directions. The radio loses, corrupts and duplicates
-// packets, also in bursts. Vehicles, stations and modems restart, and some are out of reach for a
-// while.
+// soak: tests link layers over XBee models in API mode and a bad radio link, for any duration.
+// There are one vehicle and one ground station, or several (--vehicles, --grounds); each ground
+// station communicates with all vehicles. Random messages are sent in both directions. The radio
+// loses, corrupts and duplicates packets, also in bursts. Vehicles, ground stations and modems
+// restart, and some are out of reach for a while.
 //
-// With --attacked, or with several vehicles, each pair of station and vehicle has a separate key.
-// A hostile modem listens, forges packets and sends noise, a second vehicle uses the address of
-// another one, and keys are changed. With several vehicles, a second program with the address and
-// the keys of the first station appears, and both believe that they hold the vehicles.
+// With --attacked, or with several vehicles, each pair of ground station and vehicle has a separate
+// key. A hostile modem listens, forges packets and sends noise, a second vehicle uses the address
+// of another one, and keys are changed. With several vehicles, there is also a second program with
+// the address and the keys of the first ground station, and both programs believe that they control
+// the vehicles.
 //
-// No message may be wrong, duplicated, out of order or at the wrong receiver, and each message must
-// be delivered or reported as lost. The first violation ends the program.
+// No message may be wrong, duplicated, out of order or received by the wrong end, and each message
+// must be delivered or reported as lost. The first error ends the program.
 
 #include "attacker.h"
 #include "ends.h"
@@ -22,7 +23,7 @@
 
 namespace {
 
-// The air with all ends, and fault injection.
+// Simulates the air with all ends, and injects faults.
 class Soak {
 public:
     Soak(uint64_t seed, bool attacked, int vehicles, int grounds)
@@ -68,7 +69,8 @@ public:
         misfortune();
         pass(rate_ / static_cast<double>(2 * vehicles_ * grounds_));
     }
-    // Simulates good weather without new messages, until all pending ones have been reported.
+    // Simulates good conditions without new messages, until all pending messages have been
+    // reported.
     void settle() {
         air_.weather = {};
         attacker_.hinder(false);
@@ -92,8 +94,8 @@ public:
     const RfChannel::Counters& air() const { return air_.counters(); }
 
 private:
-    // A guest appears; if it is present, it disappears, and its pending messages have an unknown
-    // outcome. Returns the number of appearances.
+    // Makes a guest appear; if it is already present, it disappears, and the outcome of its pending
+    // messages is unknown. Returns the number of appearances, 0 or 1.
     unsigned visit(size_t number) {
         End& guest = *ends_[vehicles_ + grounds_ + number];
         const bool comes = guest.isGone();
@@ -112,7 +114,7 @@ private:
         return std::all_of(ends_.begin(), ends_.end(),
                            [](auto& end) { return end->isGone() || end->isWell(); });
     }
-    // Simulates one second, in which programs and the attacker act each millisecond.
+    // Simulates one second, in which the programs and the attacker act every millisecond.
     void pass(double rate) {
         for (const uint64_t end = now_ + secondNs; now_ < end;) {
             air_.advance(now_);
@@ -142,11 +144,11 @@ private:
         air_.weather = RfWeather::drawn(random_, 40);
         attacker_.hinder(attacked_ && !isFleet_ && random_.below(2));
         air_.weather.delayNs = random_.below(2) ? 0 : random_.below(20) * msNs;
-        // messages per ms: a low rate, or more than the air can carry; in a fleet an eighth of
-        // that, because many links share the air
+        // messages per ms: a low rate, or more than the air can carry; in a fleet an eighth of this
+        // rate, because many links share the air
         rate_ = (random_.below(3) ? 0.08 : 0.8) / (isFleet_ ? 8 : 1);
     }
-    // Injects a random fault at one of the ends, more often if there are many ends.
+    // Injects a random fault at one of the ends; with more ends there are more faults.
     void misfortune() {
         for (auto& end : ends_)
             if (end->awayUntil && end->awayUntil <= now_) {
@@ -168,8 +170,8 @@ private:
             end.modem.resetPin(false, now_ + 1000);
             break;
         case 2:
-            ++totals_.absences; // an end is out of reach, for a second or until its session has
-                                // ended
+            // an end is out of reach for a second, or until its session has ended
+            ++totals_.absences;
             end.modem.power(false, now_);
             end.awayUntil = now_ + (random_.below(3) ? 1 : random_.below(40)) * secondNs;
             break;
@@ -183,11 +185,13 @@ private:
         case 5:
             changeKey();
             break;
-        case 6: // the first station still believes that it has the vehicles
+        // a rival of the first ground station appears, while the first one still believes that it
+        // controls the vehicles
+        case 6:
             totals_.rivals += visit(1);
         }
     }
-    // A ground station gets the next key of a vehicle; the vehicle gets it some time later.
+    // Gives a ground station the next key of a vehicle; the vehicle gets this key some time later.
     void changeKey() {
         const size_t vehicle = random_.below(static_cast<uint32_t>(vehicles_));
         const size_t ground = random_.below(static_cast<uint32_t>(grounds_));
@@ -207,9 +211,9 @@ private:
     const bool attacked_;
     Attacker attacker_;
     std::map<std::pair<int, int>, Mail> mail_;
-    // The vehicles, the ground stations, and guests: a vehicle with the address of another one but
-    // none of its keys and, in a fleet, a ground station with the address and the keys of the first
-    // one.
+    // All ends: the vehicles, the ground stations, and guests. The guests are a vehicle with the
+    // address of another vehicle and other keys and, in a fleet, a ground station with the address
+    // and the keys of the first one.
     std::vector<std::unique_ptr<End>> ends_;
     size_t vehicles_, grounds_;
     bool isFleet_ = false;

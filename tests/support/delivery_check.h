@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// delivery_check: the promise of the link, checked for messages from one program to another: each
-// arrives unchanged, at most once and in order, and those reported as delivered have arrived.
+// delivery_check: checks that the link keeps its promise for the messages from one program to
+// another: each message arrives unchanged, at most once and in order, and each message that is
+// reported as delivered has arrived.
 
 #pragma once
 
@@ -14,13 +15,14 @@
 #include <utility>
 #include <vector>
 
-// Functions that return text return the fault, or an empty string if the promise is kept.
+// Functions that return text return an error, or an empty string if the promise is kept.
 class DeliveryCheck {
 public:
     using Bytes = std::vector<uint8_t>;
 
-    // Records a message that is sent. Messages of one stream arrive in the order of these calls.
-    // `id`: number of the message, unique among those without a report.
+    // Records that a message is sent. The messages of one stream must arrive in the order of these
+    // calls. `id` is the number of the message; no other message without a report may have this
+    // number.
     void sent(int stream, uint32_t id, const Bytes& message) {
         Stream& s = streams_[stream];
         s.messages.push_back({id, digestOf(message)});
@@ -31,8 +33,8 @@ public:
         }
     }
 
-    // Checks a message that arrived at a receiver. Receivers that share an address each get their
-    // messages in order, but no message arrives at both.
+    // Checks a message that arrived at a receiver. If several receivers share an address, each of
+    // them gets its messages in order, and a message arrives at only one of them.
     std::string arrived(int stream, const Bytes& message, int receiver = 0) {
         Stream& s = streams_[stream];
         const uint64_t digest = digestOf(message);
@@ -63,7 +65,8 @@ public:
         return take(s, at, receiver);
     }
 
-    // Checks a report of the sender: the message was delivered, or its outcome is unknown.
+    // Checks a report to the sender. The report is that the message was delivered, or that its
+    // outcome is unknown.
     std::string reported(uint32_t id, bool isDelivered) {
         const auto found = waiting_.find(id);
         if (found == waiting_.end())
@@ -76,8 +79,8 @@ public:
                    ? s.fault(at, "was reported delivered, but has not arrived")
                    : "";
     }
-    // Expects no report for the messages of a stream that have none: their sender has restarted.
-    // Returns their number.
+    // Expects no further reports for the messages of a stream, because their sender has restarted.
+    // Returns the number of messages without a report.
     size_t forget(int stream) {
         size_t count = 0;
         for (auto it = waiting_.begin(); it != waiting_.end();) {
@@ -89,10 +92,11 @@ public:
     }
 
     uint64_t arrivals() const { return arrivals_; }
-    bool isQuiet() const { return waiting_.empty(); } // true if all messages are reported
+    // Returns true if all messages have been reported.
+    bool isQuiet() const { return waiting_.empty(); }
 
 private:
-    static constexpr size_t kept = 10'000; // messages of a stream that are remembered
+    static constexpr size_t kept = 10'000; // number of messages of a stream that are stored
 
     struct Message {
         uint32_t id;
@@ -101,8 +105,9 @@ private:
     };
     struct Stream {
         std::deque<Message> messages;
-        size_t forgotten = 0;       // number of earlier messages
-        std::map<int, size_t> next; // number of the first message that may arrive, by receiver
+        size_t forgotten = 0; // number of older messages that are no longer stored
+        // for each receiver: number of the first message that may arrive next
+        std::map<int, size_t> next;
 
         size_t nextOf(int receiver) {
             const size_t number = next[receiver];
@@ -113,14 +118,15 @@ private:
         }
     };
 
-    // FNV-1a, 64 bits.
+    // Returns a hash of the message (FNV-1a, 64 bits).
     static uint64_t digestOf(const Bytes& message) {
         uint64_t digest = 0xCBF29CE484222325u ^ message.size();
         for (uint8_t byte : message)
             digest = (digest ^ byte) * 0x100000001B3u;
         return digest;
     }
-    // A message may be skipped only if its sender knows that its outcome is unknown.
+    // Records that a message arrived. It is an error if an earlier message was skipped, unless the
+    // sender knows that the outcome of that message is unknown.
     std::string take(Stream& s, size_t at, int receiver) {
         s.messages[at].hasArrived = true;
         ++arrivals_;
@@ -132,7 +138,7 @@ private:
     }
 
     std::map<int, Stream> streams_;
-    std::unordered_map<uint32_t, std::pair<int, size_t>> waiting_; // stream and number of the
-                                                                   // messages without a report
+    // messages without a report: stream and number of each
+    std::unordered_map<uint32_t, std::pair<int, size_t>> waiting_;
     uint64_t arrivals_ = 0;
 };

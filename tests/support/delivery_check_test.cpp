@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// delivery_check_test: the check of the endurance tests finds each kind of fault, and accepts what
-// the link may do.
+// delivery_check_test: tests that the check for endurance tests detects each kind of error, and
+// accepts everything that the link is allowed to do.
 
 #include "delivery_check.h"
 #include "environment.h"
@@ -34,7 +34,7 @@ TEST_F(Delivery, MessagesThatArriveOnceInOrderAreRight) {
 TEST_F(Delivery, EachFaultIsFound) {
     EXPECT_EQ(check_.arrived(0, {2, 3}), "a message is wrong");
     EXPECT_EQ(check_.arrived(0, 2, {2}), "message 2 is wrong");
-    EXPECT_EQ(check_.arrived(0, three), "a message is wrong"); // of another stream
+    EXPECT_EQ(check_.arrived(0, three), "a message is wrong"); // a message of another stream
     EXPECT_EQ(check_.arrived(0, 9, two), "message 9 was never sent");
     EXPECT_EQ(check_.arrived(0, one), "");
     EXPECT_EQ(check_.arrived(0, one), "message 1 is a duplicate");

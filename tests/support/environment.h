@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// environment: numbers with which a developer makes a test run longer, from environment variables.
+// environment: reads numbers from environment variables, with which a developer can make a test run
+// longer.
 
 #pragma once
 
@@ -9,8 +10,8 @@
 #include <stdexcept>
 #include <string>
 
-// Returns the number in an environment variable, or `usual` if it is missing or empty. Throws if
-// the variable contains anything but a number of at least 0.
+// Returns the number in an environment variable, or `usual` if the variable is missing or empty.
+// Throws if the variable does not contain a number of at least 0.
 inline double numberFromEnvironment(const char* name, double usual) {
     const char* text = std::getenv(name);
     if (!text || !*text)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// link_end: one end of a link for tests. A test derives from it and overrides LinkProgram's
-// functions.
+// link_end: one end of a link, for tests. A test derives a class from it and overrides functions of
+// LinkProgram.
 
 #pragma once
 
@@ -21,8 +21,8 @@ public:
     const Link_Statistics& statistics() const { return *Link_statistics(link()); }
 
 protected:
-    // Begins without earlier state. `sixteenUs`: time of 16 characters on the line, us; default:
-    // for 111,111 baud.
+    // Starts the link without earlier state. `sixteenUs` is the time that 16 characters take on the
+    // line, us; the default is that of 111,111 baud.
     void begin(U32 sixteenUs = 1440) {
         const Link_Config config = {linkPort(), linkProgram(), sixteenUs, LINK_USE(*buffers_)};
         Link_init(link(), &config);

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""files_test: tests which files a design needs, and where its signals are declared."""
+"""files_test: tests how the report finds the files that a design needs, and the places where its
+signals are declared."""
 import pathlib, tempfile, unittest
 
 from icesoc.synth import nets, sources
@@ -8,7 +9,7 @@ from icesoc.synth.netlist import Netlist
 
 
 class Files(unittest.TestCase):
-    """Tests which files a module needs, and in which line of them a signal is declared."""
+    """Tests which files a module needs, and in which of their lines a signal is declared."""
 
     def setUp(self):
         self.work = tempfile.TemporaryDirectory()
@@ -88,7 +89,7 @@ endmodule
         for signal, place in (("n71_o", "ip/a/a.vhd:40"), ("n72_q[0]", "ip/a/a.vhd:51"),
                               ("n74_o", "ip/a/a.vhd:60"), ("(for) kept_o", "ip/a/a.vhd:40")):
             self.assertEqual(nets.place_of(n, signal), place)
-        # a signal for which GHDL gives no place
+        # a signal for which GHDL gives no place in the VHDL
         self.assertTrue(nets.place_of(n, "n73_o").endswith("/place.v:5"))
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""parts_test: compares parts of the utilisation report with published reports of Xilinx' tools, and
-with figures that can be added up by hand."""
+"""parts_test: compares parts of the utilisation report with published reports of Xilinx's tools,
+and with figures that can be calculated by hand."""
 import copy, json, os, pathlib, statistics, tempfile, types, unittest, unittest.mock
 
 from icesoc.synth import (baseline, cores, equivalence, owners, report, reports, runner, slices,
@@ -14,7 +14,7 @@ YOSYS = "Yosys 0.23 (git sha1 7ce5011c24b)"
 
 
 def cell(type, inputs, outputs, name=""):
-    """Returns a cell. Inputs and outputs: {port: bit}."""
+    """Returns a cell. `inputs` and `outputs` are {port: bit}."""
     pins = [Pin(port, False, [bit]) for port, bit in inputs.items()]
     pins += [Pin(port, True, [bit]) for port, bit in outputs.items()]
     return Cell(name or type, type, pins, bool(name))
@@ -37,13 +37,13 @@ class Slices(unittest.TestCase):
         for inputs, sites in (([2, 3, 4, 5], 1), ([2, 3, 4, 5, 6, 7], 2), ([2, 3, 4, 7], 2)):
             n = Netlist([lut([2, 3, 4, 5, 6], 20), lut(inputs, 21)])
             self.assertEqual(slices.slices_of(n)["sites"], sites, inputs)
-        # A LUT RAM takes a separate slice of its kind.
+        # Each LUT RAM occupies a slice of its own, of the kind that can contain RAM.
         found = slices.slices_of(Netlist([cell("RAM32M", {}, {})] * 3))
         self.assertEqual((found["slicem"], found["low"]), (3, 3))
 
 
 def chain(fanouts, end_pin, middle=None):
-    """Returns a path of one-input LUTs between two flip-flops; each net has the given fan-out."""
+    """Returns a path of one-input LUTs between two flip-flops; the nets have these fan-outs."""
     n = Netlist([cell("FDRE", {"C": 2}, {"Q": 10})])
     for bit, fanout in enumerate(fanouts, 10):
         n.readers.setdefault(bit, []).extend([0] * (fanout - 1))  # other readers
@@ -59,14 +59,15 @@ def longest(n):
 
 
 class Timing(unittest.TestCase):
-    """Tests of the longest paths, and of the clock reported for several orders."""
+    """Tests of the longest paths, and of the clock that is reported for several orders of the
+    cells."""
 
     def test_a_path_is_the_sum_of_its_cells_and_nets(self):
         p = longest(chain([4, 1, 88, 26, 2, 5, 16], "CE"))
         self.assertAlmostEqual(p["ns"], 0.447 + 6 * 0.205 + 0.322 + 0.682 + 0.580 + 1.799 + 1.207
                                + 0.617 + 0.715 + 1.004, delta=0.002)
         self.assertEqual((p["levels"], p["from"], p["to"], p["pin"]), (6, "from", "to", "CE"))
-        p = longest(chain([7, 2, 1], "D"))  # a flip-flop after its LUT
+        p = longest(chain([7, 2, 1], "D"))  # the path ends at a flip-flop next to its LUT
         self.assertEqual((p["levels"], p["steps"][-1][4]), (2, 0))
 
     def test_each_register_is_counted_once_by_its_longest_path(self):
@@ -75,7 +76,8 @@ class Timing(unittest.TestCase):
         self.assertEqual(t["ends"], [0] * bins + [1])  # no path ends at the first register
 
     def test_through_a_memory_only_the_address_of_that_output_leads(self):
-        # ADDRD belongs to the write port: a path ends there, and another one begins at the memory.
+        # ADDRD belongs to the write port, so a path ends there, and another path begins at the
+        # memory.
         for address, levels in (("ADDRA", 1), ("ADDRD", 0), ("ADDRB", 0)):
             p = longest(chain([1, 1], "D", cell("RAM32M", {address: 10}, {"DOA": 11})))
             self.assertEqual(p["levels"], levels, address)
@@ -90,9 +92,9 @@ class Timing(unittest.TestCase):
             self.assertAlmostEqual(p["ns"], ns)
 
     def test_paths_of_pads_contain_their_buffers(self):
-        # A LUT of two pads drives a pad and a flip-flop, which drives another pad. XST's report of
-        # such a design: 5.645 ns from pad to pad with a fan-out of 8, 3.597 ns from register to
-        # pad.
+        # A LUT that two pads drive itself drives a pad and a flip-flop; the flip-flop drives
+        # another pad. For such a design, XST reports 5.645 ns from pad to pad with a fan-out of 8,
+        # and 3.597 ns from register to pad.
         n = Netlist([lut([10, 11], 12), cell("FDRE", {"C": 2, "D": 12}, {"Q": 13}),
                              *(lut([10], 20 + i) for i in range(7))])
         n.ports = [Port("a", True, False, [10]), Port("clk", True, False, [2]),
@@ -129,7 +131,7 @@ class Timing(unittest.TestCase):
         self.assertEqual(f["luts"], [10, 11, 12, 13, 14])
         self.assertEqual(f["clocks"], [102, 104, 105, 108, 109])
         self.assertEqual(report.clock_of(f), "105.0 (102.0-109.0)")
-        # Rounded as on the page.
+        # The clock is rounded as on the page.
         self.assertEqual([baseline.clock_text(mhz) for mhz in (104.46, 104.44, 104.0)],
                          ["104.5", "104.4", "104.0"])
 
@@ -148,22 +150,23 @@ class Timing(unittest.TestCase):
         def shows(text, load=0):
             with unittest.mock.patch("os.getloadavg", lambda: (load * os.cpu_count(), 0, 0)):
                 self.assertEqual(runner.time_left([chip, large, small], options, 30), text)
-        shows("0 of 3 designs, about 1:20 left: ")  # 146 s, 11 s and 2 s of work by two processes
+        # two processes share 146 s, 11 s and 2 s of work
+        shows("0 of 3 designs, about 1:20 left: ")
         shows("0 of 3 designs, about 3:58 left: ", load=3)
         chip.begun = 10
         shows("0 of 3 designs, about 2:06 left: chip")
-        large.begun, large.spent = 1, 22  # twice as long
+        large.begun, large.spent = 1, 22  # this design took twice as long as expected
         shows("1 of 3 designs, about 4:32 left: chip")
-        for suffix in ".part", ".1":  # two of five orders are finished
+        for suffix in ".part", ".1":  # two of five orders are done
             (folder / f"chip{suffix}").touch()
         shows("1 of 3 designs, about 0:30 left: chip")
-        # the result of `small` is cached
+        # the result of `small` comes from the cache
         chip.begun, chip.spent, small.begun, small.spent = 1, 290, 1, 0
         shows("3 of 3 designs, about 0:00 left: ")
 
 
 class Reports(unittest.TestCase):
-    """The published reports, and the statements about them."""
+    """Tests of the published reports, and of the statements about them."""
     FILE = pathlib.Path(__file__).resolve().parents[2] / "synth/reports.json"
 
     def setUp(self):
@@ -171,7 +174,7 @@ class Reports(unittest.TestCase):
         self.designs = [r for r in self.reports if "netlist" in r]
 
     def stated(self):
-        """Raises if a figure is not in the reports."""
+        """Raises an exception if a stated figure is not in the reports."""
         maps = [r["map"] for r in self.reports]
         for said, found in ((timing.ROUTED, reports.range_of(self.ratios("routed"))),
                             (slices.SITES_OF_MAP, reports.range_of(self.sites())),
@@ -190,7 +193,7 @@ class Reports(unittest.TestCase):
 
     def test_the_errors_that_are_stated_are_those_of_the_reports(self):
         self.stated()
-        for key, ns in ("routed", 99.0), ("synthesised", 99.0):  # an entry whose figures are wrong
+        for key, ns in ("routed", 99.0), ("synthesised", 99.0):  # adds an entry with wrong figures
             broken = next(r for r in self.designs if key in r)
             kept, broken[key] = broken[key], ns
             before = reports.range_of(self.ratios(key))
@@ -240,7 +243,8 @@ class Reports(unittest.TestCase):
 
 
 class Baseline(unittest.TestCase):
-    """Growth rules, accepted names, and the contents of the committed file."""
+    """Tests of the limits for growth, of accepted names, and of the contents of the committed
+    file."""
 
     def setUp(self):
         self.design = sources.Design("block", "block")
@@ -278,7 +282,8 @@ class Baseline(unittest.TestCase):
         self.assertEqual(self.judged(), ([], []))
 
     def test_growth_within_the_budget_passes_and_so_does_shrinking(self):
-        for luts, flip_flops in (7, 2), (-57, -27):  # budget: 3 % and 4 LUTs; 1 % and 2 flip-flops
+        # allowed growth: 3 % and 4 LUTs; 1 % and 2 flip-flops
+        for luts, flip_flops in (7, 2), (-57, -27):
             self.grow(luts, flip_flops)
             self.passes()
 
@@ -293,7 +298,7 @@ class Baseline(unittest.TestCase):
 
     def test_a_limit_holds_whatever_was_accepted(self):
         self.design.limits = {"lut": 102}
-        self.grow(3, 0)  # within the budget of growth
+        self.grow(3, 0)  # within the allowed growth
         self.fails("103 lut, 1 above the limit of 102")
         self.accept()
         self.fails("103 lut, 1 above the limit of 102")
@@ -340,7 +345,7 @@ class Baseline(unittest.TestCase):
         run = self.row.main
         self.assertEqual(baseline.state_of(run, "abc", None), "measured now")
         run.wanted, run.figures = False, None
-        older = self.accepted | {"sources": ""}  # accepted before this key existed
+        older = self.accepted | {"sources": ""}  # a file that was written before this key existed
         for hash, accepted, state in (
                 ("abc", self.accepted, "as accepted"), ("other", self.accepted, "changed since"),
                 ("abc", None, "never measured here"), ("abc", older, "never measured here")):
@@ -391,8 +396,8 @@ class Cores(unittest.TestCase):
             self.rows("plain", "gone")
 
     def test_logic_that_reads_one_slot_is_its_blocks(self):
-        """Two LUTs read one register of a block each, and a third reads both, which is the
-        decoder's selection."""
+        """Two LUTs each read a register of one block; a third LUT reads both registers, and is
+        therefore part of the decoder's multiplexer."""
         names = "u_a.count", "u_b.u_part.state", "u_platform.u_bus_decoder.index"
         n = Netlist([*(cell("FDRE", {}, {"Q": bit}, name) for bit, name in enumerate(names, 2)),
                      lut([2, 4], 5), lut([3, 4], 6), lut([2, 3, 4], 7), lut([5], 8),
@@ -405,7 +410,7 @@ class Cores(unittest.TestCase):
 
 
 class Simulated(unittest.TestCase):
-    """Blocks with tests that run on their netlist instead of a proof."""
+    """Tests of blocks whose netlist is tested by simulation instead of a proof."""
 
     def test_each_kind_of_tests_must_have_run_and_passed(self):
         for ran, red, said, good in (

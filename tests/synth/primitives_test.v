@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// primitives_test: checks the models used to simulate and prove netlists against the rules of
-// Xilinx's guides: UG389 (DSP48A1), UG383 (block RAM), UG384 (LUT RAM, shift registers, flip-flops,
-// carry chains). Each rule is stated above its check.
+// primitives_test: checks the models with which netlists are simulated and proven against the rules
+// in Xilinx's guides: UG389 (DSP48A1), UG383 (block RAM), UG384 (LUT RAM, shift registers,
+// flip-flops, carry chains). A comment above each check states its rule.
 `default_nettype none
 `timescale 1ns / 1ps
 
@@ -23,11 +23,11 @@ module primitives_test;
         end
     endtask
 
-    // A DSP48A1 whose only register is P, and a DSP48A1 with all registers.
+    // Two DSP48A1: one has only the register P, the other has all registers.
     reg signed  [17:0] a = 0, b = 0, d = 0;
     reg signed  [47:0] c = 0, pcin = 0;
     reg  [7:0]  opmode = 0;
-    reg  [7:0]  ce = 8'hff, rst = 0; // A B C D M P OPMODE CARRYIN, from bit 0
+    reg  [7:0]  ce = 8'hff, rst = 0; // bits 0 to 7: A, B, C, D, M, P, OPMODE, CARRYIN
     reg         carryin = 0;
     wire signed [47:0] p0, p1, pcout;
     wire signed [35:0] m0, m1;
@@ -43,9 +43,9 @@ module primitives_test;
     DSP48A1 #(.A0REG(1), .B0REG(1)) full (`PORTS, .P(p1), .M(m1), .BCOUT(bcout), .PCOUT(pcout),
         .CARRYOUT(carry1), .CARRYOUTF(carry_f));
 
-    // UG389, OPMODE: [4] takes the pre-adder for B, [6] subtracts B from D there; [1:0] chooses X:
-    // 0, M, P, D:A:B; [3:2] Z: 0, PCIN, P, C; [7] makes Z + (X + carry) Z - (X + carry). [5] is the
-    // carry if selected by CARRYINSEL. The 49th bit is CARRYOUT.
+    // UG389, OPMODE: [4] selects the pre-adder for B, and [6] makes it subtract B from D; [1:0]
+    // selects X: 0, M, P, D:A:B; [3:2] selects Z: 0, PCIN, P, C; [7] changes Z + (X + carry) to Z -
+    // (X + carry). [5] is the carry if CARRYINSEL selects it. The 49th bit is CARRYOUT.
     function [17:0] factor(input [7:0] op);
         factor = !op[4] ? b : op[6] ? d - b : d + b;
     endfunction
@@ -62,7 +62,8 @@ module primitives_test;
         end
     endfunction
     reg [48:0] want;
-    task dsp_random; // stable inputs; P continues if it is an input
+    // random operations with stable inputs; the result P may be an input of the next operation
+    task dsp_random;
         for (i = 0; i < 2000; i = i + 1) begin
             {a, b, d, c, pcin} = {$random, $random, $random, $random, $random};
             {opmode, carryin}  = $random;
@@ -82,9 +83,10 @@ module primitives_test;
         end
     endtask
 
-    // UG389: A and B pass two registers, then M and P. D passes one register before B1, M and P. C,
-    // OPMODE and the carry pass one register before P. PCIN passes only P. Each register has an
-    // enable; a reset has priority over it.
+    // UG389, number of registers: A and B pass through two registers, then M and P. D passes
+    // through one register before B1, M and P. C, OPMODE and the carry pass through one register
+    // before P. PCIN passes only through P. Each register has an enable, and a reset that has
+    // priority over the enable.
     reg [47:0] held;
     task latency(input integer port, input integer clocks);
         begin
@@ -98,7 +100,7 @@ module primitives_test;
                 2: c = 12;
                 3: d = 8;
                 4: pcin = 14;
-                5: opmode[5] = 1; // two registers: OPMODE's and the carry's
+                5: opmode[5] = 1; // two registers: that of OPMODE and that of the carry
                 6: opmode[7] = 1;
             endcase
             edges(clocks - 1);
@@ -116,8 +118,7 @@ module primitives_test;
             latency(4, 1);
             latency(5, 3);
             latency(6, 2);
-            for (i = 0; i < 8; i = i + 1) begin // values in a register are kept while it is
-                                                // disabled
+            for (i = 0; i < 8; i = i + 1) begin // a register keeps its value while it is disabled
                 {a, b, d, c, opmode} = {18'd3, 18'd5, 18'd7, 48'd11, 8'b00111101};
                 edges(6);
                 held = p1;
@@ -144,7 +145,7 @@ module primitives_test;
                     7: check(carry1 == 0, "RSTCARRYIN clears CARRYOUT");
                 endcase
             end
-            ce = 8'b00110000; // M and P: of cleared registers
+            ce = 8'b00110000; // enables only M and P, which then depend on the cleared registers
             edges(2);
             check(m1 == 0 && p1 == 0, "RSTA, RSTC, RSTOPMODE clear");
             ce = 8'hff;
@@ -152,8 +153,8 @@ module primitives_test;
     endtask
 
     // UG384: distributed RAM is written at the clock edge while WE is high, at the address of port
-    // D (RAM32M) or A (RAM32X1D), and is read without a clock. A shift register moves while CE is
-    // high; Q is the bit at address A, and address 0 is the last bit that entered.
+    // D (RAM32M) or A (RAM32X1D), and is read without a clock. A shift register shifts while CE is
+    // high; Q is the bit at address A, and the bit at address 0 is the one that entered last.
     reg         we = 0;
     reg  [4:0]  at = 0, from = 0;
     reg  [7:0]  word = 0;
@@ -187,8 +188,8 @@ module primitives_test;
         end
     endtask
 
-    // UG384: synchronous set and reset have priority over the enable, asynchronous ones need no
-    // clock. A carry is CI if S is high, else DI; O is S ^ CI.
+    // UG384: a synchronous set or reset has priority over the enable; an asynchronous one needs no
+    // clock. The carry output is CI if S is high, otherwise DI; O is S ^ CI.
     reg         s = 0, value = 0;
     reg         r_held = 0, s_held = 1;
     wire        r_q, s_q, c_q, p_q;
@@ -212,11 +213,11 @@ module primitives_test;
         end
     endtask
 
-    // UG383: WRITE_FIRST outputs the word being written, READ_FIRST the old one, NO_CHANGE the
-    // previous output; WE has one bit per byte, parity belongs to its byte; without EN nothing
-    // happens; during a reset of the output a port still writes, and without priority "SR" the
-    // reset needs EN. The lower address bits of the narrower port are the lower bits of the wider
-    // one.
+    // UG383: during a write, WRITE_FIRST outputs the new word, READ_FIRST the old word, and
+    // NO_CHANGE the previous output. WE has one bit per byte, and a parity bit belongs to its byte.
+    // Without EN nothing happens. A reset of the output does not prevent a write. Without the
+    // priority "SR", the reset needs EN. The lower address bits of the narrower port are the lower
+    // bits of the wider port.
     reg         en = 0, reset = 0, en_b = 0;
     reg  [3:0]  bytes = 0;
     reg  [8:0]  place = 0, place_b = 0;
@@ -244,7 +245,7 @@ module primitives_test;
                 {en, en_b, bytes, place[2:0], place_b[2:0], lane} = $random;
                 in    = {$random, $random};
                 reset = $random & $random;
-                if (place == place_b) en_b = 0; // a collision: see below
+                if (place == place_b) en_b = 0; // avoids a collision, which is tested below
                 next = rows[place];
                 if (bytes[0]) {next[32], next[7:0]}   = {in[32], in[7:0]};
                 if (bytes[1]) {next[33], next[15:8]}  = {in[33], in[15:8]};
@@ -262,7 +263,8 @@ module primitives_test;
                 check(same == shown_same, "NO_CHANGE");
                 check({first_b[32], first_b[7:0]} == shown_b, "a port of 9 bits");
             end
-            // "Conflict Avoidance": the other port reads the old value only with READ_FIRST.
+            // "Conflict Avoidance": the other port reads the old value only if the writing port is
+            // READ_FIRST.
             {en, en_b, reset, bytes, place, place_b, lane} = {7'b1101111, 9'd3, 9'd3, 2'd0};
             in      = ~rows[3];
             shown_b = {rows[3][32], rows[3][7:0]};

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""report_test: runs the command `utilisation` on a separate small project, as a user does.
-parts_test.py tests the parts of the command. The case `counts` leaves its netlists in a folder,
-from which the other cases begin.
+"""report_test: runs the command `utilisation` on a small project, like a user. parts_test.py tests
+the parts of the command. The case `counts` stores its netlists in a folder; the other cases begin
+with this folder.
 
 Usage: report_test.py case utilisation-program work-folder kept-folder
 """
@@ -41,7 +41,8 @@ DEEP = """module deep (input clk_i, write_i, input [3:0] at_i, from_i, input [31
     end
 endmodule
 """
-# A register after the adder of a multiplier; its upper bits repeat the sign.
+# A module with a register after the adder of a multiplier; the upper bits of the register repeat
+# the sign.
 SCALED = """module scaled (input clk_i, en_i, input signed [17:0] a_i, input signed [15:0] b_i,
                input signed [33:0] c_i, output reg signed [37:0] o);
     reg signed [33:0] product;
@@ -64,7 +65,7 @@ def grow(folder):
 
 class Cases(Script):
     def setUp(self):
-        # Names of files must be relative, because they are part of a design's identity.
+        # File names must be relative, because a design is identified by them.
         fresh(sys.argv[3])
         shutil.copytree(TREE / "tests/synth/project", "project")
         for folder in "bus", "ip":
@@ -81,7 +82,7 @@ class Cases(Script):
                  status=status)
 
     def users_tree(self):
-        """Turns the project into a tree in which make can run commands."""
+        """Turns the project into a tree in which commands of make can run."""
         for folder in "build/main/synth", "build/synth":
             Path("project", folder).mkdir(parents=True)
         Path("project/build/main/synth/utilisation").symlink_to(PROGRAM)
@@ -89,12 +90,12 @@ class Cases(Script):
         Path("out/cache").rename("project/build/synth/cache")
 
     def made(self, *words, status=0):
-        """Runs make in the project, as a user does."""
+        """Runs make in the project, like a user."""
         self.make(*words, tree="project", build="build/main", status=status)
 
     def test_counts(self):
-        """The figures agree with the sources of the blocks, and with Yosys' own `stat`."""
-        # A package is read before the module that uses it, and is not a design.
+        """The figures must agree with the sources of the blocks, and with Yosys' own `stat`."""
+        # A package must be read before the module that uses it, and does not count as a design.
         write("far/typed_sizes.sv", "package typed_sizes; typedef logic [2:0] t; endpackage\n")
         write("far/typed.sv", "module typed(input logic clk_i, input typed_sizes::t d_i, output "
               "typed_sizes::t q_o); always_ff @(posedge clk_i) q_o <= d_i; endmodule\n")
@@ -106,19 +107,20 @@ class Cases(Script):
             BUFG u_buffer (.I(pll_o), .O(clk)); // in the first library, but not used by the mapping
             always @(posedge clk) q_o <= !q_o;
             endmodule\n""")
-        # A memory that Yosys infers although no array is declared.
+        # Yosys infers a memory here, although no array is declared.
         cases = " ".join(f"{n}: o <= {n * n % 509};" for n in range(1024))
         write("gen/squares.v", "module squares (input clk_i, input [9:0] n_i, output reg [8:0] o); "
               f"always @(posedge clk_i) case (n_i) {cases} endcase endmodule\n")
         edit("project/synth/designs.json", '"designs"', '"xilinx": ["clocks"], "designs"')
         self.run_program("--family", "ecp5", "--design", "clocks")
         self.run_program()
-        # A checkout elsewhere, of the same sources, has the same netlists.
+        # A checkout of the same sources in another folder must have the same netlists.
         self.lacks(str(Path.cwd()), file=next(Path("out/cache").glob("store.xc6s.*.ys")))
-        # The generated Verilog, whose hash identifies accepted figures, has no such path either.
+        # The generated Verilog, whose hash identifies accepted figures, must not contain this path
+        # either.
         for file in (PROGRAM.parents[1] / "gen").glob("*.v"):
             self.lacks(re.escape(f"{TREE}/"), file=file)
-        # The clock and the LUTs, each with the range in other orders.
+        # The clock and the LUTs are shown with their ranges over other orders of the cells.
         self.has(r"^wide .* [0-9.]+ \([0-9.]*-[0-9.]*\) +[0-9]+-[0-9]+$",
                  r"nine of ten of [0-9]+ published reports of map, of [0-9]+ of TRCE",
                  r"^wide +[0-9]+ \([0-9]*-[0-9]*\) ")
@@ -140,10 +142,10 @@ class Cases(Script):
                  "-noiopad -noclkbuf -top pair; tee -q -o stat stat")
         cells = re.findall(r"^ +(?:(LUT\d|INV) +(\d+)|(\d+) +\S+ +(LUT\d|INV))$",
                            Path("stat").read_text(), re.M)
-        sites = 4  # LUT sites used as RAM
+        sites = 4  # number of LUTs that are used as RAM
         self.assertEqual(whole["lut"], sites + sum(int(row[1] or row[2]) for row in cells))
-        # In the accepted chip a core also costs its slot of the decoder: the decoder for three
-        # slots minus the decoder for two.
+        # In the accepted chip, the cost of a core includes its slot in the decoder. This is the
+        # difference between a decoder for three slots and one for two.
         shutil.copy(TREE / "bus/bus_decoder.v", "project/bus")
         write("gen/map.regs.json", json.dumps({
             "block": "map", "doc": "", "registers": [], "constants": [
@@ -153,7 +155,8 @@ class Cases(Script):
             "lut": 9, "ff": 9, "slices": 9, "carry": 0, "dsp": 2, "ram": 1.5, "mhz": 99,
             "signals": {"u_low": {"sum": [7, 8, 1.5, 2]}}}}}))
         self.run_program("--core", "low")
-        # A slot: LUTs for 32 bits of read data, flip-flops for a select and four address bits.
+        # A slot costs LUTs for 32 bits of read data, and flip-flops for a select and four address
+        # bits.
         self.has(r"^low +[1-9]\d +13 +1.5 +2 +7 / 8 +[1-9]\d* / 5$",
                  "^The chip: 9 LUT, 9 FF, 1.5 block RAMs, 2 DSP")
         self.run_program("--core", "high")
@@ -163,7 +166,8 @@ class Cases(Script):
         shutil.copytree("out/cache", KEPT)
 
     def test_growth(self):
-        """An additional register fails with its name. After --accept it passes, from the cache."""
+        """An additional register makes the check fail, with the register's name. After --accept the
+        check passes, with results from the cache."""
         self.run_program("--accept")
         self.run_program()
         self.lacks(r"^\[")
@@ -175,7 +179,7 @@ class Cases(Script):
         self.run_program()
 
     def test_partial(self):
-        """Reports one design while other designs have changed; limits also apply to accepted
+        """A single design can be reported while others have changed. Limits also apply to accepted
         figures."""
         self.run_program()
         edit(BLOCKS / "pair.v", "    wire [5:0] word;",
@@ -184,7 +188,7 @@ class Cases(Script):
         self.lacks("^wide ")
         self.has("^Designs: 2 measured now, 1 changed since")
         self.has('"whole": "changed since"', '"name": "wide lut"', file="out/report.json")
-        # In a fresh clone nothing has been measured, and nothing was removed.
+        # In a fresh clone nothing has been measured, but no design counts as removed.
         self.run_program("--accept")
         shutil.rmtree("out/cache")
         self.run_program("--design", "store")
@@ -205,20 +209,21 @@ class Cases(Script):
         self.has("broken.v:1: ERROR: syntax error", "^wide ", "^broken .*failed",
                  "typed.sv:1: ERROR: syntax error.*\n.*needs what sv2v makes of it")
         self.has('"broken: synthesis failed"', file="out/report.json")
-        for name in "baseline", "designs":  # as left by a merge
+        # a file in the state in which a merge with conflicts leaves it
+        for name in "baseline", "designs":
             write(f"project/synth/{name}.json", "{\n<<<<<<< HEAD\n")
             self.run_program(status=None)
             self.has(f"^utilisation: project/synth/{name}.json: .*line 2")
 
     def test_twice(self):
-        """The first run starts Yosys when the second run waits, or after 20 s."""
+        """In the first run, Yosys starts when the second run is waiting, or after 20 s."""
         write("slow", SLOW)
         shutil.rmtree("out")
         words = (PROGRAM, "--source", "project", "--generated", "gen", "--output", "out",
                  "--design", "wide", "--yosys", Path("slow").resolve())
         with open("first", "w") as first, open("second", "w") as second:
             begun = subprocess.Popen(words, stdout=first, stderr=first)
-            # the first run holds the folder
+            # waits until the first run has locked the folder
             while not Path("out/cache").exists() and begun.poll() is None:
                 time.sleep(0.1)
             waited = subprocess.run(words, stdout=second, stderr=second)
@@ -237,8 +242,8 @@ class Cases(Script):
         text = page.read_text()
         self.assertLess(len(text), 2_000_000)
         self.lacks('(src|href)="?https?:', file=page)
-        # The page is complete even if the libraries could not be fetched, and describes how to get
-        # them.
+        # If the libraries could not be downloaded, the page is still complete and explains how to
+        # get them.
         write("plain.html", "\n".join(line for line in text.split("\n") if not re.search(
             "^!function.*Tabulator=|^.*var uPlot=", line)))
         seen = re.search('<p class="soft">.*?(?=<script id)', self.dump("plain.html"), re.S)[0]
@@ -254,7 +259,7 @@ class Cases(Script):
                  r"project/hdl/blocks/counter.v:13 .* now 15 11 7 [0-9.]+ this run ")
         if not (PROGRAM.parents[1] / "page/libraries.js").stat().st_size:
             self.skipTest("Tabulator and uPlot could not be fetched")
-        # A second script clicks as a user does, and writes what is then visible.
+        # A second script clicks like a user, and writes out the elements that are then visible.
         clicks = (TREE / "tests/synth/clicks.js").read_text()
         write("clicked.html", text.replace(
             "</body>", f'<p id="seen"></p><script>{clicks}</script></body>'))
@@ -267,7 +272,8 @@ class Cases(Script):
                 "tree pair u_storestore u_countercounter; here Signals of u_store;",
                 "paths 1; step project/hdl/blocks/[a-z]*.v:1[23]; on the way to x,y,y,z; "
                 r"slow Longest paths, at 104.5 MHz; clock ([0-9.]+) Longest paths, at \1 MHz, "
-                r"by [1-9]\d*; wider 0; rounded 104.5,104.4,104.0; "  # as checked in parts_test.py
+                # parts_test.py checks these texts in detail
+                r"by [1-9]\d*; wider 0; rounded 104.5,104.4,104.0; "
                 r"slack [0-9.]+ to [0-9.]+ ns left of 10 [1-9]\d* ; "
                 "history now  this run 15 11 7;"):
             self.has(part)
@@ -275,7 +281,7 @@ class Cases(Script):
         self.has('"peer": 100', file="out/report.json")
 
     def test_compare(self):
-        """Differences from another commit, or between two commits, as Markdown."""
+        """Shows the differences from another commit, or between two commits, as Markdown."""
         self.users_tree()
         here = Path("project").resolve()
         write(here / "CMakeLists.txt", MADE)
@@ -296,17 +302,18 @@ class Cases(Script):
         self.ask(PROGRAM, cwd=here)
         self.made("synth", "BASE=HEAD..")
         grown = r"^\| whole \| .* \| \d+ -> \d+ \(\+12\) \|"
-        # The state of measurements from uncommitted files is unknown.
+        # If the measured files were not committed, the state of a measurement is unknown.
         self.has(r"^Utilisation since .* \(The first one\):", grown, r"^\| wide \| gone \| gone \|",
                  r"^\| wider \| \d+ \(new\) \|", r"^\| \w+\+ \| not measured \|")
         self.has(r"^\| wider ", file=here / "build/summary.md")
-        # A design over budget: the difference is printed, and the exit status shows the excess.
+        # If a design has grown by more than allowed, the difference is printed and the exit status
+        # is not 0.
         kept = designs.read_text()
         edit(designs, '"ff": 30', '"ff": 20')
         self.made("synth", "BASE=HEAD", status=None)
         self.has("^FAILED whole", grown)
         write(designs, kept)
-        # The same comparison between two commits, whatever is checked out.
+        # The comparison between two commits gives the same result, whatever is checked out.
         write(here / "hdl/blocks/pair.regs.json", json.dumps({**registers, "registers": []}))
         with contextlib.chdir(here):
             commit("The second one")
@@ -340,7 +347,8 @@ class Cases(Script):
         self.has("expected the name of a core, got 'missing'; known: store")
 
     def test_equivalent(self):
-        """A netlist is proven equivalent to its RTL, once. A netlist with a fault is not."""
+        """A netlist is proven equivalent to its RTL only once. The proof of a netlist with a fault
+        fails."""
         for name, text in ("scaled", SCALED), ("deep", DEEP):
             write(BLOCKS / f"{name}.v", text)
         self.run_program("--equivalent")
@@ -355,14 +363,14 @@ class Cases(Script):
         proof, = Path("out/cache").glob("whole.xc6s.*.proof")
         file = proof.with_name(proof.name.rsplit(".", 2)[0] + ".json")
         good = file.read_text()
-        # If a netlist for a simulator is unchanged, the netlist and the files made from it are
-        # kept.
+        # If the netlist for a simulator has not changed, it and the files that were made from it
+        # are kept.
         for age in 100, None:
             self.run_program("--netlist", "whole", "--to", "out/sim/whole.v")
             if age:
                 os.utime("out/sim/whole.v", (age, age))
         self.assertEqual(Path("out/sim/whole.v").stat().st_mtime, 100)
-        # This file lists for Ninja the sources that can change it.
+        # This file tells Ninja on which sources the netlist depends.
         self.has(rf"^{Path.cwd()}/out/sim/whole.v: .*/blocks/counter.v .*/blocks/store.v",
                  file="out/sim/whole.d")
 
@@ -388,8 +396,8 @@ class Cases(Script):
             self.has("(?m)^whole +differs after")
 
     def test_edif(self):
-        """The netlist that ISE reads has every cell that Yosys counts, once, and well-formed
-        parentheses."""
+        """The netlist for ISE must contain each cell that Yosys counts exactly once, and its
+        parentheses must be balanced."""
         self.users_tree()
         self.made("synth-edif", "DESIGN=whole")
         ise = Path("project/build/synth/ise")
@@ -401,8 +409,8 @@ class Cases(Script):
             self.assertTrue(inside, cell)
         self.has(r"\(design (pair|whole)", file=ise / "whole.edf")
         self.assertTrue((ise / "verilog/store.v").exists(), "the Verilog for XST")
-        # A port of a primitive that exists in two forms is connected by the bits that only one form
-        # has.
+        # If a primitive exists in two forms, and only one form has some bits of a port, the port is
+        # connected bit by bit.
         write("project/hdl/blocks/deep.v", DEEP)
         self.made("synth-edif", "DESIGN=deep")
         self.has("cellRef RAMB8BWER", file=ise / "deep.edf")

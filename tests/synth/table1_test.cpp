@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// table1_test: the netlist of Table I's blocks replaces the chip: its processor writes and reads
-// memory and registers, has the modem set up from its factory settings, and packets go both ways.
+// table1_test: runs the simulator with the netlist of Table I's blocks instead of the chip. The
+// processor writes and reads memory and registers, the modem is set up from its factory settings,
+// and packets are sent in both directions.
 
 #include "map_regs.h"
 #include "modem_regs.h"
@@ -14,7 +15,8 @@
 namespace {
 
 constexpr uint32_t ddr = MAP_DDR_WINDOW, slot = MAP_CONTROL_WINDOW + 64 * MAP_SLOT_MODEM;
-constexpr uint32_t txRing = 0x02AAA800, rxRing = 0x01555000; // many address lines, both ways
+// addresses that use many address lines, with both levels
+constexpr uint32_t txRing = 0x02AAA800, rxRing = 0x01555000;
 
 XBee::Options options(const char* name, std::map<std::string, uint32_t> set) {
     XBee::Options o;
@@ -34,7 +36,7 @@ protected:
         }
         chip_.onTime([this](uint64_t now) {
             far_.advance(now);
-            return std::min(far_.nextEvent(), now + 100'000); // it may get bytes meanwhile
+            return std::min(far_.nextEvent(), now + 100'000); // bytes may arrive in the meantime
         });
     }
     uint32_t read(uint32_t word) { return fsmc_.read32(slot + 4 * word); }
@@ -78,13 +80,13 @@ TEST_F(Table1, TheModemIsSetUpAndPacketsGoBothWays) {
     std::vector<uint8_t> packet(60);
     for (uint8_t n = 1; n < packet.size(); ++n)
         packet[n] = static_cast<uint8_t>(37 * n);
-    packet[0] = 55; // the first byte of a packet gives its length
+    packet[0] = 55; // the first byte of a packet is its length
     for (uint32_t n = 0; n < packet.size(); n += 4) {
         uint32_t word;
         std::memcpy(&word, &packet[n], 4);
         fsmc_.write32(ddr + txRing + n, word);
     }
-    host_.received.clear(); // bytes sent by the set-up's search for the rate
+    host_.received.clear(); // discards bytes that the search for the baud rate has sent
     write(MODEM_TX_PUT, static_cast<uint32_t>(packet.size()));
     tickUntil([&] { return host_.received.size() >= packet.size(); }, "a packet to the ground");
     EXPECT_EQ(host_.received, packet);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""record_test: tests that one description gives the same layout in Python and in C."""
+"""record_test: tests that a description results in the same layout in Python and in C."""
 
 import os
 import subprocess

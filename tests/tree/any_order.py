@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""any_order: tests that `make run` on a machine without the packages of tests, followed by `make
-test`, which installs them, finds the same tests as a machine that had all packages from the start.
-If CMake needs something and does not find it, CMake's message names the package.
+"""any_order: on a machine without the packages that tests need, `make run` followed by `make test`,
+which installs these packages, must find the same tests as a machine that had all packages from the
+start. If CMake does not find something that it needs, its message must name the package.
 
-The machine without the packages is a folder of links to all other programs, and CMake looks only
-there.
+A folder of links to all other programs takes the place of the machine without the packages; CMake
+looks for programs only there.
 Usage: any_order.py source-folder work-folder
 """
 
@@ -56,7 +56,8 @@ def links(folder, hidden):
 
 
 def configure(source, build, work, path):
-    """As on a machine with only the programs in path; all after the file `arrived` exists."""
+    """Configures a build as on a machine that has only the programs in `path`, and all programs
+    once the file `arrived` exists."""
     hide = work / "hide.cmake"
     hide.write_text(f'if(NOT EXISTS "{work}/arrived")\n'
                     f'  set(CMAKE_IGNORE_PATH "{";".join(FOLDERS)}")\nendif()\n')
@@ -96,8 +97,8 @@ def main():
     said = configure(source, work / "grown", work, links(work / "bin", hidden))
     if said.returncode:
         fail(f"make run needs the packages of tests:\n{said.stdout}")
-    # A new configuration removes generated files of cores that are no longer in the list, and no
-    # other files.
+    # A new configuration must remove the generated files of cores that are no longer in the list,
+    # and no other files.
     generated = work / "grown/gen"
     names = {path.name.split(".")[0] for room in ("hdl", "ip")
              for path in source.glob(f"{room}/*/*.regs.json")}

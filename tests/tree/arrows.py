@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""arrows: checks every #include, and every import of the tools, against the dependencies in
-rooms.toml. Also checks that each C file includes its header, and that the files of a library have
-no circular dependencies.
+"""arrows: checks that every #include, and every import of the tools, is allowed by the dependencies
+in rooms.toml. Also checks that each C file includes its own header, and that the files of a library
+have no circular dependencies.
 
     arrows.py TREE                checks the includes in a checkout
     arrows.py --circles LIBRARY [PREFIX...]
@@ -10,11 +10,11 @@ no circular dependencies.
                                   dependencies; files whose names begin with the same PREFIX count
                                   as one file, because their recursion is intended
 
-A room is a folder of rooms.toml; a file belongs to the innermost room that contains it. It may
+A room is a folder in rooms.toml; a file belongs to the innermost room that contains it. A file may
 include headers of its room, and of the rooms that its room may use. A C file in sw/ must include
-the header with its name, or the header that the table `headers` of rooms.toml gives for the file or
-its folder. Exit status 1: an include is not allowed, a C file does not include its header, or a
-dependency is circular.
+the header with its own name, or the header that the table `headers` of rooms.toml names for the
+file or for its folder. The exit status is 1 if an include is not allowed, a C file does not include
+its header, or a dependency is circular.
 """
 import os
 import re
@@ -26,8 +26,8 @@ ROOMS = "tests/tree/rooms.toml"
 
 
 def tracked(tree):
-    """Returns the paths of the C, C++ and Verilog files of the checkout that people write, and of
-    the tools in Python."""
+    """Returns the paths of all C, C++ and Verilog files in the checkout that people have written,
+    and of the Python files of the tools."""
     listing = "grep --no-index --exclude-standard --no-color -l".split()
     names = subprocess.check_output(["git", "-C", tree, *listing, ""], text=True).split("\n")
     return [n for n in names
@@ -37,7 +37,7 @@ def tracked(tree):
 
 
 def room_of(path, rooms):
-    """Returns the room of a file; tests and vectors of a core belong to the room `tests`."""
+    """Returns the room of a file. Tests and vectors of a core belong to the room `tests`."""
     if re.search(r"_(test|vectors)\.(cpp|h)$", path):
         return "tests"
     while path:
@@ -48,7 +48,7 @@ def room_of(path, rooms):
 
 
 def wrong_imports(tree, path, room, rooms):
-    """Yields a line for each import in a file of the tools that its room does not allow."""
+    """Yields a line for each import in a file of the tools that the file's room does not allow."""
     for number, line in enumerate(open(os.path.join(tree, path)), 1):
         found = re.match(r"\s*(?:from|import) icesoc([.\w]*)(?: import (\w+))?", line)
         if not found:
@@ -112,8 +112,8 @@ def wrong_arrows(tree):
             name = include.group(1)
             places = [p for p in by_name.get(os.path.basename(name), [])
                       if ("/" + p).endswith("/" + name.replace("../", ""))]
-            # A generated header has no location. Of several files with one name, an allowed one is
-            # meant.
+            # A generated header has no place in the tree. If several files have the same name, the
+            # include is accepted if one of them is allowed.
             targets = {room_of(p, rooms) for p in places}
             if targets and room not in targets and not targets & rooms[room]:
                 used = " or ".join(sorted(map(str, targets)))
@@ -122,8 +122,8 @@ def wrong_arrows(tree):
 
 
 def circles(library, prefixes):
-    """Returns circles among a library's object files, each as a sentence. Files of one prefix count
-    as one."""
+    """Returns the circular dependencies between the object files of a library, each as a sentence.
+    Files with the same prefix count as one file."""
     defines, needs = {}, {}
     for line in subprocess.check_output(["nm", "-A", library], text=True).split("\n"):
         part = re.match(r".*?:([^:]+):\s*\S*\s+([A-Za-z]) (\S+)$", line)

@@ -1,10 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# format: fails on C and C++ files that .clang-format would change, and on scripts, CMake files,
-# Verilog and VHDL with lines over 100 columns. Prints their names.
-# Versions differ in some lines; clang-format 19 is in Debian 12 and 13. Usage: format.sh TREE
-# To fix them all: clang-format-19 -i FILE...
+# format: reports C and C++ files that .clang-format would change, and scripts, CMake files, Verilog
+# and VHDL with lines of more than 100 columns. Prints the names of these files; the exit status is
+# then 1. Versions of clang-format differ in some lines; version 19 is in Debian 12 and 13.
+# Usage: format.sh TREE
+# To fix all files: clang-format-19 -i FILE...
 set -eu
 cd "$1"
 listed() { git grep --no-index --exclude-standard --no-color "$@"; }

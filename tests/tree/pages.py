@@ -4,9 +4,10 @@
 
     pages.py TREE
 
-A link leads to a file of the repository, and to an existing heading if it names one. A path in
-backquotes exists. An empty line ends a table. docs/architecture.md lists every page of docs/. Exit
-status 1, and a line for each fault. The figures of pages are compared by icesoc.site.figures.
+A link must lead to a file in the repository and, if it names a heading, to a heading that exists. A
+path in backquotes must exist. An empty line must end each table. docs/architecture.md must list
+every page in docs/. Prints a line for each fault; the exit status is then 1. (icesoc.site.figures
+checks the figures in pages.)
 """
 import os
 import re
@@ -17,7 +18,7 @@ ROOMS = "hdl|bus|ip|slice|sw|testbench|synth|tests|tools|docs|cmake|examples|boa
 
 
 def exists(tree, path, files):
-    """Returns whether a path that a page names is in the repository. The path may also be a folder,
+    """Returns True if a path that a page names is in the repository. The path may also be a folder,
     a file name without its ending, or a pattern."""
     path = path.rstrip("/")
     pattern = "^" + re.escape(path).replace(r"\*", "[^/]*") + r"(/|$|\.)"
@@ -25,7 +26,7 @@ def exists(tree, path, files):
 
 
 def anchors(page):
-    """Returns the anchors of a page's headings, as GitHub makes them."""
+    """Returns the anchors of a page's headings, as GitHub generates them."""
     headings = re.findall(r"^#+ (.*)$", open(page).read(), re.M)
     return {re.sub(r"[^\w -]", "", h).lower().replace(" ", "-") for h in headings}
 
@@ -52,7 +53,8 @@ def check(tree, page, files):
             if known and anchor not in anchors(os.path.join(tree, path)):
                 yield f"{page}:{number}: {path} has no heading #{anchor}"
         for path in re.findall(rf"`((?:{ROOMS})/[\w./*-]+)`", line):
-            example = re.search("low_pass|my_uart|[pP]ump|NAME", path)  # examples of the guides
+            # names that the guides use as examples
+            example = re.search("low_pass|my_uart|[pP]ump|NAME", path)
             if not example and not exists(tree, path, files):
                 yield f"{page}:{number}: {path} does not exist"
 

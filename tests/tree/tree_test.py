@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""tree_test: set-up, skipped tests, a copy that is not a clone, files for editors.
+"""tree_test: tests set-up, skipped tests, a copy of the tree that is not a clone, and files for
+editors.
 
 Usage: tree_test.py CASE WORK-FOLDER BUILD-FOLDER
 """
@@ -28,9 +29,9 @@ set_tests_properties(by_script by_gtest PROPERTIES SKIP_RETURN_CODE 77
 
 class Cases(Script):
     def test_setup(self):
-        """On a terminal, set-up lists the packages that it would install and asks before it calls
-        sudo; elsewhere it continues. The machine of this test has one package and knows another
-        one; the user is not root."""
+        """On a terminal, set-up lists the packages that it will install, and asks before it calls
+        sudo; otherwise it continues without asking. In this test, the machine has one package and
+        can install another one, and the user is not root."""
         work, setup = fresh(WORK), TREE / "cmake/setup.sh"
         for name, does in (("dpkg-query", "echo ';installed cmake;;not-installed verilator;'"),
                            ("id", "echo 1000"),
@@ -61,7 +62,7 @@ class Cases(Script):
                  status=None)
 
     def test_tarball(self):
-        """The files of the tree can also be listed in a copy that is not a clone."""
+        """In a copy that is not a clone, the files of the tree can also be listed."""
         states = set()
         with tempfile.TemporaryDirectory() as copy:
             self.ask("sh", "-c", "git grep --no-index --exclude-standard --no-color -lz '' |"
@@ -74,8 +75,8 @@ class Cases(Script):
         self.assertEqual(len(states), 1, "the copy has another state")
 
     def test_figures_differ(self):
-        """A figure that differs from its source is reported with both values, and `correct` writes
-        it; a picture without its text is reported."""
+        """If a figure differs from its source, both values are reported, and `correct` writes the
+        correct one. A picture without its text is also reported."""
         with tempfile.TemporaryDirectory() as copy:
             for name in [*figures.PLACES, "docs/figures.md", "synth/baseline.json"]:
                 Path(copy, name).parent.mkdir(parents=True, exist_ok=True)

@@ -9,7 +9,7 @@
 
 namespace {
 
-// The S-box as table 6 of the standard; the core uses the equivalent formula.
+// The S-box, as in table 6 of the standard; the core uses an equivalent formula.
 constexpr uint8_t sbox[32] = {0x04, 0x0b, 0x1f, 0x14, 0x1a, 0x15, 0x09, 0x02, 0x1b, 0x05, 0x08,
                               0x12, 0x1d, 0x03, 0x06, 0x1c, 0x1e, 0x13, 0x07, 0x0e, 0x00, 0x0d,
                               0x11, 0x18, 0x10, 0x0c, 0x01, 0x19, 0x16, 0x0a, 0x0f, 0x17};
@@ -27,7 +27,7 @@ public:
                 word[i] ^= right(word[i], turns[i][0]) ^ right(word[i], turns[i][1]);
         }
     }
-    // Byte n of the state; words are little-endian.
+    // Returns byte n of the state, whose words are little-endian.
     uint8_t byte(size_t n) const { return static_cast<uint8_t>(word[n / 8] >> (8 * (n % 8))); }
     void add(size_t n, uint8_t value) { word[n / 8] ^= uint64_t(value) << (8 * (n % 8)); }
     void addAt(size_t n, const AsconKey& bytes) {
@@ -41,7 +41,7 @@ private:
         uint64_t out[5] = {};
         for (int bit = 0; bit < 64; ++bit) {
             unsigned in = 0;
-            for (int i = 0; i < 5; ++i) // S0 supplies the most significant bit
+            for (int i = 0; i < 5; ++i) // S0 is the most significant bit of the S-box's input
                 in |= static_cast<unsigned>(word[i] >> bit & 1) << (4 - i);
             for (int i = 0; i < 5; ++i)
                 out[i] |= uint64_t(sbox[in] >> (4 - i) & 1) << bit;
@@ -51,8 +51,8 @@ private:
     }
 };
 
-// Adds all of `in`, padded, to the state, `rate` bytes at a time, with `rounds` rounds after each
-// block. Returns the output.
+// Processes all bytes of `in` with their padding: adds `rate` bytes at a time to the state, and
+// computes `rounds` rounds after each block. Returns the output bytes.
 AsconBytes pass(State& state, const AsconBytes& in, size_t rate, int rounds) {
     AsconBytes out;
     for (size_t i = 0; i < in.size(); ++i) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ascon_model: reference for the core: Ascon-AEAD128 and Ascon-Hash256 on the host, written from
-// NIST SP 800-232.
+// ascon_model: computes Ascon-AEAD128 and Ascon-Hash256 on the host, as a reference for the core;
+// written from NIST SP 800-232.
 
 #pragma once
 

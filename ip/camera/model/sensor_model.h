@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// sensor_model: models the parallel port of an image sensor: returns the levels of its pins at each
-// pixel clock, and inserts faults on request.
+// sensor_model: models the parallel port of an image sensor: computes the levels of its pins at
+// each pixel clock, and damages frames on request.
 
 #pragma once
 
@@ -15,14 +15,16 @@ public:
         bool vsync = true, href = false;
         uint8_t data = 0;
     };
-    // Blanking before each frame and after each line, in pixel clocks.
+    // Blanking before each frame and after each line, pixel clocks.
     struct Blanking {
         int frame = 60, line = 9;
     };
     struct Defect {
-        int line = -1;  // current line
-        int pixels = 0; // number of additional pixels in that line; missing pixels if negative
-        int lines = 0;  // number of additional lines in the frame; missing lines if negative
+        int line = -1; // current line
+        // number of additional pixels in the damaged line; a negative number means missing pixels
+        int pixels = 0;
+        // number of additional lines in the frame; a negative number means missing lines
+        int lines = 0;
     };
 
     explicit SensorModel(Blanking blanking) : blanking_(blanking) {}
@@ -45,8 +47,8 @@ public:
         }
     }
     bool isIdle() const { return pins_.empty(); }
-    // Returns the levels of the pins at the next pixel clock; the pins are idle after the last
-    // frame.
+    // Returns the levels of the pins at the next pixel clock. After the last frame the pins are
+    // idle.
     Pins next() {
         if (pins_.empty())
             return {};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // fir_model: computes the results of the FIR filter on the host, exact to the bit, directly from
-// the definition (ip/fir/README.md).
+// the filter's definition (ip/fir/README.md).
 
 #pragma once
 
@@ -14,8 +14,9 @@ class FirModel {
 public:
     static constexpr size_t taps = 16;
 
-    std::array<int32_t, taps> coefficients{}; // 18 bits each; index 0 belongs to the newest sample
-    unsigned shift = 0;                       // 0..31
+    // coefficients of 18 bits; index 0 belongs to the newest sample
+    std::array<int32_t, taps> coefficients{};
+    unsigned shift = 0; // 0..31
     unsigned saturations = 0;
 
     void clear() { history_.clear(); }
@@ -39,7 +40,8 @@ public:
 private:
     struct Past {
         int16_t sample;
-        std::array<int32_t, taps> coefficients; // the coefficients when the sample arrived
+        // the coefficients that were set when the sample arrived
+        std::array<int32_t, taps> coefficients;
     };
     std::deque<Past> history_; // newest first
 };

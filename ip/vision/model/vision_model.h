@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// vision_model: computes the result of the vision core on the host, exact to the bit
-// (ip/vision/README.md): FAST-9 and non-maximum suppression. Written for clarity, not speed.
+// vision_model: computes the results of the vision core on the host, exact to the bit
+// (ip/vision/README.md): FAST-9 and non-maximum suppression. It is written for clarity, not for
+// speed.
 
 #pragma once
 
@@ -42,7 +43,7 @@ inline int scoreAt(const uint8_t* pixels, int width, int x, int y, int threshold
     return 0;
 }
 
-// Returns the corners in scan order. `pixels`: width * height bytes, line by line.
+// Returns the corners in scan order. `pixels` contains width * height bytes, line by line.
 inline std::vector<Feature> detectCorners(const uint8_t* pixels, int width, int height,
                                           int threshold) {
     std::vector<int> scores(static_cast<size_t>(width * height));
@@ -67,7 +68,8 @@ inline std::vector<Feature> detectCorners(const uint8_t* pixels, int width, int 
     return found;
 }
 
-// Returns the `count` strongest features, strongest first; equal ones stay in scan order.
+// Returns the `count` strongest features, strongest first; features of equal strength stay in scan
+// order.
 inline std::vector<Feature> strongest(std::vector<Feature> features, size_t count) {
     std::stable_sort(features.begin(), features.end(),
                      [](const Feature& a, const Feature& b) { return a.score > b.score; });

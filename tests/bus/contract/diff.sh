@@ -20,7 +20,7 @@ END
 cat >"$work/old/ip/b/b.ice" <<'END'
 module M { [":hw"] interface Gone { void run(int value); }; };
 END
-run() { # exit status, trees
+run() { # runs contract_diff. Arguments: expected exit status, the two trees
     wanted=$1
     shift
     status=0
@@ -35,7 +35,7 @@ prints() { printf '%s\n' "$@" | cmp -s - "$work/out" || { cat "$work/out" && ech
 run 0 "$work/old" "$work/old"
 prints 'no breaking change'
 
-# Everything that breaks.
+# All changes that are breaking.
 sed -e 's/0x4141/0x4142/' -e 's/1024/512/' -e 's/"lsb": 1, "width": 3/"lsb": 2, "width": 2/' \
     -e 's/"START"/"BEGIN"/' \
     -e 's/"width": 16/"width": 8/' -e 's/"page": 32/"page": 64/' \

@@ -11,19 +11,19 @@ here=$(cd "$(dirname "$0")" && pwd)
 data=$here/data
 rm -rf "$work"
 mkdir -p "$work/own"
-# The led with a separate clock.
+# The core led with a separate clock, as tuner.
 for f in regs.json v toml; do sed 's/\<led\>/tuner/' "$data/led.$f" >"$work/own/tuner.$f"; done
 sed -i '/^name/a clock_hz = 48000000' "$work/own/tuner.toml"
 clocked() { "$source/tools/python" -m icesoc.chip.clocked "$@"; }
 clocked "$work/own/tuner.toml" "$work/own/tuner.regs.json" "$work/own/tuner_clocked.v"
 fail() { echo "cores: $*" && exit 1; }
 
-# The registers of the cores are the same in all chips.
+# The generated registers of a core are the same in all chips.
 registers=$work/registers
 mkdir "$registers"
 regmap "$data"/*.regs.json "$work"/own/*.regs.json --output-dir "$registers"
 
-known() { # a program with words: calls it with the options of coremap for the known cores
+known() { # runs the command in the arguments, with coremap's options for the known cores
     "$@" --base "$source/bus/map.regs.json" \
         --core "led=$data/led.toml=$data/led.regs.json" \
         --core "adder=$data/adder.toml=$data/adder.regs.json" \
@@ -32,7 +32,7 @@ known() { # a program with words: calls it with the options of coremap for the k
         --core "tuner=$work/own/tuner.toml=$work/own/tuner.regs.json" \
         --block "0=system=$source/hdl/system/system.regs.json"
 }
-chip() { # name, the list: the chip in $work/name
+chip() { # arguments: name, list; generates the chip in $work/name
     out=$work/$1
     mkdir -p "$out"
     printf '%b' "$2" >"$out/cores.list"
@@ -51,10 +51,10 @@ accepted() {
         -I"$source/sw/hw/registers" -I"$gen/slice/Registers" -I"$source/ip/probe" \
         -I"$gen/slice/Probe" -I"$source/sw/icec" -I"$source/sw/base" "$out/soc_cores.c"
 }
-refused() { # message, list: a case for refused.py
+refused() { # arguments: message, list; adds a case for refused.py
     printf '%s\0%b\0' "$1" "$2" >>"$work/refusals"
 }
-has() { # file of the chip, expected lines
+has() { # arguments: file of the chip, expected lines
     file=$1
     shift
     for line; do grep -q -- "$line" "$out/$file" || fail "$file has no '$line'"; done
@@ -62,7 +62,7 @@ has() { # file of the chip, expected lines
 lacks() { ! grep -E -- "$2" "$out/$1" || fail "$1 contains a forbidden line (above: $2)"; }
 is() { has map_regs.h "^#define MAP_$1 $2U"; }
 
-# A byte order mark is not part of a name; form feeds and U+0085 in a comment do not end its line.
+# A byte order mark is not part of a name. Form feeds and U+0085 in a comment do not end the line.
 chip marked '\0357\0273\0277led # a\014b \0302\0205c\n' ||
     { cat "$out/messages" && fail 'a mark is refused'; }
 has soc_cores.vh led
@@ -87,8 +87,8 @@ is NPI_PORT_MOVER 0x2
 is NPI_PORT_CAMERA 0x3
 is MEMORY_MOVER 0x1000000
 is MEMORY_CAMERA 0x1000800
-# The files are valid XML (bus.svd checks the SVD against ARM's schema); the registers are at the
-# addresses of the map.
+# The files are valid XML (bus.svd checks the SVD against ARM's schema), and the registers are at
+# the addresses of the map.
 address=$(xmllint --xpath 'string(//peripheral[name="CAMERA"]/baseAddress)' "$out/icesoc.svd")
 [ "$address" = 0x64000100 ] || fail "CAMERA is at $address in the SVD file"
 event='//peripheral[name="SYSTEM"]/registers/register[name="EVENT"]'
@@ -96,8 +96,8 @@ event='//peripheral[name="SYSTEM"]/registers/register[name="EVENT"]'
     fail 'EVENT is not cleared by writing 1 in the SVD file'
 [ "$(xmllint --xpath 'count(//peripheral)' "$out/icesoc.svd")" = 6 ] ||
     fail 'the SVD file has not six peripherals'
-# In SystemRDL and IP-XACT, words that are reached through PAGE have separate maps; SystemRDL is
-# converted back.
+# In SystemRDL and IP-XACT, the words that are accessed through PAGE have separate maps. SystemRDL
+# can be converted back.
 "$source/tools/python" -m icesoc.regs.rdl "$out/icesoc.rdl" "$work/back" >"$work/rdl" 2>&1 ||
     { cat "$work/rdl" && fail 'SystemRDL with pages'; }
 for f in "$data/led.regs.json" "$work/back/led.regs.json"; do
@@ -111,7 +111,7 @@ offset='//*[local-name()="register"][1]/*[local-name()="addressOffset"]'
 [ "$(xmllint --xpath "string($pages$offset)" "$out/icesoc.ipxact.xml")" = "'h44" ] ||
     fail 'IP-XACT has not the words behind PAGE'
 is PIN_CAMERA_SEEN_O 0xB
-# The identity of the core; a core without a servant has the common servant for registers.
+# The identity of the core; a core without its own servant has the general servant for registers.
 has soc_cores.c '"eye"' '{"camera", MAP_SLOT_CAMERA, .*core_camera_start' \
     'core_camera_table\[\] = {MOVER_TABLE}'
 accepted unwired 'mover
@@ -120,7 +120,7 @@ mover name=b level_o=none
 led button_i=none
 mover name=c level_o=none\n'
 has soc_pins.h '"a.level_o"'
-lacks soc_pins.h '"(c.level_o|led.button_i)"' # a signal that is not a pin has no location
+lacks soc_pins.h '"(c.level_o|led.button_i)"' # a signal that is not a pin must have no location
 has soc_cores.vh "button_i(1'd0)"
 accepted pins 'led name=eye button_i=@A4\nmover seen_o=@B1 level_o=@C1,C2,C3,C4,C5,C6,C7,C8,C9\n'
 has soc_pins.h '^    {"eye.button_i", 0, 1, false},$'
@@ -128,15 +128,16 @@ has core_pins.ucf '^NET "core_pins_i<0>" LOC = "A4"; # eye.button_i\[0\]$' \
     '^# NET "core_pins_o<0>" LOC = "..."; # eye.led_o\[0\]$' \
     '^NET "core_pins_o<10>" LOC = "C9"; # mover.level_o\[8\]$'
 has soc_cores.vh 'led u_eye' 'mover #(.CLK_HZ(CLK_HZ)) u_mover'
-# Chip and firmware have the same hash for the registers of a core. It changes with the registers,
-# not with their descriptions.
+# Chip and firmware have the same hash for the registers of a core. The hash changes if the
+# registers change, but not if only their descriptions change.
 contract() { sed -n "s/.*\"$1\"}, [0-9]*, 0, (Ice_Int)0x\([0-9A-F]*\)U.*/\1/p" "$out/soc_cores.c"; }
 before=$(contract mover)
 [ -n "$before" ] && grep -q "CONTRACTS = {32'h$before, 32'h$(contract \
     eye), 32'h0\{8\}, 32'h$(contract system)};" "$out/soc_cores.vh" ||
     { cat "$out/soc_cores.vh" && fail 'the chip has other hashes than the firmware'; }
-changed() { # changed EXPRESSION: the hash after this sed command has changed the description of
-            # mover
+# changed EXPRESSION: prints the hash for mover after this sed command has changed mover's
+# description
+changed() {
     mkdir -p "$work/changed"
     sed "$1" "$data/mover.regs.json" >"$work/changed/mover.regs.json"
     coremap "$out/cores.list" --base "$source/bus/map.regs.json" --core \
@@ -149,7 +150,7 @@ changed() { # changed EXPRESSION: the hash after this sed command has changed th
 added='{"word": 3, "name": "A", "access": "rw", "doc": ""}'
 [ "$(changed "s/\"registers\": /&[$added], \"events\": /")" != "$before" ] ||
     fail 'a register does not change the hash'
-# A servant without a waiting call needs neither interrupt nor polling.
+# A servant that has no waiting calls needs neither an interrupt nor polling.
 for f in adder.regs.json adder.v; do cp "$data/$f" "$work"; done
 sed '/^header/a waits = false' "$data/adder.toml" >"$work/adder.toml"
 echo adder >"$work/cores.list"
@@ -159,7 +160,7 @@ coremap "$work/cores.list" --base "$source/bus/map.regs.json" \
 grep -q '^    Hw_Core_interrupt(&core_adder.core);' "$work/soc_cores.c" &&
     ! grep -q 'Demo_Adder_Core_\(interrupt\|poll\)' "$work/soc_cores.c" ||
     fail 'a servant that waits for nothing is asked for its interrupt or poll'
-# Two cores, or a core and the platform, that would have the same name in a generated file.
+# Errors: two cores, or a core and the platform, would have the same name in a generated file.
 refused "1: error: the platform and core 'rst' both become u_rst" 'led name=rst\n'
 refused "3: error: the platform and core 'fsmc' both become NPI_PORT_FSMC" \
     'led\nadder\nmover name=fsmc\n'
@@ -167,14 +168,15 @@ refused "2: error: core 'a' and core 'a_start' both become core_a_start" \
     'led name=a\nled name=a_start\n'
 refused "2: error: core 'a' and core 'gate_a' both become u_gate_a" \
     'adder name=a gate=on\nled name=gate_a\n'
-# Only a core with idle_o can have a gate. A gate in the list is also built on the board.
+# Only a core with idle_o can have a clock gate. If the list requests a gate, the gate is also built
+# on the board.
 accepted gates 'adder gate=on\nadder name=other\nled\n'
 has soc_cores.vh 'core_gate #(.GATED(1)) u_gate_adder ($' 'access_i(slot_valid\[2\]),$' \
     '.clk_o(clk_adder)$' '.clk_i(clk_adder)' 'core_gate #(.GATED(GATES)) u_gate_other'
 lacks soc_cores.vh u_gate_led
 has core_pins.ucf '^NET "u_soc/u_gate_adder.g_gate.run" MAXDELAY'
-# The separate clock of a core comes from a pin, from another core, or is derived from the chip
-# clock. The constraints for ISE contain its period and its crossings.
+# The separate clock of a core comes from a pin, comes from another core, or is derived from the
+# chip clock. The constraints for ISE contain its period and its crossings.
 accepted clocks 'led
 tuner clock_i=@A9
 tuner name=other clock_i=led.led_o
@@ -196,7 +198,7 @@ for f in mover.regs.json mover.v; do cp "$data/$f" "$work"; done
 ! clocked "$work/mover.toml" "$data/mover.regs.json" "$work/mover_clocked.v" 2>"$work/messages" &&
     grep -q 'a core with a memory port uses the chip clock' "$work/messages" ||
     fail 'a memory port in another clock'
-# Registers and fields with names that collide in the headers.
+# Errors: names of registers and fields collide in the generated headers.
 for names in 'A B A_B_LSB' 'A_B_LSB C A_B_LSB'; do
     # shellcheck disable=SC2086 # three words
     printf '{"block": "b", "doc": "", "registers": [
@@ -207,7 +209,7 @@ for names in 'A B A_B_LSB' 'A_B_LSB C A_B_LSB'; do
         grep -q 'both become A_B_LSB\|A_B_LSB: duplicate name' "$work/messages" ||
         fail "registers and fields of one name ($names)"
 done
-described() { # message, rejected description
+described() { # arguments: message, description that must be rejected
     printf '%b' "$2" >"$work/wrong.regs.json"
     ! regmap "$work/wrong.regs.json" --output-dir "$work" 2>"$work/messages" &&
         grep -q -- "$1" "$work/messages" || { cat "$work/messages" && fail "'$1' is not said: $2"; }
@@ -222,8 +224,8 @@ described 'registers\[0\].word: expected a whole' \
     '{"block": "b", "doc": "", "registers": [{"word": ""}]}'
 described 'pins\[0\].name: expected' \
     '{"block": "b", "doc": "", "registers": [], "pins": [{"name": "a"}]}'
-# A probe records signals at any depth by their hierarchical names, in Verilog and after flattening
-# in Yosys. The ground gets these names.
+# A probe records signals at any depth of the hierarchy by their hierarchical names, in Verilog and
+# after Yosys has flattened the design. The ground receives these names.
 accepted probe 'adder
 probe signals=u_adder.u_registers.u_wrapper.mask,u_modem.u_timer.clocks:17
 probe name=other signals=u_adder.irq_o\n'

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Tests of the manifest of a core, core.toml: accepted values, and messages for rejected ones."""
+"""manifest_test: tests the manifest of a core, core.toml: values that are accepted, and the
+messages for values that are rejected."""
 import re
 import tempfile
 import unittest

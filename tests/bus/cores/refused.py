@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""refused: checks that coremap rejects lists of cores, each with a message, and writes nothing.
+"""refused: checks that coremap rejects wrong lists of cores, each with a message, and writes no
+file.
 
 Usage: refused.py CASES FOLDER [option of coremap]...
-CASES contains pairs of texts, each ended by NUL: a regular expression of the message, and the list.
-All cases run in one process, because a start of coremap takes longer than a case.
+CASES contains pairs of texts, each ended by NUL: a regular expression for the message, and the
+list. All cases run in one process, because starting coremap takes longer than a case.
 """
 import re
 import sys
@@ -14,7 +15,7 @@ from icesoc.chip import coremap
 
 
 def message_of(words):
-    """Returns the message with which coremap ends; "" if it accepts the list."""
+    """Runs coremap. Returns the message with which it ends, or "" if it accepts the list."""
     sys.argv = ["coremap", *words]
     try:
         coremap.main()

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Calls new cores in a UAV's FPGA by radio: client.py DEVICE GUARD STATUS PLUGIN FOLDER
-TRACE|NETLIST File.ice ..."""
+"""client: calls new cores in a UAV's FPGA by radio. Usage: client.py DEVICE GUARD STATUS PLUGIN
+FOLDER TRACE|NETLIST File.ice ..."""
 
 import os
 import sys
@@ -74,7 +74,8 @@ with Ice.initialize(data) as ic:
     while not said and recording.is_alive():
         threading.Event().wait(0.01)
     core = Cores.SampleVerilogPrx.uncheckedCast(ic.stringToProxy("sample_verilog" + where))
-    while recording.is_alive():  # calls without pauses, because the trace covers only a few clocks
+    # the calls follow each other without pauses, because the trace covers only a few clocks
+    while recording.is_alive():
         calls = [call for _ in range(3) for call in (core.setOffsetAsync(7), core.addAsync(42))]
         expect("add, recorded", [call.result() for call in calls], 3 * [None, 49])
     print(said)
@@ -94,8 +95,8 @@ with Ice.initialize(data) as ic:
         expect(identity + ".add", core.add(42), -58)
         expect(identity + ".sumTo", core.sumTo(100), 5050)
         fails(Ice.UnknownException, core.sumTo, 0)
-        # While a long call is in progress (it hangs, and is aborted after 100 ms), other calls are
-        # answered.
+        # While a long call is in progress, other calls are answered. The long call never ends by
+        # itself, and is aborted after 100 ms.
         later = core.sumToAsync(2000000000)
         expect(identity + ".add meanwhile", core.add(1), -99)
         if later.done():
@@ -105,7 +106,7 @@ with Ice.initialize(data) as ic:
 
     servo = Demo.ServoPrx.checkedCast(ic.stringToProxy("servo" + where))
     servo.setPulse(2, 1500)
-    for _ in range(2000):  # the simulator's script raises the pin
+    for _ in range(2000):  # wait until the simulator's script raises the pin
         if servo.fault():
             break
     servo.clear()
@@ -116,8 +117,8 @@ with Ice.initialize(data) as ic:
         packet = bytes(i * i * 7 + 31 * i & 0xFF for i in range(length))
         expect("crc32 of %d bytes" % length, crc.crc(packet) & 0xFFFFFFFF, zlib.crc32(packet))
 
-    # Checks that the chip is the one for which the firmware was built. (The case mission.other_chip
-    # has another chip.)
+    # Checks that the chip is the one for which the firmware was built. (In the test case
+    # mission.other_chip, it is another chip.)
     vehicle = Hw.ChipPrx.checkedCast(ic.stringToProxy("chip" + where))
     contracts = vehicle.contracts()
     expect("blocks", sorted(c.block for c in contracts), sorted([
@@ -125,9 +126,10 @@ with Ice.initialize(data) as ic:
         "my_lamps", "sample_vhdl", "many", "probe"]))
     expect("contracts", mission.differences(vehicle), [])
 
-    # Third-party cores, called by their registers.
+    # Third-party cores, which are called by their registers.
     port = Hw.RegistersPrx.checkedCast(ic.stringToProxy("port" + where))
-    expect("port.wait", port.wait(10000), ["CORE"])  # the simulator's script raises the pin
+    # the simulator's script raises the pin during this call
+    expect("port.wait", port.wait(10000), ["CORE"])
     expect("port.LEVELS", port.get("LEVELS"), 0x83)
     expect("port.list", [
         (r.name, r.word, r.width) for r in port.list() if r.access == Hw.Access.rw and r.page == 0],
@@ -150,7 +152,7 @@ with Ice.initialize(data) as ic:
     expect("my_lamps", [lamps.get("REG0"), lamps.get("REG1"), lamps.get("REG1")], [0x1234, 1, 2])
     expect("port.wait, still high", waits.result(), ["CORE"])
 
-    # A core with more words than a slot has; they are accessed through PAGE.
+    # A core that has more words than a slot, so that some words are accessed through PAGE.
     many = Demo.ManyPrx.checkedCast(ic.stringToProxy("many" + where))
     for seed in (1, 1000003):
         p, q = ([(seed * i * 0x123456789ABCDEF + i & 2**64 - 1) - 2**63 for i in range(n, n + 5)]
@@ -176,7 +178,7 @@ with Ice.initialize(data) as ic:
         if not watcher.came.acquire(timeout=60):
             sys.exit("events: %r, %d finished" % (watcher.peaks, watcher.finished_calls))
     expect("events", (watcher.peaks, watcher.finished_calls), ([(1, 2005)], 2))
-    # A listener without endpoints is called over the connection of the call that passed it.
+    # A listener that has no endpoint is called over the connection on which it was passed.
     nearby = ic.createObjectAdapter("")
     scaler.ice_getConnection().setAdapter(nearby)
     scaler.watch(Demo.WatcherPrx.uncheckedCast(nearby.addWithUUID(watcher).ice_oneway()))

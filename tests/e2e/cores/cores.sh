@@ -5,13 +5,13 @@
 set -eu
 source=$1 build=$2 work=$3 chip=$4
 mkdir -p "$work/build"
-# fresh NAME: replaces NAME by fresh/NAME if they differ, so that unchanged files are not built
-# again.
+# fresh NAME: replaces NAME by fresh/NAME if their contents differ. Otherwise NAME keeps its file
+# times and is not built again.
 fresh() {
     diff -r "$work/fresh/$1" "$work/$1" >/dev/null 2>&1 ||
         { rm -rf "${work:?}/$1" && mv "$work/fresh/$1" "$work/$1"; }
 }
-# mapped NAME: copies a core of the tests of the mapping into the folder for the list.
+# mapped NAME: copies a core from the tests of the hardware mapping into the folder for the list.
 mapped() {
     mkdir -p "$work/fresh/$1"
     printf 'interface = "%s"\nverilog = ["%s"]\n' "$source/tests/slice/hardware/golden/$1.ice" \
@@ -46,9 +46,9 @@ here=$source/tests/e2e/cores
 golden=$source/tests/slice/hardware/golden
 folders="$samples/sample_verilog;$samples/sample_vhdl;$work/scaler;$here/servo;$here/crc32"
 folders="$folders;$work/many;$foreign/my_port;$foreign/my_requests;$work/my_lamps"
-mapped scaler # sequences, exceptions and events
-mapped many   # 46 words, although a slot has only 16
-# A core in VHDL, put into a slot by make new-foreign. GHDL is fetched once.
+mapped scaler # a core with sequences, exceptions and events
+mapped many   # a core with 46 words, more than the 16 of a slot
+# A core in VHDL that make new-foreign has put into a slot. GHDL is downloaded only once.
 lamps=$source/tests/ip/new_foreign/lamps
 logged "$source/tools/python" -m icesoc.cores.new_foreign \
     my_lamps lamps own "$work/fresh/my_lamps" GHDL="$build/ghdl/ghdl" \
@@ -56,7 +56,8 @@ logged "$source/tools/python" -m icesoc.cores.new_foreign \
     wdata=request_d rdata=q "$lamps.vhd" "${lamps}_types.vhd"
 fresh my_lamps
 [ -e "$work/build/ghdl" ] || ln -s "$build/ghdl" "$work/build/ghdl"
-# CLK_HZ is low because the servo core counts in every clock, so that no clock is skipped.
+# CLK_HZ is low, because the servo core counts in every clock, so that the simulator cannot skip any
+# clock.
 logged cmake -S "$source" -B "$work/build" -G Ninja "-D$chip=ON" -DCLK_HZ=2000000 \
     "-DCORES=$work/cores.list" "-DCORE_FOLDERS=$folders" \
     "-DROOMS=bus;slice;ip;sw;hdl;synth;testbench"
@@ -75,8 +76,8 @@ logged "$simulator" --pins "$work/pins" --size 96x64 --image /usr/share/xplanet/
     "$samples/sample_verilog/sample_verilog.ice" "$golden/scaler.ice" "$golden/many.ice" \
     "$here/servo/servo.ice" "$here/crc32/crc32.ice" "$samples/sample_vhdl/sample_vhdl.ice" \
     "$source/sw/hw/registers/Registers.ice" "$source/ip/probe/Probe.ice"
-# Checks that pulses last 1.5 ms and are 20 ms apart, at any clock frequency. The fault pin has
-# ended at most one pulse, and has delayed the pulses after it.
+# Checks that pulses last 1.5 ms and are 20 ms apart, independent of the clock frequency. The fault
+# pin may have ended one pulse and delayed the pulses after it.
 awk '$2 != "servo.pwm_o" { next }
      $3 == 4 { frames += up && $1 - last > 19.999 && $1 - last < 20.001; last = up = $1 }
      $3 == 0 && up { n += $1 - up > 1.499 && $1 - up < 1.501; all++ }
@@ -85,9 +86,9 @@ awk '$2 != "servo.pwm_o" { next }
 prints() { grep -Eq "$1" "$work/log" || { cat "$work/log" && echo "not said: $1" && exit 1; }; }
 prints 'cores: all as expected'
 
-# The simulator lists the cores that prevent clocks from being skipped: two are never idle. The
-# probe's capture by radio, read by GTKWave's tools, equals the simulator's trace of the replayed
-# flight, over the captured time.
+# The simulator must list the cores that prevent it from skipping clocks: two cores are never idle.
+# The probe's capture is fetched by radio and converted by GTKWave's tools. Over the captured time,
+# it must be equal to the simulator's trace of the replayed flight.
 traced() {
     prints "'(my_requests|servo)' changes in nearly every clock"
     vcd2fst "$work/probe.vcd" "$work/probe.fst" >"$work/log"
@@ -102,8 +103,9 @@ traced() {
     fst2vcd "$work/trace.fst" >"$work/trace.vcd"
     "$source/tools/python" "$here/same.py" "$work/captured.vcd" "$work/trace.vcd" 500
 }
-[ "$chip" = NETLIST ] || traced # the names in a netlist differ
-# The captured inputs, applied to the core alone, produce the captured outputs.
+[ "$chip" = NETLIST ] || traced # a netlist has other signal names
+# If the captured inputs are applied to the core alone, its outputs must be equal to the captured
+# outputs.
 "$source/tools/python" -m icesoc.cores.replay "$work/probe.vcd" \
     --scope u_sample_verilog --top sample_verilog \
     --out "$work/replay" -I "$work/build/gen" -I "$source/bus" \

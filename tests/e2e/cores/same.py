@@ -1,16 +1,17 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""same: compares a probe's capture with the simulator's trace: same.py capture.vcd trace.vcd
-nanoseconds-of-a-clock
- Compares each signal of the capture in each clock that capture and trace contain. The trace
-(fst2vcd) has two times per clock; it contains u_system_slot.cycles, which numbers the clocks. """
+"""same: checks that a probe's capture is equal to the simulator's trace: same.py capture.vcd
+trace.vcd nanoseconds-of-a-clock
+
+Compares each signal of the capture in each clock that both files contain. The trace (fst2vcd) has
+two times per clock. It contains u_system_slot.cycles, which numbers the clocks."""
 import sys
 
 from icesoc.cores.replay import read_vcd
 
 
 def clocks(moments, keys, clock_of):
-    """Returns the values of the signals with these keys, from a clock on, at each moment."""
+    """Returns the values of the signals with these keys in each clock that `moments` contains."""
     values, found = dict.fromkeys(keys), {}
     for time, changes in moments:
         values = {key: int(changes[key], 2) if key in changes and "x" not in changes[key] else old

@@ -1,8 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# big_firmware: enlarges the firmware of this tree to a given size with code of newlib, which
-# compresses like other code.
-# Usage: big_firmware.sh BUILD-FOLDER OUT.elf BYTES
+# big_firmware: enlarges the firmware of this tree to a given size. The added code is from newlib,
+# so that it compresses like other code. Usage: big_firmware.sh BUILD-FOLDER OUT.elf BYTES
 set -eu
 build=$(realpath "$1") out=$2 bytes=$3
 part=$out.part

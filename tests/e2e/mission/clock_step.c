@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * clock_step: a library that a program preloads. It makes the time of day step each second: one
- * hour forward, then two hours back. Programs that use the time of day to wait or to measure then
- * fail.
+ * clock_step: a library that a program preloads. Every second it makes the time of day that the
+ * program reads jump by one to three hours, forward or back. A program that uses the time of day to
+ * wait or to measure then fails.
  */
 
 #define _GNU_SOURCE

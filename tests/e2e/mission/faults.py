@@ -1,9 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""faults: kills or stops processes of a mission, or refuses them something, at moments drawn from
-seeds. docs/regression.md has the table that this checks.
- A moment is a time of the flight: 0.3 seconds from the start of its process, then simulated
-seconds, about 1.7 per flight. So each moment is within the flight at any speed of the machine. """
+"""faults: injects faults into missions: it kills or stops one of a mission's processes, or denies
+it a resource, at times drawn from seeds. docs/regression.md contains the table of the expected
+consequences.
+
+A `moment` is a time of the flight: the first 0.3 seconds are counted from the start of the process,
+the rest in simulated seconds, about 1.7 per flight. Therefore each moment is within the flight,
+however fast the machine is."""
 
 import argparse
 import concurrent.futures
@@ -26,14 +29,13 @@ from icesoc.util.process import children
 
 STATUS = record.of_tree("testbench/status/sim_status.toml")
 IMAGE = "/usr/share/xplanet/images/earth.jpg"
-LONGEST = 240.0  # s; time limit of a mission on a busy machine
-REAL = 0.3  # s of each moment that pass before simulated time starts
-LAST = 2.0  # latest moment; for faults without a moment, the moment's share of this sets the size
-            # of the fault
+LONGEST = 240.0  # time limit of a mission on a busy machine, s
+REAL = 0.3  # part of each moment that passes before simulated time starts, s
+LAST = 2.0  # latest moment, s; for faults without a time, moment / LAST sets the size of the fault
 
 
 def proc(pid, name):
-    """Returns the text of a file of a process in /proc; "" if the process has ended."""
+    """Returns the text of a process's file in /proc, or "" if the process has ended."""
     try:
         return Path(f"/proc/{pid}/{name}").read_text()
     except (FileNotFoundError, ProcessLookupError):
@@ -53,12 +55,12 @@ def lives(pid):
 
 
 class Mission:
-    """A mission in progress, and its processes by name."""
+    """A mission that is running, and its processes by name."""
     NAMES = {"ground": "clients/mission.py", "simulator": "sim/icesoc-sim",
              "page": "icesoc.web.live(?!.* --try)", "page's trial": "icesoc.web.live.* --try"}
 
     def __init__(self, source, build, out, prefix=(), options=(), words=None):
-        """words: the command, instead of `./icesoc run` with its options."""
+        """words: command to run instead of `./icesoc run` with its options."""
         self.out, self.source, self.build = out, source, build
         os.makedirs(out, exist_ok=True)
         self.log = open(out + ".log", "w+")
@@ -67,14 +69,15 @@ class Mission:
         self.run = subprocess.Popen(
             [*(word.replace("$0", out) for word in prefix), *(words(self) if words else run)],
             stdout=self.log, stderr=subprocess.STDOUT, start_new_session=True,
-            env={**os.environ, "XDG_CONFIG_HOME": build + "/config"})  # keys used only by the tests
+            # keys that only the tests use
+            env={**os.environ, "XDG_CONFIG_HOME": build + "/config"})
 
     def all(self):
         return [self.run.pid] + descendants(self.run.pid)
 
     def find(self, name):
-        """Returns the process with this name as soon as it exists; None if the mission ended
-        first."""
+        """Waits for the process with this name to exist, and returns it; returns None if the
+        mission ended first."""
         while name != "run" and self.run.poll() is None:
             for pid in descendants(self.run.pid):
                 command = command_of(pid)
@@ -84,13 +87,13 @@ class Mission:
         return self.run.pid if name == "run" else None
 
     def pass_time(self, moment):
-        """Waits until that moment of the flight, or until its end."""
+        """Waits until this moment of the flight, or until the flight has ended."""
         time.sleep(min(moment, REAL))
         while self.run.poll() is None and self.simulated() < moment - REAL:
             time.sleep(0.002)
 
     def simulated(self):
-        """Returns the simulated time in s, from the simulator's counters."""
+        """Returns the simulated time from the simulator's counters, s."""
         try:
             return STATUS.unpack(Path(self.out, "status").read_bytes(), "ns")["ns"] / 1e9
         except (FileNotFoundError, struct.error):
@@ -117,7 +120,7 @@ class Mission:
             left.unlink()
 
     def kill(self):
-        """Ends all remaining processes when the test ends."""
+        """Ends all processes that remain at the end of the test."""
         for pid in self.all():
             with contextlib.suppress(ProcessLookupError):
                 os.kill(pid, signal.SIGKILL)
@@ -134,8 +137,8 @@ def expect(condition, mission, text):
 
 
 def is_whole(out):
-    """Checks that no file is half written: pictures decode, reports parse, and no temporary file is
-    left."""
+    """Checks that no file is only partly written: reads all pictures and reports. Returns true if
+    no temporary file is left."""
     from PIL import Image
     for path in Path(out).iterdir():
         if path.suffix == ".png":
@@ -146,8 +149,8 @@ def is_whole(out):
 
 
 def caught(start, name, moment):
-    """Starts a mission; returns it at a moment with the process of that name; None if the flight
-    ended before."""
+    """Starts a mission and waits for a moment. Returns the mission and its process with this name,
+    or None instead of the process if it has ended."""
     m = start()
     pid = m.find(name)
     m.pass_time(moment)
@@ -160,7 +163,7 @@ def goes_on(m, otherwise):
 
 
 def without_page(m):
-    """Kills the page server; the page is only a view, so the mission continues."""
+    """Kills the page server. The mission must continue, because the page is only a view of it."""
     said = goes_on(m, "the mission needs the page")
     expect(re.search("page.*signal 9", m.text()), m, "no message about the end of the page")
     return said
@@ -174,7 +177,7 @@ def refused(m, why):
 
 
 def killed_early(start, name, moment, deaths):
-    """Kills a process within its first 10 ms."""
+    """Kills the process within its first 10 ms."""
     m = start()
     pid = m.find(name)
     time.sleep(0.01 * moment / LAST)
@@ -216,8 +219,8 @@ def stopped(start, name, moment, deaths):
 
 
 def disk_full(start, name, moment, deaths):
-    """The output folder is a separate file system with few blocks; its files are copied at the
-    end."""
+    """The output folder is a separate file system with only a few blocks; its files are copied at
+    the end."""
     size = 4096 * int(1 + 7 * moment / LAST)
     script = (f"mount -t tmpfs -o size={size} none $0 || exit 9; status=0; \"$@\" || status=$?; "
               "cp -a $0 $0.kept; exit $status")
@@ -243,13 +246,13 @@ def port_taken(start, name, moment, deaths):
 
 
 def no_memory(start, name, moment, deaths):
-    """Limits the address space of each process to 8 to 800 MB."""
+    """Limits the address space of each process to a size from 8 to 800 MB."""
     m = start(prefix=["prlimit", "--as=%d" % (8e6 * 100**(moment / LAST))])
     status = m.wait(LONGEST)
     expect(status is not None, m, "it hangs")
     expect(status != 0 or m.succeeded(), m, "it reports success")
     expect(status == 0 or m.text().strip(), m, "it fails without a word")
-    # If the interpreter cannot even start, it reports this itself with a traceback.
+    # If the memory is not enough to start the interpreter, Python reports this with a traceback.
     expect("Fatal Python error: init" in m.text() or
            not re.search("bad_alloc|Traceback", m.text()), m, "not a clear message")
     expect(is_whole(m.out), m, "a file is cut short")
@@ -257,7 +260,7 @@ def no_memory(start, name, moment, deaths):
 
 
 def clock_step(start, name, moment, deaths):
-    """Steps the time of day one hour forward and two hours back, repeatedly."""
+    """Makes the time of day jump forward or back by hours, every second."""
     m = start(prefix=["env", "LD_PRELOAD=" + CLOCK_STEP])
     said = goes_on(m, "it lives by the clock of the day")
     expect("cannot be preloaded" not in m.text(), m, "no clock was stepped")
@@ -265,7 +268,7 @@ def clock_step(start, name, moment, deaths):
 
 
 def loss(start, name, moment, deaths):
-    """name: the share of packets that are lost."""
+    """Loses a fraction of all packets; `name` is this fraction."""
     m = start(options=["--loss", name, "--patience", "16", "--seed", str(int(1000 * moment))])
     status = m.wait(LONGEST)
     expect(status is not None, m, "it does not end")
@@ -275,11 +278,13 @@ def loss(start, name, moment, deaths):
 
 
 def fleet(start, name, moment, deaths):
-    """No reply may be lost, duplicated, or come from another vehicle, and a fault must not affect
-    programs that it does not concern. A ground station with the address and key of the first one
-    takes over all vehicles until it ends; then the first ground station has them again."""
+    """No reply may be lost, be duplicated, or come from another vehicle. A fault must not affect
+    programs that do not depend on the failed part. A ground station with the address and key of the
+    first one takes over all vehicles until it ends; after that the first ground station reaches
+    them again."""
     trouble, least, most = TROUBLE[name]
-    begin = 7 + moment  # by then all vehicles have sessions, also with the second ground station
+    # at this time all vehicles have sessions, also with the second ground station
+    begin = 7 + moment
     end = begin + least + (most - least) * moment / LAST
     m = start(words=lambda m: words_of(m, IMAGE, name, begin, end))
     expect(m.wait(5 * LONGEST) == 0, m, "a vehicle does not answer at the end, or it hangs")
@@ -309,8 +314,8 @@ FAULTS = [(killed, n) for n in ("ground", "simulator", "run", "page")] + \
 
 
 def undergo(args, fault, name, seed, number, moment):
-    """Applies one fault at one moment; returns whether the mission had the consequences in the
-    table."""
+    """Applies one fault at one moment. Returns true if the consequences for the mission were those
+    in the table."""
     title = (fault.__name__ + " " + name).strip()
     missions = []
 

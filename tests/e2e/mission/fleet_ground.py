@@ -1,15 +1,16 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""fleet_ground: calls the vision cores of several vehicles repeatedly and, from a second ground
-station, asks for their states, until a given simulated time. Then each vehicle has to answer once
-more. At the beginning, one call to all vehicles starts the first frame of each.
+"""fleet_ground: calls the vision cores of several vehicles repeatedly, and asks for the vehicles'
+states from a second ground station, until a given simulated time. Then each vehicle has to answer
+once more. At the beginning, one call to all vehicles starts the first frame of each.
 
     fleet_ground.py '{"out": FOLDER, ...}'      words_of writes all options
 
-FOLDER/fleet.json lists for each vehicle how many frames were started, answered and reported, and
-which states the second ground station received at what time. With "new_key", the vehicle "changed"
-gets its next key first, and must accept only this key at the end. With "rival", the second ground
-station starts at that time, with the address and key of the first one."""
+For each vehicle, FOLDER/fleet.json contains the numbers of frames that were started, answered and
+reported, and the states that the second ground station received, with their times. With "new_key",
+the vehicle "changed" first gets its next key, and must accept only this key at the end. With
+"rival", the second ground station starts at that time, and has the address and key of the first
+ground station."""
 
 import json
 import os
@@ -26,10 +27,10 @@ import mission
 import plugged
 
 THRESHOLD = 40
-REST = 0.2  # s; simulated time between two frames
+REST = 0.2  # simulated time between two frames, s
 
 
-# Faults of a fleet: name, option of the simulator ("": a program causes the fault), and shortest
+# Faults of a fleet: name, option of the simulator ("" if a program causes the fault), and shortest
 # and longest duration in s. Vehicle 1 runs the host build of the firmware, the others run the ARM
 # binary.
 TROUBLE = {"vehicle away": ("away:2", 0.5, 3), "vehicle gone": ("away:3", 11, 13),
@@ -40,8 +41,8 @@ VEHICLES, NEXT = 3, "7" * 32
 
 
 def words_of(m, image, name, begin, end):
-    """Returns the command of the simulator for several vehicles that are called continuously, each
-    with its own key."""
+    """Returns the command that starts the simulator with several vehicles. They are called
+    continuously, and each has its own key."""
     keys, isRival = {}, name == "rival ground"
     for file, digits in (("fleet", "123"), ("observer", "456")):
         lines = [f"0x{at:04x} {digit * 32}" for at, digit in enumerate(digits, 1)]
@@ -66,7 +67,7 @@ def words_of(m, image, name, begin, end):
 
 
 class Caller(threading.Thread):
-    """Calls one vehicle; each call is made once, whatever its result."""
+    """Calls one vehicle. A call is made only once, even if it fails."""
 
     def __init__(self, ground, address):
         super().__init__(daemon=True)
@@ -92,7 +93,7 @@ class Caller(threading.Thread):
         self.wrong += [result.found, best] != [self.want["found"], self.want["best"]]
 
     def frames(self):
-        """Calls until the end of the flight; then, for at most 20 seconds, until a reply
+        """Makes calls until the end of the flight, then for at most 20 seconds until another reply
         arrives."""
         engine = Autopilot.HwProcessingEnginePrx.uncheckedCast(
             self.ground.proxy("hwengine1", self.address))
@@ -131,7 +132,8 @@ class Ground:
     def __init__(self, args):
         self.args, self.air = args, mission.Air(args.status)
         self.pilot = self.communicator(args.device, args.key)
-        self.seen = []  # (address, simulated seconds) of the states received by the second ground
+        # states that the second ground station received: (address, simulated seconds)
+        self.seen = []
 
     def seconds(self):
         return self.air.read()["ns"] / 1e9
@@ -167,8 +169,8 @@ class Ground:
         observer.destroy()
 
     def call_all(self):
-        """Starts a frame in each vehicle, once each vehicle has a session. The calls have been sent
-        when their communicator has ended."""
+        """Starts a frame in each vehicle with one call, once all vehicles have sessions. When the
+        communicator has been destroyed, the call has been sent."""
         for address in range(1, self.args.vehicles + 1):
             self.proxy("uav", address).ice_ping()
         ic = self.communicator(self.args.device, self.args.key)
@@ -179,8 +181,8 @@ class Ground:
         ic.destroy()
 
     def keep_new_key(self):
-        """Calls the changed vehicle with its new key, as change_key.py does; after that the vehicle
-        accepts only this key. Returns the error, or an empty text."""
+        """Calls the vehicle `changed` with its new key, as change_key.py does; from then on the
+        vehicle accepts only this key. Returns an error message, or an empty text."""
         lines = Path(self.args.key).read_text().split("\n")
         lines[self.args.changed - 1] = f"0x{self.args.changed:04x} {self.args.new_key}"
         Path(self.args.key).write_text("\n".join(lines))

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 #
-# gateway: stock Ice clients in C++ and Python reach the UAV through icesoc-gateway. Started by the
-# simulator.
+# gateway: checks that stock Ice clients in C++ and Python can call the UAV through icesoc-gateway.
+# The simulator starts this script.
 # Usage: gateway.sh build-folder device guard-time out-folder [options of the gateway]
 set -eu
 build=$1 device=$2 guard=$3 out=$4

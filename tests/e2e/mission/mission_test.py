@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""mission_test: missions as users start them.
+"""mission_test: flies missions in the way in which users start them.
 
 Usage: mission_test.py case out-folder build-folder
 """
@@ -21,8 +21,8 @@ from script import TREE, Script, fresh, main, write
 
 CASE, BUILD = sys.argv[1], Path(sys.argv[3]).resolve()
 IMAGE = Path("/usr/share/xplanet/images/earth.jpg")
-# ms; the modem's default guard time of 1 s passes four times, so only cases that test it, and
-# vehicles with a flash memory, use it
+# guard time of the modem, ms. With the default of 1 s, four guard times would pass in each flight.
+# Therefore only the cases that test the default, and vehicles with a flash memory, use it.
 GUARD = 1000 if CASE in ("plain", "stopped", "update") else 20
 SIMULATOR, PING = BUILD / "testbench/sim/icesoc-sim", BUILD / "sw/ground/ground_ping"
 CLIENTS = TREE / "sw/ground/clients"
@@ -38,7 +38,7 @@ DEVICE = 'hwengine1:xbee-at -d "{device}" -a 0x0001 '
 class Cases(Script):
     def setUp(self):
         self.out = fresh(sys.argv[2])
-        os.environ["XDG_CONFIG_HOME"] = str(BUILD / "config")  # keys of the tests' own
+        os.environ["XDG_CONFIG_HOME"] = str(BUILD / "config")  # the tests use keys of their own
         self.keys = BUILD / "config/icesoc"
 
     def words(self, *options, out=None, image=IMAGE):
@@ -46,7 +46,7 @@ class Cases(Script):
                 "--size", "96x64", "--guard", str(GUARD), "--image", image, *options)
 
     def fly(self, *options, out=None):
-        """Flies a mission that succeeds."""
+        """Flies a mission, which must succeed."""
         self.ask(*self.words(*options, out=out))
         self.flew(out or self.out)
 
@@ -56,7 +56,7 @@ class Cases(Script):
         self.has("isAlive", file=folder / "report.md")
 
     def fails(self, said, *words):
-        """Runs a command that fails with this text and without a Python traceback."""
+        """Runs a command that must fail with this text and without a Python traceback."""
         self.ask(*words, status=None)
         self.has(said)
         self.lacks("Traceback")
@@ -65,7 +65,7 @@ class Cases(Script):
         self.fails(said, *self.words(*options, **how))
 
     def simulator(self, *words, options=()):
-        """Runs a vehicle in the simulator, and a program of the ground station."""
+        """Runs the simulator with a vehicle, and a program of the ground station."""
         return (SIMULATOR, "--image", IMAGE, "--size", "96x64", "--out", self.out, "--guard",
                 str(GUARD), *options, "--", *words)
 
@@ -73,16 +73,17 @@ class Cases(Script):
         self.ask(*self.simulator(*words, options=options), **how)
 
     def replay(self, folder, *options, expected="the replay equals the recorded flight bit by bit"):
-        """Repeats the flight in a folder from its recording."""
+        """Replays the flight in a folder from its recording."""
         self.ask(SIMULATOR, "--out", "replay", "--replay", folder, *options)
         self.has(expected)
 
     def test_plain(self):
-        """The link is secure by default; only the user may read the recording and the key."""
+        """The link is encrypted by default, and only the user may read the recording and the
+        key."""
         self.make("run", f"IMAGE={IMAGE}", "SIZE=96x64", f"OUT={self.out}", build=BUILD)
         self.flew(self.out)
         self.has("121 corners test only a part of the core: make ip-test IP=vision")
-        # The ground waits first for the modem's set-up, then for the vehicle.
+        # The ground first waits until the modem is set up, then for the vehicle.
         steps = re.findall("modem ready on .* after [0-9]* ms|link connecting|link up, secure|"
                            "the UAV has .* s to answer", self.said)
         self.assertEqual([step.split()[0] for step in steps][:4], ["the", "modem", "link", "link"])
@@ -91,14 +92,14 @@ class Cases(Script):
             self.assertEqual(file.stat().st_mode & 0o777, 0o600)
 
     def test_open(self):
-        """A flight without encryption, by an option; its picture is noise, with some 29,700
+        """An option flies without encryption. The picture of this flight is noise, with some 29,700
         corners."""
         Path("noise.pgm").write_bytes(b"P5 640 480 255\n" + random.Random(1).randbytes(307200))
         self.fly("--open", "--image", self.out / "noise.pgm", "--size", "640x480")
         self.has('"key":""', file="flight.jsonl")
 
     def test_keys(self):
-        """Messages about unsuitable keys, from the ground, from the vehicle, and at their start."""
+        """Unsuitable keys cause messages from the ground, from the vehicle, and when they start."""
         os.umask(0o077)
         for name, text in ("a", KEY), ("b", KEY[:-1] + "e"), ("short", KEY[:10]):
             write(f"{name}.key", text + "\n")
@@ -117,8 +118,7 @@ class Cases(Script):
                        f"--XBeeAT.KeyFile={self.out}/{name}.key")
 
     def test_call(self):
-        """Calls from the command line through the modem, with the vehicle's key and with another
-        key."""
+        """Calls from the command line use the modem and the vehicle's key, or another key."""
         os.umask(0o077)
         for name, text in ("a", KEY), ("b", KEY[:-1] + "e"):
             write(f"{name}.key", text + "\n")
@@ -131,11 +131,13 @@ class Cases(Script):
         self.has("no answer from the vehicle 0x0001 at .* within 3 s: is it on, in reach")
 
     def test_loss(self):
-        """A flight with packet loss; its recording is replayed, as a user does to find a cause."""
+        """A flight with packet loss can be replayed from its recording, as a user does to find the
+        cause of a failure."""
         self.fly("--loss", "0.1", "--seed", os.environ.get("SEED", "1"))
         self.replay(self.out, "--from", "0.5", "--to", "0.51")
-        # Recordings that are cut short by a kill, altered, of another file, or replayed into their
-        # own folder are refused; waveforms need another build.
+        # The simulator rejects the replay of a recording that has been altered or belongs to
+        # another file, and a replay into the folder of the recording. Of a recording that a kill
+        # has cut, it replays the part that exists. Waveforms need another build.
         flight = Path("flight.jsonl").read_text()
         for folder, text in (("cut", flight[:len(flight) // 2]),
                              ("other", flight.replace('"up":"2b', '"up":"2c'))):
@@ -152,20 +154,21 @@ class Cases(Script):
         self.fails("cannot write waveforms", *replay, self.out, "--wave", "wave.fst")
 
     def test_cores(self):
-        """A mission with every core that has a part in missions."""
+        """A mission calls every core that has a program ground.py."""
         listed = re.findall(r"^\w+", (TREE / "ip/cores.list").read_text(), re.M)
         parts = [core for core in listed if (TREE / f"ip/{core}/ground.py").exists()]
         self.fly("--cores", " ".join(parts))
         self.has(*(rf"{part}\." for part in parts), file="report.md")
 
     def test_sensor(self):
-        """Camera pins and the vision core process the picture; the processor never reads it."""
+        """The picture comes from the camera's pins to the vision core; the processor never reads
+        it."""
         self.fly("--camera", "--cpu", "m3")
         self.has(r"camera.capture\(96, 64\)", file="report.md")
 
     def test_m3(self):
-        """A flight of the ARM binary; its replay shows the tasks of the program in the 2 ms around
-        the first event of a core."""
+        """A flight can run the ARM binary. Its replay shows the tasks of the program in the 2 ms
+        around the first event of a core."""
         self.fly("--cpu", "m3")
         self.has('"task":"UAV_radioTask"', file="events.jsonl")
         first = re.search(r'\{"events":\d*,"ns":(\d*)\d,"slot":[2-9]\}',
@@ -179,7 +182,7 @@ class Cases(Script):
                  file=f"{wave}.program.vcd")
 
     def patched(self, name, symbol, offset, value):
-        """Writes a copy of the firmware with other bytes at a symbol."""
+        """Writes a copy of the firmware that has other bytes at a symbol."""
         shutil.copy(FIRMWARE, name)
         there = f"{{unsigned char[{len(value)}]}}((char*)&{symbol} + {offset})"
         self.ask("gdb-multiarch", "-nx", "-batch", "--write", name, "-ex",
@@ -187,11 +190,12 @@ class Cases(Script):
         self.ask(BUILD / "sw/update/pack_update", "stamp", name)
 
     def test_other_chip(self):
-        """If the firmware was built for other registers of the vision core, it does not serve the
-        core and reports the reason to the ground."""
+        """If the firmware was built for other registers of the vision core, it does not offer the
+        core, and reports the reason to the ground."""
         lines = (BUILD / "gen/soc_cores.c").read_text().split("hw_contracts[")[1].split("\n")[1:]
         row = 1 + next(n for n, line in enumerate(lines) if '"vision"' in line)
-        self.patched("other.elf", "hw_contracts", 20 * row - 4, b"\xff" * 4)  # last word of a row
+        # last word of the row of this core
+        self.patched("other.elf", "hw_contracts", 20 * row - 4, b"\xff" * 4)
         self.refused("no object 'hwengine1'; vision: expected registers with hash 0xFFFFFFFF, as "
                      "the firmware was built for, got 0x.* in the chip: rebuild both from the same "
                      "ip/cores.list", "--cpu", "m3", "--firmware", "other.elf")
@@ -205,8 +209,8 @@ class Cases(Script):
         self.lacks("Traceback")
 
     def test_update(self):
-        """Updates of the firmware: a wrong file, a vehicle with another key, a loss of power during
-        the update."""
+        """Updates the firmware: with a wrong file, in a vehicle with another key, and with a loss
+        of power during the update."""
         self.update(TREE / "Makefile", "not a 32-bit ARM ELF file", status=None)
         flash = Path("flash.bin")
         self.pack(*VEHICLE, "other.key", flash)
@@ -231,7 +235,8 @@ class Cases(Script):
         self.bitstreams(stored)
 
     def a_stolen_key(self, flash, stored):
-        """Sends firmware signed with the second key, then a list of keys without the first."""
+        """Sends firmware that is signed with the second key, then a list of keys that does not
+        contain the first key."""
         signing = self.keys / "spare.key"
         key = TREE / "icesoc", "key", "--built", "--build", BUILD
         self.ask(*key, signing, "--signing")
@@ -248,7 +253,7 @@ class Cases(Script):
 
     def big_and_broken(self, flash):
         """Sends 256 KiB, which fill three sectors, within 30 s of air time. Then sends firmware
-        that crashes at its start; the vehicle returns to the previous firmware by itself."""
+        that crashes at its start; the vehicle must return to the previous firmware by itself."""
         self.ask(TREE / "tests/e2e/mission/big_firmware.sh", BUILD, self.out / "big.elf", "262144")
         self.pack(*VEHICLE, self.keys / "update.key", flash)
         with open(flash, "r+b") as file:
@@ -263,8 +268,9 @@ class Cases(Script):
                     "2 software, 0 watchdog", status=None)
 
     def bitstreams(self, stored):
-        """In the FPGA's flash there is no bitstream; a bitstream that the FPGA refuses; one that is
-        never confirmed; and one of full size."""
+        """Updates the bitstream of a vehicle whose FPGA flash is empty: with a file that is not a
+        bitstream, with one that the FPGA rejects, with one that is never confirmed, and with one of
+        full size."""
         self.update(BUILD / "firmware/uav.bin", "got no sync word", status=None)
         self.ask(STAND_IN, "new.bin", "2", "10000")
         damaged = bytearray(Path("new.bin").read_bytes())
@@ -280,9 +286,9 @@ class Cases(Script):
             self.update(bits, "runs and is confirmed")
 
     def test_slow(self):
-        """The machine is four times too slow: the ground follows the simulator's clock, so the
-        modem answers in the usual time."""
-        self.fly()  # writes the flight.json used below
+        """On a machine that is four times too slow, the ground follows the simulator's clock, so
+        the modem answers within the usual time."""
+        self.fly()  # this flight writes the flight.json that is used below
         Path("after.png").unlink()
         self.ask(SIMULATOR, "--flight", "flight.json", "--speed", "0.25", "--", "/usr/bin/python3",
                  CLIENTS / "mission.py", "flight.json", "--device", "{device}", "--frame",
@@ -305,7 +311,8 @@ class Cases(Script):
             process.wait()
 
     def test_stopped(self):
-        """Simulated time waits for a ground that is stopped for four seconds during the set-up."""
+        """If the ground is stopped for four seconds during the set-up, simulated time waits for
+        it."""
         with self.until("+++ at 9600 baud: OK", *self.simulator(
                 PING, DEVICE + "-t 300000", "3", "--XBeeAT.Trace=2")) as simulator:
             ground = int(subprocess.check_output(["pgrep", "-P", str(simulator.pid)]))
@@ -317,9 +324,9 @@ class Cases(Script):
         self.assertLess(float(seconds[1]), 5)
 
     def test_encrypted(self):
-        """Both modems have the same AES key: the controller sets one, the endpoint's -k the other.
-        Uses the C++11 library of the plugin, a C++ client, and a proxy that is converted to a
-        string and back."""
+        """Both modems have the same AES key: the controller sets the key of one modem, -k in the
+        endpoint that of the other. This case also uses the C++11 library of the plugin, a C++
+        client, and a proxy that is converted to a string and back."""
         key = "00112233445566778899AABBCCDDEEFF"
         self.simulate(PING, f"{DEVICE}-k {key} -p 2 -g {{guard}} -t 300000", "3",
                       options=("--modem-key", key))
@@ -327,7 +334,8 @@ class Cases(Script):
         self.lacks(key)
 
     def test_new_key(self):
-        """A key is replaced over the link; the old key then opens no session."""
+        """A key can be replaced over the link; after that, no session can be opened with the old
+        key."""
         os.umask(0o077)
         write("the.key", f"0x0001 {KEY}\n")
         self.simulate("/usr/bin/python3", CLIENTS / "change_key.py", "--device", "{device}",
@@ -339,12 +347,12 @@ class Cases(Script):
         self.lacks("000102030405", "the.key")
 
     def test_gateway(self):
-        """Two clients of stock Ice at once, through TCP."""
+        """Two clients of stock Ice call at the same time, through TCP."""
         self.simulate(TREE / "tests/e2e/mission/gateway.sh", BUILD, "{device}", "{guard}", self.out)
 
     def test_wire(self):
-        """A cable replaces the modems: with the Cortex-M3, again from the recording, and through
-        the gateway with the host build of the firmware."""
+        """A cable can replace the modems: with the Cortex-M3, in a replay of this flight, and
+        through the gateway with the host build of the firmware."""
         self.fly("--wire", "--cpu", "m3")
         self.replay(self.out)
         self.has(" 0 packets on the air")
@@ -353,9 +361,9 @@ class Cases(Script):
         self.refused("without modems and radio: leave out --loss", "--wire", "--loss", "0.1")
 
     def test_fleet(self):
-        """Four vehicles share one modem, and the first one runs the host build of the firmware;
-        then the flight is replayed. The first vehicle calls the second one, and reports the answer
-        to its ground station."""
+        """Four vehicles share one modem; the first of them runs the host build of the firmware. The
+        flight is then replayed. The first vehicle calls the second one and reports the answer to
+        its ground station."""
         vehicles = 1, 2, 3, 4
         Path("fleet.key").write_text("".join(f"0x000{at} {str(at) * 32}\n" for at in vehicles))
         os.chmod("fleet.key", 0o600)
@@ -377,22 +385,22 @@ class Cases(Script):
         self.flew(self.out / "a")
 
     def test_odd_names(self):
-        """The name of a folder has special characters of the shell, of make and of the
-        simulator."""
+        """The name of the output folder may contain special characters of the shell, of make and of
+        the simulator."""
         hit = self.out / "oops"
         odd = f"a'b \"c\" {{device}} {{out}}x `touch {hit}` $(touch {hit})"
         self.fly(out=self.out / odd)
         self.assertFalse(hit.exists())
 
     def test_mistakes(self):
-        """A refused start changes nothing in the folder. Picture, description, port and modem are
-        all wrong in turn; the last two without a simulator."""
+        """A start that fails changes nothing in the folder. Picture, description, port and modem
+        are wrong, one after the other; the last two cases do not start a simulator."""
         write("mine/report.md", "mine\n")
         shutil.copy("mine/report.md", ".")
         os.symlink(self.out / "mine/report.md", "calls.jsonl")
         write("bad.png", "this is not a picture\n")
         self.refused("expected a PNG, JPEG or PGM file", image="bad.png")
-        self.lacks("127.0.0.1")  # the address of a page precedes the rejected one
+        self.lacks("127.0.0.1")  # the address of the page would be printed before this error
         for name in "report.md", "calls.jsonl":
             self.assertEqual(Path(name).read_text(), "mine\n")
         for text in '"text"', "[", "[{}]":
@@ -407,7 +415,7 @@ class Cases(Script):
         self.fails("'flight.json': expected a flight .*; the member 'live' is missing", *client,
                    "none")
         write("flight.json", json.dumps({**flight, "live": False}))
-        _, silent = pty.openpty()  # a port that only this test has open
+        _, silent = pty.openpty()  # a port that no other test has open
         for device, said in (("/dev/no-such-port", "cannot open serial port '/dev/no-such-port'"),
                              (os.ttyname(silent), "no modem answers on")):
             self.fails(said, *client, device)
@@ -415,10 +423,10 @@ class Cases(Script):
     def test_interrupted(self):
         with self.until("setting the ground", *self.words()) as run:
             self.refused("another flight is in progress")
-            # Interrupts only the simulator; Ctrl-C would reach all processes.
+            # Interrupts only the simulator, because Ctrl-C would reach all processes.
             self.ask("pkill", "-INT", "-f", f"icesoc-sim.*{self.out}")
             self.assertEqual(run.wait(), 130, Path("log").read_text())
-        # The command that the failed mission prints shows the end of the flight.
+        # The failed mission prints a command that shows the end of the flight.
         span = re.search(f"^To write a waveform of its end: make run REPLAY='{self.out}' "
                          r"FROM=([\d.]+) TO=([\d.]+)$", Path("log").read_text(), re.M)
         self.replay(self.out, "--from", span[1], "--to", span[2],

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// memory_test: compares the memory controller with a reference memory under random traffic from all
-// ports; also tests a port before the calibration has ended.
+// memory_test: compares the memory controller with a reference memory, under random traffic from
+// all ports. It also tests a port before the calibration has ended.
 
 #include "VMemoryMcb2.h"
 #include "VMemoryMcb3.h"
@@ -22,7 +22,7 @@
 
 namespace {
 
-// A controller with `count` ports; `bits` is ADDR_WIDTH.
+// A memory controller with `count` ports and an ADDR_WIDTH of `bits`.
 template <class Module, unsigned count, unsigned bits = 27> struct Kind {
     static constexpr unsigned ports = count, width = bits;
     using Bench = MemoryBench<Module, count>;
@@ -43,7 +43,7 @@ protected:
         for (unsigned p = 0; p < ports; ++p)
             memory_.requesters.traffic(p) = traffic;
     }
-    // Runs the traffic, and adds the seed to the message of a failure.
+    // Runs the traffic. If it fails, adds the seed to the message.
     void run(uint64_t cycles) {
         ASSERT_NO_THROW(memory_.run(cycles); memory_.drain()) << "SEED=" << seed_;
         for (unsigned p = 0; p < ports; ++p)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A flip-flop that must keep its value when the gate of its clock closes: techmap for idle_proof.
-// In rest_proof, it must also have kept its value in the previous clock (REST), or its clock is
-// stopped (HELD).
+// Replacement for a flip-flop that must keep its value when the gate of its clock closes (techmap
+// of idle_proof). In rest_proof, the flip-flop must also have kept its value in the previous clock
+// (REST), or its clock is stopped (HELD).
 module \$dff (input CLK, input [WIDTH-1:0] D, output [WIDTH-1:0] Q);
     parameter WIDTH = 1;
     parameter CLK_POLARITY = 1'b1;
@@ -21,7 +21,8 @@ module \$dff (input CLK, input [WIDTH-1:0] D, output [WIDTH-1:0] Q);
 `endif
 endmodule
 
-// A memory that is not written while the gate is closed; its output is unconstrained.
+// Replacement for a memory, which must not be written while the gate is closed; its output is
+// unconstrained.
 module \$mem_v2 (input [RD_PORTS-1:0] RD_CLK, RD_EN, RD_ARST, RD_SRST,
                  input [RD_PORTS*ABITS-1:0] RD_ADDR, output [RD_PORTS*WIDTH-1:0] RD_DATA,
                  input [WR_PORTS-1:0] WR_CLK, input [WR_PORTS*WIDTH-1:0] WR_EN, WR_DATA,

@@ -1,37 +1,38 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # prove: module depth source-folder work-folder [yosys commands for parameters]
-# It is a shell script because it only calls Yosys, abc and CaDiCaL, each with a limit of processor
-# time.
+# It is a shell script because it only calls Yosys, abc and CaDiCaL, each with a limit of CPU time.
 #
 # 1. induction: no assertion ever fails. If the assertions are inductive, k-induction (MiniSat)
-#    shows this; otherwise property-directed reachability finds and checks the inductive invariant
+#    proves this; otherwise property-directed reachability finds and checks an inductive invariant
 #    (z3's k-induction did not end on 64-bit data);
-# 2. bounded: if step 1 does not prove it, the shortest counterexample of `depth` clocks (BMC);
+# 2. bounded: if step 1 finds no proof, bounded model checking (BMC) looks for the shortest
+#    counterexample within `depth` clocks;
 # 3. cover: every cover statement is reached within 4 * `depth` clocks.
 #
-# PROVE_PDR: switches of pdr, if others are faster.
-# PROVE_STEP=k: the assertions are inductive over k clocks, but are too many for MiniSat: CaDiCaL
-#   does the induction step.
+# PROVE_PDR: other options for pdr, if the proof is faster with them.
+# PROVE_STEP=k: the assertions are inductive over k clocks, but there are too many for MiniSat, so
+#   CaDiCaL does the induction step.
 # PROVE_BOUNDED=1: the proof is only bounded.
-# PROVE_READ: more words of read_verilog: defines, files.
-# PROVE_CORE: the name of a core and its files: the core in idle_proof.
+# PROVE_READ: additional arguments of read_verilog: defines, files.
+# PROVE_CORE: the name of a core and its files, for the proof of a core in idle_proof.
 # PROVE_SCRIPT: Yosys script that changes the flattened design; it may use idle_registers.v.
-# PROVE_MUTANT: Yosys commands to run before flattening (tools/icesoc/mutants/drawn.py); there is no
-#   trace then.
+# PROVE_MUTANT: Yosys commands to run before flattening (tools/icesoc/mutants/drawn.py); without a
+#   trace.
 #
-# Leaves in <work> the parts of Yosys' script: state.ys, from modules to flip-flops, and gates.ys,
-# from flip-flops to AIGER's gates. A failed assertion leaves <work>/trace.vcd. The module may
-# instantiate modules of its folder, of bus/, hdl/system/ and hdl/cdc/; for a proof in
-# testbench/sim/, the modules of hdl/ddr/ replace those of its folder.
+# Writes to <work> the parts of the Yosys script: state.ys converts modules to flip-flops, and
+# gates.ys converts flip-flops to AIGER's gates. If an assertion fails, it also writes
+# <work>/trace.vcd. The module may instantiate modules of its folder, of bus/, hdl/system/ and
+# hdl/cdc/. For a proof in testbench/sim/, the modules of hdl/ddr/ are used instead of those of its
+# folder.
 set -eu
 here=$(dirname "$(readlink -f "$0")")
 module=$1 depth=$2 source=$3 work=$4 parameters=${5:-}
-limit=${PROVE_SECONDS:-300} # CPU seconds; a proof that takes longer is an error
+limit=${PROVE_SECONDS:-300} # limit of CPU time, s; a proof that takes longer is an error
 mkdir -p "$work"
 cd "$work"
 rm -f ./*.aig ./*.map ./*.aiw ./*.vcd
-# A tree may lack one of these folders.
+# One of these folders may not exist.
 file=$(find "$source/bus" "$source/hdl" "$source/ip" "$source/testbench/sim" -name "$module.v" \
     2>/dev/null) || true
 generated=''
@@ -46,14 +47,14 @@ folders="$source/bus $source/hdl/system $source/hdl/cdc $near"
 [ -z "$generated" ] || folders=$source/bus alone=$generated
 files=$(for folder in $folders; do ls "$folder"/*.v || true; done | sort -u)
 files="$files $alone"
-# Several clocks (a proof with `gclk`): every edge is a separate input.
+# In a proof with several clocks (`gclk`), every edge is a separate input.
 clocks=async2sync
 ! grep -q gclk "$file" || clocks='memory_map; clk2fflogic'
 read=${PROVE_READ:-}
 [ -z "${PROVE_CORE:-}" ] || {
     core=${PROVE_CORE%% *}
     own=${PROVE_CORE#* } # its files
-    rules=$source/ip/$core/idle_rules.vh # invariants of a core in VHDL
+    rules=$source/ip/$core/idle_rules.vh # invariants of a core that is written in VHDL
     read="-DCORE=$core $own $source/hdl/ddr/npi_stream.v"
     # shellcheck disable=SC2086
     ! grep -q 'memory_ports\|npi_addr_o' $own || read="-DMEMORY $read"
@@ -64,9 +65,9 @@ flat=''
     flat="script $PROVE_SCRIPT"
     cp "$here/idle_registers.v" .
 }
-# -nosdff -nodffe: AIGER has only plain flip-flops. The outputs of the module are removed, because
-# abc would treat them as properties. Undefined values, such as those of a flip-flop without a
-# clock, become unconstrained, because newer AIGER backends refuse them.
+# -nosdff -nodffe: AIGER has only plain flip-flops. The module's outputs are removed, because abc
+# would treat them as properties. Undefined values, such as the value of a flip-flop without a
+# clock, become unconstrained, because newer AIGER backends reject them.
 cat >gates.ys <<'END'
 memory_map; opt -full; setundef -anyseq; techmap; opt -fast -nosdff -nodffe
 dfflegalize -cell $_DFF_P_ 01; delete -output w:*
@@ -129,7 +130,8 @@ failed() {
     echo "$module: $2" >&2
     exit 1
 }
-replay() { # replay: smtbmc replays abc's counterexample, which gives names and a waveform
+# replay: smtbmc replays abc's counterexample, which gives the names of signals and a waveform
+replay() {
     awk -v n="$(head -1 assert.aig | cut -d' ' -f3)" 'NR == 1 { print "1" }
         { print NR == 1 ? $0 : substr($0, 1, n) }' assert.aiw >replay.aiw 2>/dev/null || true
     timeout 100 yosys-smtbmc -s z3 --unroll --noprogress --aig assert.map:replay.aiw \
@@ -137,19 +139,20 @@ replay() { # replay: smtbmc replays abc's counterexample, which gives names and 
     grep -E 'Assert failed' trace.log || true
     [ ! -e trace.vcd ] || echo "$module: trace: $work/trace.vcd" >&2
 }
-# abc commands log
+# limited command log: runs abc with a limit of CPU time
 limited() { (ulimit -t "$limit" && exec "$@"); }
 abc() { limited yosys-abc -c "$1" >"$2" 2>&1 || true; }
-# step clocks: starting in any state (no initial values), searches for a failure after this number
-# of clocks without a failure. Exit status 20: not found. The assumptions hold in all clocks.
+# step clocks: searches, from any state (no initial values), for a failure after this number of
+# clocks without a failure. Exit status 20 means that there is none. The assumptions hold in all
+# clocks.
 step() {
     abc "read_aiger assert.aig; fold; strash; orpos; frames -F $(($1 + 1)); comb;
         write_blif frames.blif" step.log
-    # The first outputs of the model show whether an assertion fails in each clock. They are joined
-    # into a single output, which is 1 if an assertion failed in the last clock, and in no earlier
-    # one.
+    # The first outputs of the model show for each clock whether an assertion fails. They are
+    # combined to a single output, which is 1 if an assertion failed in the last clock and in no
+    # earlier clock.
     awk -v bads=$(($1 + 1)) '
-        /\\$/ { # a line that continues on the next line
+        /\\$/ { # a line that is continued on the next line
             sub(/\\$/, "")
             line = line $0
             next
@@ -170,7 +173,8 @@ step() {
     abc "read_blif step.blif; strash; write_cnf step.cnf" step.log
     limited cadical -q step.cnf >step.log 2>&1
 }
-# bounded clocks [seconds]: does an assertion fail within them, as far as this time allows?
+# bounded clocks [seconds]: searches for a failed assertion within this number of clocks, or as many
+# as it can check in this time
 bounded() {
     abc "read_aiger assert.aig; fold; strash; bmc3 -F $1 ${2:+-T $2};
         write_cex -a assert.aiw" bounded.log
@@ -204,7 +208,7 @@ else
         status=0
         step "$clocks_of_step" || status=$?
         [ $status -ne 20 ] || carried="induction step of $clocks_of_step clock(s)"
-    elif [ "$clocks" = async2sync ]; then # for inductive assertions this takes a second
+    elif [ "$clocks" = async2sync ]; then # this takes only a second if the assertions are inductive
         limited yosys -q -l induct.log induct.ys >/dev/null 2>&1 || true
         ! grep -q 'Induction step proven: SUCCESS' induct.log || {
             bounded 2 # the base case begins after the first clock
@@ -212,14 +216,14 @@ else
         }
     fi
     if [ -z "$carried" ]; then
-        bounded "$depth" 5 # if there is a failure, this finds it in seconds; pdr may take minutes
-        # sat: scorr alone may find the output constant; newer versions of abc then have nothing to
-        # prove
+        bounded "$depth" 5 # an existing failure is found in seconds here; pdr may take minutes
+        # sat: scorr may already find that the output is constant; newer versions of abc then have
+        # nothing left to prove
         abc "read_aiger assert.aig; fold; strash; scorr -F 2; pdr ${PROVE_PDR:-};
             write_cex -a assert.aiw; sat" induction.log
         grep -q 'Property proved\|UNSATISFIABLE' induction.log || {
             mv assert.aiw deep.aiw 2>/dev/null || true
-            bounded "$depth" # the shortest counterexample
+            bounded "$depth" # looks for the shortest counterexample
             mv deep.aiw assert.aiw 2>/dev/null || true
             failed induction.log "not proven (PROVE_SECONDS=$limit)"
         }
@@ -234,14 +238,16 @@ covers=$(grep -c . cover.names || true)
     echo "$module: no cover statement: nothing shows that the properties are reached" >&2
     exit 1
 }
-solve="bmc3 -g -F $((depth * 4))" # -g selects glucose, which takes a quarter of the time if a cover
-                                  # is deep
+# -g selects the solver glucose, which needs a quarter of the time for deep covers
+solve="bmc3 -g -F $((depth * 4))"
 [ "$(latches cover.aig)" -gt 0 ] || solve=sat
-# older versions of abc need -s, or they drop the flip-flops of a cone; newer versions have no -s
+# older versions of abc need -s, otherwise they drop the flip-flops of a cone; newer versions have
+# no -s
 cone=cone
 ! yosys-abc -c 'cone -h' 2>&1 | grep -q -- '^.*-s  ' || cone='cone -s'
 commands='' index=0
-while [ "$index" -lt "$covers" ]; do # one at a time: bmc3 -a of several outputs can crash
+# one output at a time, because bmc3 -a can crash with several outputs
+while [ "$index" -lt "$covers" ]; do
     commands="$commands echo cover $index; read_aiger cover.aig; fold; strash;
         $cone -O $index; $solve;"
     index=$((index + 1))
@@ -258,7 +264,7 @@ while read -r name; do
 done <cover.names
 [ "$missing" -eq 0 ] || exit 1
 echo "$module: $covers covers reached"
-# user and system time of this script and its children: `make proofs` adds them up
+# CPU time of this script and its children; `make proofs` adds these times up
 times >times.txt
 awk 'function s(t) { split(t, a, /[ms]/); return 60 * a[1] + a[2] } { n += s($1) + s($2) }
     END { printf "%.1f\n", n }' times.txt >cpu

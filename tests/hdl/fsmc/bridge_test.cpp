@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// bridge_test: tests the FSMC bridge between the STM32's FSMC, a bus slave and a memory; slave and
-// memory stall, fail and hang.
+// bridge_test: tests the FSMC bridge between the STM32's FSMC, a bus slave and a memory. Slave and
+// memory may stall, fail or hang.
 
 #include "VFsmcBridge.h"
 #include "traffic.h"
@@ -13,10 +13,10 @@ protected:
     void SetUp() override {
         RecordProperty("seed", static_cast<int>(testSeed()));
         ASSERT_EQ(b_.init(), FSMC_OK);
-        doorbell(); // its last write is posted
+        doorbell(); // waits for the last write of init(), which is posted
     }
     static uint32_t at(uint32_t word) { return control + 4 * word; }
-    // Waits by a register access, after which all writes have reached the memory.
+    // Reads a register. When this access ends, all earlier writes have reached the memory.
     void doorbell() { b_.master.read32(at(0)); }
 
     BridgeBench<VFsmcBridge> b_{testSeed()};
@@ -51,9 +51,9 @@ TEST_F(Bridge, ADoorbellMakesWritesVisibleAndReadsFresh) {
     EXPECT_EQ(fsmc_.read16(ddr + 0x100), 0xBE11);
 }
 
-// The read begins one HCLK after NWE's edge, sooner than the driver's BUSTURN allows. If the
-// write's synchroniser is late and the read's is not (cdc.test_fsmc_pins), the read still returns
-// the written value.
+// The read begins one HCLK cycle after NWE's edge, sooner than the driver's BUSTURN allows. The
+// read must return the written value even if the synchroniser of the write is late and that of the
+// read is not (cdc.test_fsmc_pins).
 TEST_F(Bridge, ARegisterReadRightBehindAWriteComesAfterIt) {
     Random random(testSeed());
     FSMC_setHclk(120000000);
@@ -71,7 +71,8 @@ TEST_F(Bridge, ARegisterReadRightBehindAWriteComesAfterIt) {
         fsmc_.idle(random.below(8));
         fsmc_.write32(at(word), value);
         EXPECT_EQ(fsmc_.read32(at(word)), value) << "SEED=" << testSeed() << " access " << i;
-        FSMC_streamWrite(place, &last, 1); // FSMC_streamWrite reads a register at its end
+        // FSMC_streamWrite reads a register at its end, so the write must have reached the memory
+        FSMC_streamWrite(place, &last, 1);
         EXPECT_EQ(written(), last) << "SEED=" << testSeed() << " stream " << i;
     }
     EXPECT_EQ(b_.errors, 0u);
@@ -88,7 +89,7 @@ TEST_F(Bridge, AnErrorOfTheSlaveIsReportedWithItsPlace) {
     EXPECT_EQ(b_.errors, 2u);
     EXPECT_EQ(b_.errorAddr, 800u);
     EXPECT_TRUE(b_.errorWrite);
-    fsmc_.read32(control + 0x2000); // beyond the 64 slots
+    fsmc_.read32(control + 0x2000); // an address beyond the 64 slots
     EXPECT_GE(b_.errors, 3u);
 }
 
@@ -103,22 +104,22 @@ TEST_F(Bridge, AHungSlaveEndsInAnErrorAndTheBridgeGoesOn) {
     EXPECT_EQ(b_.errors, 1u);
 }
 
-// NWAIT of NE2 is off, against the rules: a write during an earlier access to a slow slave is lost,
-// and reported.
+// NWAIT is off for NE2, against the rules of the bridge. A write during an earlier access to a slow
+// slave is then lost, and the loss is reported.
 TEST_F(Bridge, ARegisterWrittenTooEarlyIsLostAndReported) {
     const uint32_t bcr2 = fsmc::registersAt + 8, bcr = fsmc_.read32(bcr2);
     b_.slave.words[41] = 0x99998888;
     for (bool behindWrite : {true, false}) {
         unsigned errors = b_.errors;
-        b_.slave.hung = true; // the slave hangs for less than the time-out
+        b_.slave.hung = true; // the slave hangs, but for less than the time-out
         fsmc_.write32(bcr2, bcr & ~fsmc::bcrAsyncWait);
-        // The word in progress would get the later data as its high half; here both halves are
-        // equal.
+        // The word that is being transferred would get the later data as its high half, so both
+        // halves are equal here.
         if (behindWrite)
             fsmc_.write32(at(40), 0x5A5A1234);
         else
             fsmc_.read16(at(40));
-        fsmc_.idle(30); // the slave has received the word
+        fsmc_.idle(30); // after this time the slave has received the word
         EXPECT_EQ(b_.errors, errors);
         fsmc_.write16(at(41), 0x5A5A);
         fsmc_.idle(30);
@@ -145,8 +146,8 @@ TEST_F(Bridge, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
     EXPECT_EQ(fsmc_.read16(ddr + 0x80), 0);
 }
 
-// Writes that find no room are released like reads, with an error for each; after the last entry
-// they are lost.
+// Writes for which there is no room are released with an error each, like reads. When the last
+// entry is also full, writes are lost.
 TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     b_.keepEvents();
     const uint32_t& event = b_.slave.words[b_.slave.clearWord];
@@ -154,7 +155,7 @@ TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     b_.memory.hold(true);
     unsigned done = 0;
     for (; b_.errors == 0 && done < 32; ++done)
-        fsmc_.write16(ddr + 8 * done, value(done)); // one address for each write
+        fsmc_.write16(ddr + 8 * done, value(done)); // each write has an address of its own
     const unsigned before = done - 1;
     EXPECT_EQ(before, 14u) << "of 16 places two are kept";
     EXPECT_EQ(b_.errorAddr, 0x3FFu);
@@ -163,7 +164,7 @@ TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     for (; done < before + 4; ++done)
         fsmc_.write16(ddr + 8 * done, value(done));
     EXPECT_EQ(b_.errors, 4u);
-    fsmc_.idle(8); // the last error has been counted
+    fsmc_.idle(8); // after this time the last error has been counted
     b_.memory.hold(false);
     for (unsigned i = 0; i < done; ++i)
         EXPECT_EQ(fsmc_.read16(ddr + 8 * i), i < before + 2 ? value(i) : 0) << "write " << i;
@@ -173,8 +174,8 @@ TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     EXPECT_EQ(b_.errors, 4u);
 }
 
-// Registers wait for posted writes: a memory that does not take them is reported, and the register
-// access continues.
+// Accesses to registers wait for posted writes. If a memory does not accept these writes, this is
+// reported, and the access to the register continues.
 TEST_F(Bridge, AHungMemoryDoesNotKeepRegistersAway) {
     b_.memory.hold(true);
     fsmc_.write16(ddr + 0x40, 0x1234);
@@ -218,8 +219,8 @@ TEST_F(Bridge, AnAccessThatIsGivenUpLeavesNothingHalfDone) {
     EXPECT_EQ(b_.errors, 0u);
 }
 
-// The fastest timing, without NWAIT: the data is correct if the memory keeps up; otherwise the
-// bridge reports the loss.
+// With the fastest timing and without NWAIT, the data is correct if the memory keeps up; otherwise
+// the bridge reports the loss.
 TEST_F(Bridge, StreamsAreRightHoweverSlowTheMemoryIs) {
     Random random(testSeed());
     FSMC_setHclk(120000000);
@@ -243,8 +244,8 @@ TEST_F(Bridge, StreamsAreRightHoweverSlowTheMemoryIs) {
     EXPECT_GT(repeated, 0u) << "a slow one does not, and that was seen";
 }
 
-// The edges of NWE are 33.3 ns apart at 120 MHz. Other ratios of the clocks place the edges at
-// every phase of the clock.
+// At an HCLK of 120 MHz, edges of NWE are 33.3 ns apart. With other ratios of the clocks, the edges
+// come at every phase of the bridge's clock.
 TEST(BridgeRatios, WritesOfAStreamAreTakenAtEveryPhase) {
     Random random(testSeed());
     for (auto [hclk, clk] :

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// corners_test: tests the bridge with real wires: pins with separate delays and skew, in each
-// corner, at several HCLK, with both interpretations of the moment at which the FSMC samples NWAIT.
+// corners_test: tests the bridge with real wires, whose pins have separate delays and skew, in each
+// corner, at several frequencies of HCLK, and with both interpretations of the time at which the
+// FSMC samples NWAIT.
 
 #include "VFsmcBridge.h"
 #include "pin_delays.h"
@@ -9,7 +10,7 @@
 
 namespace {
 
-// Runs each case in a separate bench, with its name in every message.
+// Runs each case in a bench of its own; each message contains the name of the case.
 template <class Case> void inEveryCorner(double stall, Case&& run) {
     for (unsigned corner = 0; corner < std::size(fsmcCorners); ++corner)
         for (unsigned hclk : {60u, 100u, 120u})
@@ -37,7 +38,7 @@ TEST(Corners, NoAccessIsLostWithTheDriversTiming) {
         });
 }
 
-// NOE falls after the address phase, so NWAIT of a read is late; DATAST is therefore 6.
+// NOE falls after the address phase, so NWAIT of a read comes late. Therefore DATAST is 6.
 TEST(Corners, EveryModeWithTimeForNwait) {
     for (FSMC_Mode mode : {FSMC_MODE_A, FSMC_MODE_2, FSMC_MODE_B, FSMC_MODE_C, FSMC_MODE_D})
         inEveryCorner(0.9, [mode](BridgeBench<VFsmcBridge>& b, unsigned hclk) {
@@ -65,7 +66,7 @@ TEST(Corners, StreamsAreRightAtFullSpeed) {
         for (unsigned i = 0; i < count; ++i)
             EXPECT_EQ(b.memory.byte(0x400 + 2 * i) | b.memory.byte(0x401 + 2 * i) << 8, out[i])
                 << i;
-        if (hclk == 100) { // shares of 25 million accesses per second
+        if (hclk == 100) { // fraction of 25 million accesses per second
             EXPECT_GT(write * 4, 0.99);
             EXPECT_GT(read * 4, 0.95);
         }

@@ -18,8 +18,8 @@ struct Mode {
     const char* name;
     FSMC_Bank bank;
 };
-// mode, mode of writes, PSRAM, muxed, wait, wait high, BUSTURN, {ADDSET, ADDHLD, DATAST} of reads,
-// of writes
+// members of FSMC_Bank: mode, mode of writes, PSRAM, muxed, wait, wait high, BUSTURN, {ADDSET,
+// ADDHLD, DATAST} of reads, the same of writes
 const Mode plainModes[] = {
     {"1", {FSMC_MODE_1, {}, 0, 0, 1, 0, 1, {2, 1, 4}, {}}},
     {"1 slow", {FSMC_MODE_1, {}, 0, 0, 1, 0, 15, {15, 1, 20}, {}}},
@@ -43,7 +43,7 @@ template <class Bridge> void trafficIn(const Mode& mode, unsigned hclk, unsigned
                  " : " + std::to_string(clk) + ", SEED=" + std::to_string(testSeed()));
     BridgeBench<Bridge> b(testSeed(), 0.2, hclk, clk);
     Random random(testSeed() + hclk);
-    const uint32_t page = random.below(64); // page of the memory, as stored in the system slot
+    const uint32_t page = random.below(64); // memory page that the system slot stores
     b.top.page_i = static_cast<uint8_t>(page);
     b.master.pauseWrites(random.chance(0.5));
     ASSERT_EQ(b.init(mode.bank), FSMC_OK);
@@ -55,7 +55,7 @@ TEST(Modes, EveryAsynchronousModeAtEveryRatio) {
         for (auto [hclk, clk] :
              {std::pair(120, 100), {100, 100}, {1000, 997}, {997, 1000}, {60, 100}, {168, 100}}) {
             if (hclk == 168 && mode.bank.read.addset < 2)
-                continue; // 4 clocks between writes require ADDSET 2 at 168 MHz
+                continue; // at 168 MHz, 4 clocks between two writes require an ADDSET of 2
             trafficIn<VFsmcBridge>(mode, hclk, clk);
         }
 }
@@ -73,7 +73,7 @@ TEST(Modes, NwaitActiveHighAndTheLargestBuffers) {
     }
 }
 
-// An STM32F407 pauses between the halves of a written word; RM0033 states that it does not.
+// An STM32F407 pauses between the halves of a written word; according to RM0033 there is no pause.
 TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0, 120, 100);
     FSMC_Bank bank = {FSMC_MODE_A, FSMC_MODE_A, 0, 0, 1, 0, 1, {2, 1, 4}, {2, 1, 4}};
@@ -91,17 +91,18 @@ TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
     EXPECT_EQ(hclksOfAWord(4, false), hclksOfAWord(1, false));
 }
 
-// A doorbell right after a read drops data that is read ahead. The data may be in a buffer, on its
-// way, or even requested in that clock; all of it is old. At 168 MHz the pins are fast enough to
-// have the doorbell's address already (here it equals the address of the block in its window) while
-// the memory's side still sees the read.
+// A doorbell right after a read discards data that was read ahead. This data is old, whether it is
+// in a buffer, on its way, or only requested in that clock. At 168 MHz the pins can already have
+// the doorbell's address (here equal to the address of the block in its window) while the memory's
+// side still sees the read.
 TEST(Modes, WhatADoorbellDropsOnItsWayIsNotTakenForFresh) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0.1, 168, 100);
     ASSERT_EQ(b.init(plainModes[0].bank), FSMC_OK);
     Random random(testSeed());
     for (int i = 0; i < 1000 && !HasFailure(); ++i) {
-        // Two misses fetch a block. When it is complete, the next block is requested, near the end
-        // of the second read. With a slow memory, this block is still arriving at the doorbell.
+        // The second of two misses fetches a block. When the block is complete, the next block is
+        // requested, near the end of the second read. If the memory is slow, the next block is
+        // still arriving when the doorbell comes.
         const bool slow = random.chance(0.5);
         b.memory.setStall(slow ? 0.7 : 0.1);
         const uint32_t block = 64 * random.below(60), next = block + 64;
@@ -142,7 +143,7 @@ TEST(Modes, TheDriverRefusesWhatTheManualForbids) {
     EXPECT_THROW(b.master.read16(control), FsmcError) << "bank 2 is off: nothing was written";
 }
 
-// The model is strict: it throws if a real STM32 would behave otherwise, or fail.
+// The model is strict: it throws if a real STM32 would behave in another way, or would fail.
 TEST(Modes, TheModelRefusesWhatTheManualForbids) {
     BridgeBench<VFsmcBridge> b(testSeed());
     FsmcMaster& m = b.master;

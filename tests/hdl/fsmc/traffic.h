@@ -10,7 +10,7 @@
 
 constexpr uint32_t ddr = MAP_DDR_WINDOW, control = MAP_CONTROL_WINDOW;
 
-// Stores each byte that was sent to the memory.
+// Bytes that were sent to the memory, for comparison.
 struct Written {
     std::map<uint32_t, uint8_t> bytes;
 
@@ -26,19 +26,19 @@ struct Written {
     }
 };
 
-// Makes accesses of all widths to both windows and to another chip. Accesses to memory are runs
-// with jumps between them. Accesses to registers also follow one another without a pause, so that
-// each write waits for the previous one.
+// Makes accesses of all widths to both windows and to another chip. Accesses to memory are
+// sequences at consecutive addresses, with jumps between the sequences. Accesses to registers also
+// follow each other without a pause, so that each write must wait for the previous one.
 template <class Bridge>
 void traffic(BridgeBench<Bridge>& b, uint64_t seed, int accesses, uint32_t page = 0) {
     FsmcMaster& m = b.master;
-    for (uint32_t reg : {0xA0000000u, 0xA0000004u, 0xA0000104u}) // NE3, another chip, with the
-                                                                 // timing of NE1
+    // NE3 belongs to another chip and gets the timing of NE1
+    for (uint32_t reg : {0xA0000000u, 0xA0000004u, 0xA0000104u})
         m.write32(reg + 0x10, m.read32(reg));
     Random random(seed);
     Written memory;
     std::map<uint32_t, uint32_t> words;
-    uint32_t places[16], place = 0; // anywhere in the window
+    uint32_t places[16], place = 0; // random places in the window
     for (uint32_t& each : places)
         each = random.below(0x3FF00) << 8;
     for (int i = 0; i < accesses && !testing::Test::HasFailure(); ++i) {
@@ -83,7 +83,7 @@ void traffic(BridgeBench<Bridge>& b, uint64_t seed, int accesses, uint32_t page 
         if (random.chance(0.1))
             m.idle(random.below(20));
     }
-    m.read32(control); // after this read, all writes have reached the memory
+    m.read32(control); // when this read ends, all writes have reached the memory
     EXPECT_EQ(b.errors, 0u);
     for (auto [at, v] : memory.bytes)
         EXPECT_EQ(b.memory.byte(page | at), v) << std::hex << at;

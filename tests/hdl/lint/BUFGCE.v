@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// BUFGCE: ports of the clock buffer with enable of Xilinx (UG382), for lint.
+// BUFGCE: declares the ports of Xilinx's clock buffer with enable (UG382), for lint.
 
 (* blackbox *)
 module BUFGCE (

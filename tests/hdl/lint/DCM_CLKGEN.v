@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// DCM_CLKGEN: the ports of Spartan-6's clock generator (UG382) that core_clock.v connects, for
-// lint.
+// DCM_CLKGEN: declares those ports of the Spartan-6 clock generator (UG382) that core_clock.v
+// connects, for lint.
 
 (* blackbox *)
 module DCM_CLKGEN #(

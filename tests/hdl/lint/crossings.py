@@ -1,14 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""crossings: finds flip-flops that see another clock, or a pin, other than through hdl/cdc.
+"""crossings: finds flip-flops that depend on another clock or on a pin, other than through hdl/cdc.
 
 Usage: crossings.py TOP CLOCK SOURCE GENERATED WORK PARAMETERS [SYNCHRONOUS-INPUT...]
 
-Yosys runs the commands PARAMETERS, then flattens TOP except for the modules of hdl/cdc. A register
-of CLOCK may see registers of CLOCK, the inputs named and outputs of hdl/cdc for that clock. A
-register clocked by a pin may see pins, which change together with this pin, and registers that are
-clocked by a pin. Asynchronous resets are not data. Exit status 1: a crossing bypasses hdl/cdc; each
-is listed.
+Yosys runs the commands PARAMETERS, then flattens TOP, but keeps the modules of hdl/cdc. A register
+of CLOCK may depend on registers of CLOCK, on the listed inputs, and on outputs of hdl/cdc for
+CLOCK. A register that a pin clocks may depend on pins, because they change together with this pin,
+and on registers that a pin clocks. Asynchronous resets do not count as data. Exit status 1 means
+that a crossing bypasses hdl/cdc; each such crossing is listed.
 """
 
 import json
@@ -24,8 +24,8 @@ NO_DATA = {"CLK", "ARST", "ALOAD", "RD_CLK", "WR_CLK"}
 
 
 def cdc_clock(kind, port, connections):
-    """Returns the net of the clock that a port of an hdl/cdc module belongs to; None if there is
-    none."""
+    """Returns the net of the clock to which a port of an hdl/cdc module belongs; None if it belongs
+    to no clock."""
     if "async" in port or port in CLOCKS:
         return None
     if kind == "async_fifo":
@@ -37,7 +37,7 @@ def cdc_clock(kind, port, connections):
 
 
 def flattened(top, source, generated, work, parameters):
-    """Returns the flattened module TOP from Yosys' JSON."""
+    """Returns the flattened module TOP from the JSON that Yosys writes."""
     hdl = [source / "hdl" / part for part in ("fsmc", "ddr", "modem", "system", "cdc", "")]
     folders = [generated, *(source / "ip").glob("*/"), source / "bus", *hdl, source / "synth"]
     file = next(f / (top + ".v") for f in folders if (f / (top + ".v")).is_file())
@@ -69,8 +69,9 @@ def names_of(module):
 
 
 class Nets:
-    """Sources of a module's nets. clock: the clock of each net; comb: the nets on which each net
-    depends; sinks: (name, clock, nets) of each register and each input of a module of hdl/cdc."""
+    """The connections of a module's nets. clock: the clock of each net; comb: the nets on which
+    each net depends combinationally; sinks: (name, clock, nets) of each register and of each input
+    of a module of hdl/cdc."""
 
     def __init__(self, module, main_clock, synchronous):
         self.names, self.clock, self.comb, self.sinks = names_of(module), {}, {}, []
@@ -105,7 +106,8 @@ class Nets:
 
     def add_register(self, name, nets, ins):
         """Adds a register or a memory."""
-        own = (nets.get("CLK") or nets["WR_CLK"] or ["x"])[0]  # a ROM has no clock
+        # the memory is a ROM, which has no clock
+        own = (nets.get("CLK") or nets["WR_CLK"] or ["x"])[0]
         self.sinks.append((name, own, [b for p in ins - NO_DATA - {"RD_ADDR"} for b in nets[p]]))
         for bit in nets.get("Q", nets.get("RD_DATA", [])):
             if "RD_ADDR" in nets:
@@ -114,8 +116,8 @@ class Nets:
                 self.clock[bit] = own
 
     def origins(self, bit):
-        """Returns the registers and pins on which a net depends, as {clock: one of them}; each net
-        is visited once."""
+        """Returns the registers and pins on which a net depends, as {clock: one register or pin}.
+        Visits each net once."""
         seen, stack = self.seen, [bit]
         while stack:
             b = stack[-1]
@@ -136,7 +138,7 @@ class Nets:
         return seen[bit]
 
     def bad(self, main_clock):
-        """Returns the sinks that depend on forbidden sources."""
+        """Returns the sinks that depend on a source that is not allowed."""
         return {
             f"{name} ({self.names.get(own, own)}) sees {through} ({self.names.get(of, of)})"
             for name, own, data in self.sinks

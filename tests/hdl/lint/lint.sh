@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # lint: module source-folder generated-folder. Runs Verilator -Wall, Icarus, Yosys' check, and the
-# search for latches. A variant is a parameter and its value, or several of them separated by
-# commas; variants in `refused` must not elaborate.
+# search for latches. A variant is a parameter with its value, or several of them separated by
+# commas. The elaboration of the variants in `refused` must fail.
 set -eu
 module=$1 source=$2 gen=$3
 folders=$source/bus
@@ -53,8 +53,8 @@ verilate() { # variant [switches]
     verilator --lint-only -Wall ${2-} $search --top-module "$module" \
         $(for p in $(each "$1"); do echo "-G$p"; done) "$file"
 }
-# elaboration VARIANT: prints Yosys' commands for one variant; modules below the top are found by
-# name.
+# elaboration VARIANT: prints the commands with which Yosys elaborates one variant. Modules below
+# the top are found by their names.
 elaboration() { # variant
     set_parameter=$(for p in $(each "$1"); do echo "-set ${p%%=*} ${p#*=}"; done)
     echo "${set_parameter:+chparam $(echo $set_parameter) $module;}"
@@ -68,15 +68,15 @@ for variant in '' $variants; do
     checks="$checks log variant $(each "$variant"); design -load read; $(elaboration "$variant")
         proc; opt; check -assert; select -assert-none t:\$dlatch;"
 done
-# The design is also linted with cover points, which coverage builds contain; without cover points,
-# each signal must still be used.
+# The design is also linted with the cover points of coverage builds. It is linted without them as
+# well, because each signal must be used even without cover points.
 verilate '' '-DCOVER_POINTS --coverage --assert -Wno-SYNCASYNCNET'
 # One process for all variants, because starting Yosys takes longer than a variant.
 yosys -q -p "$read_file design -save read; $checks"
 for variant in $refused; do
     for tool in verilate elaborate; do
         said=$($tool "$variant" 2>&1) && { echo "$module: $tool takes $variant" >&2; exit 1; }
-        # the variant must be refused by the module's own error message
+        # the variant must be rejected with the error message of the module itself
         echo "$said" | grep -q "$module: [A-Z].*[0-9][.][.][0-9]" || {
             echo "$said" >&2
             exit 1

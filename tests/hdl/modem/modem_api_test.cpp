@@ -15,7 +15,8 @@ protected:
         configure(250000);
         ASSERT_EQ(takeEvents(), MODEM_EVENT_CONFIGURED_MASK);
     }
-    // Returns bytes of any size: the frame ends a packet, and the first byte does not.
+    // Returns a packet of any size. In API mode the frame marks the end of a packet, so the first
+    // byte need not contain the length.
     static std::vector<uint8_t> packet(size_t size, uint8_t tag) {
         std::vector<uint8_t> bytes(size);
         for (size_t i = 0; i < size; ++i)
@@ -38,8 +39,8 @@ protected:
         head.insert(head.end(), rest.begin(), rest.end());
         return head;
     }
-    // Returns the contents of a frame: `sent` a packet to a target, `received` a packet from modem
-    // 0.
+    // Return the contents of an API frame: `sent` for a packet to a target, `received` for a packet
+    // from modem 0.
     static std::vector<uint8_t> sent(const std::vector<uint8_t>& packet, uint16_t target = 0,
                                      uint8_t id = 0) {
         return join({0x01, id, static_cast<uint8_t>(target >> 8), static_cast<uint8_t>(target), 0},
@@ -48,7 +49,7 @@ protected:
     static std::vector<uint8_t> received(const std::vector<uint8_t>& packet) {
         return join({0x81, 0x00, 0x00, 40, 0x00}, packet);
     }
-    // Returns the oldest received packet, without the other fields of its frame.
+    // Returns the packet in the oldest received frame, without the other fields of the frame.
     std::vector<uint8_t> takePacket() {
         auto contents = take();
         EXPECT_GT(contents.size(), 5u);
@@ -138,7 +139,7 @@ TEST_F(ModemApi, PacketsOfWrongLengthsAreRefused) {
 TEST_F(ModemApi, ASpoiltFrameIsDroppedAndTheNextIsWhole) {
     ready();
     plain_.send(packet(100, 5), now());
-    runMs(7.3); // the frame is on the line
+    runMs(7.3); // after this time the frame is on the line
     noise_ = true;
     runMs(0.1);
     noise_ = false;
@@ -154,8 +155,8 @@ TEST_F(ModemApi, ASpoiltFrameIsDroppedAndTheNextIsWhole) {
     EXPECT_EQ(takePacket(), packet(30, 8));
 }
 
-// Frames follow one another without pauses, so only the end of a frame leads the receiver to the
-// next one.
+// Frames follow each other without pauses, so that the receiver finds a frame only by the end of
+// the previous one.
 TEST_F(ModemApi, FramesOfAllTypesAreTakenAndTooLongOnesPassedOver) {
     ready();
     Random random(testSeed());
@@ -167,13 +168,14 @@ TEST_F(ModemApi, FramesOfAllTypesAreTakenAndTooLongOnesPassedOver) {
         return body;
     };
     const std::vector<std::vector<uint8_t>> strangers = {
-        other(0x8A, 1 + random.below(2)),   // a status of the modem, or a shorter frame
+        other(0x8A, 1 + random.below(2)),   // a status of the modem, or a frame that is shorter
         other(0x88, 5),                     // a reply
-        other(0x80, 12 + random.below(98)), // a packet from a 64-bit address
-        other(0x80, 111),                   // the longest type
+        other(0x80, 12 + random.below(98)), // a packet from a sender with a 64-bit address
+        other(0x80, 111),                   // the longest frame of all types
         other(0x81, 112),                   // more data than a modem sends
         other(0x81, 255),                   // the longest frame with a one-byte length
-        other(0x81, 0x105),                 // a length whose low byte alone would be valid
+        // a length whose low byte would be valid without the high byte
+        other(0x81, 0x105),
     };
     for (size_t i = 0; i < strangers.size(); ++i) {
         auto before = packet(1 + random.below(100), 1), after = packet(1 + random.below(100), 2);
@@ -195,8 +197,8 @@ TEST_F(ModemApi, FramesOfAllTypesAreTakenAndTooLongOnesPassedOver) {
 TEST_F(ModemApi, AModemThatLostItsPowerIsSetUpAgain) {
     ready();
     near_->power(false, now());
-    near_->power(true, now()); // the modem boots in transparent mode at 9600 baud, which is noise
-                               // for the controller
+    // the modem boots in transparent mode at 9600 baud, which the controller receives as noise
+    near_->power(true, now());
     plain_.send(packet(50, 1), now());
     runMs(100);
     while (!take().empty()) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_rig: the modem controller, its memory, the modem at its pins, the air, and a second modem
-// far away.
+// modem_rig: connects the modem controller to its memory and to a modem at its pins; a second modem
+// is reached over the air.
 
 #pragma once
 
@@ -13,14 +13,17 @@
 #include "xbee.h"
 #include <gtest/gtest.h>
 
-// `clkNs`: clock period that matches the module's CLK_HZ.
+// A test bench of the modem controller. `clkNs` is the clock period that belongs to the module's
+// CLK_HZ.
 template <class Module, uint64_t clkNs> class ModemRig : public ::testing::Test {
 protected:
     static constexpr uint32_t txRing = 0xAAAAA800,
-                              rxRing = 0x55555000; // uses every address line, with 0 and with 1
+                              // the two addresses together use every address line with both levels
+        rxRing = 0x55555000;
 
     void power(XBee::Options options) {
-        air_.weather.perfect = true; // these tests are about the controller
+        // the air is perfect, because these tests only test the controller
+        air_.weather.perfect = true;
         near_ = std::make_unique<XBee>(pins_, air_, options);
         XBee::Options far;
         far.name = "far";
@@ -40,13 +43,14 @@ protected:
         bus_.write(MODEM_NET, 0x3332u << MODEM_NET_PAN_LSB | 0x0C);
     }
 
-    // The guard times of modem and controller are short, so that the tests are short.
+    // Sets up the modem. The guard times of modem and controller are short, to make the tests
+    // short.
     void configure(unsigned bd = 7, unsigned guardMs = 20) {
         bus_.write(MODEM_BAUD, guardMs << MODEM_BAUD_GUARD_MS_LSB | bd);
         bus_.write(MODEM_CONTROL, MODEM_CONTROL_CONFIGURE_MASK);
         bench_.waitFor([&] { return bench_.top().irq_o; }, "the end of the set-up", 40'000'000);
-        // A command that is tried at a wrong rate may be sent as data, unless the modem is still
-        // starting.
+        // A command that is tried at a wrong baud rate may be sent as data, unless the modem is
+        // still booting. Such data is discarded here.
         plain_.received.clear();
         sizes_.clear();
         targets_.clear();
@@ -69,13 +73,13 @@ protected:
         memory_.store(txRing + 128 * buffer, packet);
         bus_.write(MODEM_TX_PUT, static_cast<uint32_t>(packet.size()));
     }
-    // Returns a packet like one of the link layer: the first byte gives the length.
+    // Returns a packet like those of the link layer, in which the first byte is the length.
     static std::vector<uint8_t> frame(unsigned size, uint8_t tag) {
         std::vector<uint8_t> bytes(size, tag);
         bytes[0] = static_cast<uint8_t>(size - 5);
         return bytes;
     }
-    // Returns the oldest packet in the ring; empty if there is none. take() also releases it.
+    // oldest() returns the oldest packet in the ring, or an empty packet; take() also releases it.
     std::vector<uint8_t> oldest() {
         const uint32_t get = bus_.read(MODEM_RX_GET);
         const bool isValid = get & MODEM_RX_GET_VALID_MASK;
@@ -89,11 +93,11 @@ protected:
         return packet;
     }
 
-    // Returns the counted errors without the retries of the set-up, since the set-up may have to
-    // search for the rate.
+    // Returns the number of errors without the retries of the set-up, because the set-up may have
+    // to search for the baud rate.
     uint32_t errors() { return bus_.read(MODEM_ERRORS) & ~MODEM_ERRORS_RETRIES_MASK; }
-    // Drives the line bit by bit in place of the modem; the model, which is silent then, cannot do
-    // this.
+    // Drives the line bit by bit instead of the modem. The model of the modem cannot do this; it is
+    // silent during this time.
     void bytesIn(const std::vector<uint8_t>& bytes, unsigned bitClocks) {
         for (uint8_t byte : bytes)
             for (unsigned bits = byte << 1 | 0x200; bits > 0; bits >>= 1) {
@@ -109,10 +113,10 @@ protected:
     UartPins pins_;
     HostLine plain_;
     std::unique_ptr<XBee> near_, far_;
-    std::vector<size_t> sizes_; // sizes of the packets that were on the air
+    std::vector<size_t> sizes_; // sizes of the packets that were sent on the air
     std::vector<uint16_t> targets_;
     bool pinsIgnoreRts_ = false;
-    bool noise_ = false; // the line to the controller is held low
+    bool noise_ = false; // true: the line to the controller is held low
     bool ctsWavers_ = false;
 
 private:
@@ -132,7 +136,7 @@ private:
         near_->advance(now());
         far_->advance(now());
     }
-    // Pins change in the second half of a clock, like pins of any other clock.
+    // Changes pins in the second half of a clock, like pins that belong to another clock.
     void movePins() {
         if (bench_.top().clk_i)
             return;

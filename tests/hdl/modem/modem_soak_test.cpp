@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_soak_test: sends noise into the UART of the modem controller: random bytes, gaps, breaks
-// and glitches. The memory stalls, and the software takes packets at random. The output must
-// consist of parts of the input, in order; other memory must not change; and afterwards the
-// controller works.
+// modem_soak_test: sends noise to the UART of the modem controller: random bytes, gaps, breaks and
+// glitches. The memory stalls, and the software takes packets at random times. The output must
+// consist of parts of the input, in order, no other memory may change, and the controller must work
+// afterwards.
 //
 //   SOAK_BYTES=10000000 build/main/tests/hdl/test_modem_soak     (default 30000)
 
@@ -22,7 +22,7 @@ protected:
         return static_cast<uint64_t>(numberFromEnvironment("SOAK_BYTES", 30'000));
     }
     void hold(bool level, double clocks) {
-        noise_ = !level; // the modem is silent, so its line is high
+        noise_ = !level; // the modem is silent, so the line is high unless the noise holds it low
         for (clock_ += clocks; static_cast<double>(bench_.cycles()) < clock_;)
             bench_.tick();
     }
@@ -43,8 +43,8 @@ protected:
         else if (what < 6)
             hold(false, bitClocks * 0.2); // a glitch
         else if (what < 16)
-            hold(true, bitClocks * random_.below(60)); // a gap, possibly long enough to end a
-                                                       // packet
+            // a gap, which may be long enough to end a packet
+            hold(true, bitClocks * random_.below(60));
         else if (what < 18)
             memory_.hold(true);
         else if (what < 40)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_test: tests modem set-up, resets, rejected settings, and packets to and from the modem, pin
-// by pin. Events that coincide in one clock are covered by proofs (formal.modem_*).
+// modem_test: tests the set-up of the modem, resets, settings that are rejected, and packets to and
+// from the modem, pin by pin. Proofs cover events that happen in the same clock (formal.modem_*).
 
 #include "VModem.h"
 #include "modem_rig.h"
@@ -10,7 +10,7 @@ namespace {
 
 class ModemTest : public ModemRig<VModem, 500> {
 protected:
-    static constexpr unsigned bitClocks = 18; // at 111,111 baud
+    static constexpr unsigned bitClocks = 18; // number of clocks per bit at 111,111 baud
 
     void ready() {
         power(quick());
@@ -52,7 +52,7 @@ TEST_F(ModemTest, AWireNeedsNoSetUp) {
     near_->power(false, now());
     bus_.write(MODEM_BAUD, MODEM_BAUD_WIRE_MASK | 7);
     bus_.write(MODEM_CONTROL, MODEM_CONTROL_CONFIGURE_MASK);
-    unsigned lows = 0; // number of clocks in which the line is not idle
+    unsigned lows = 0; // number of clocks in which the line was not idle
     for (unsigned i = 0; i < 100'000; ++i, bench_.tick())
         lows += !bench_.top().modem_txd_o;
     EXPECT_EQ(lows, 0u) << "something was sent";
@@ -69,7 +69,7 @@ TEST_F(ModemTest, AWireNeedsNoSetUp) {
     const uint64_t begin = bench_.cycles();
     bench_.waitFor([&] { return bench_.top().modem_txd_o; }, "the first bit", 100);
     EXPECT_NEAR(static_cast<double>(bench_.cycles() - begin), bitClocks, 1);
-    memory_.hold(true); // both directions wait for the memory
+    memory_.hold(true); // both directions now wait for the memory
     put(1, packet);
     bytesIn({packet[0]}, bitClocks);
     memory_.hold(false);
@@ -121,7 +121,7 @@ TEST_F(ModemTest, TheKeyIsSentOnlyWithEncryption) {
 
 TEST_F(ModemTest, WrongPutsAreRefused) {
     power(quick());
-    bus_.write(MODEM_TX_PUT, 10); // writes a packet before the set-up
+    bus_.write(MODEM_TX_PUT, 10); // a packet is written before the set-up
     EXPECT_EQ(takeEvents(), MODEM_EVENT_TX_REFUSED_MASK);
     configure();
     takeEvents();
@@ -155,7 +155,7 @@ TEST_F(ModemTest, APacketThatASetUpInterruptsIsSentAgainWhole) {
     ready();
     put(0, frame(100, 1));
     runMs(4);
-    configure(); // begins the set-up within a packet
+    configure(); // the set-up begins in the middle of a packet
     EXPECT_TRUE(takeEvents() & MODEM_EVENT_CONFIGURED_MASK);
     runMs(40);
     ASSERT_GE(plain_.received.size(), 100u);
@@ -172,7 +172,8 @@ TEST_F(ModemTest, PacketsLeaveEachAsOneRfPacket) {
         std::vector<uint8_t> packet(lengths[i], static_cast<uint8_t>(i + 1));
         put(static_cast<unsigned>(i), packet);
         expected.insert(expected.end(), packet.begin(), packet.end());
-        runMs(16); // otherwise the modem, busy on the air, may join two waiting packets
+        // without this pause, a modem that is busy on the air could combine two waiting packets
+        runMs(16);
     }
     EXPECT_EQ(plain_.received, expected);
     EXPECT_EQ(sizes_, std::vector<size_t>(lengths.begin(), lengths.end()));
@@ -180,8 +181,8 @@ TEST_F(ModemTest, PacketsLeaveEachAsOneRfPacket) {
     EXPECT_EQ(bus_.read(MODEM_TX_STATE), 9u << 8 | 16u);
 }
 
-// A modem that encrypts sends a packet as soon as it has 95 bytes; no pause is needed after such a
-// packet.
+// A modem with encryption sends a packet as soon as it has 95 bytes, so no pause is needed after
+// such a packet.
 TEST_F(ModemTest, EncryptedPacketsOf95BytesFollowEachOther) {
     power(quick());
     bus_.write(MODEM_NET, 0x3332u << MODEM_NET_PAN_LSB | 1u << MODEM_NET_ENCRYPT_LSB | 0x0C);
@@ -223,7 +224,7 @@ TEST_F(ModemTest, PacketsLeaveWholeThoughCtsMovesInAnyClock) {
 
 TEST_F(ModemTest, AModemThatIsFullHoldsTheControllerBack) {
     ready();
-    air_.weather.delayNs = 200'000'000; // each packet keeps the modem busy
+    air_.weather.delayNs = 200'000'000; // each packet keeps the modem busy for this time
     for (unsigned i = 0; i < 6; ++i)
         put(i, frame(100, static_cast<uint8_t>(i)));
     runMs(1500);
@@ -276,8 +277,8 @@ TEST_F(ModemTest, RTSHoldsTheModemInMidPacketAndThePacketIsWhole) {
         plain_.send(frame(20, static_cast<uint8_t>(i + 1)), now());
         runMs(10);
     }
-    // Both frames are in one RF packet, so they arrive without a pause. The memory takes the last
-    // byte of the first one after the second has begun.
+    // Both frames are in one RF packet, so they arrive without a pause. The memory accepts the last
+    // byte of the first frame only after the second frame has begun.
     auto both = frame(50, 14);
     const auto second = frame(50, 15);
     both.insert(both.end(), second.begin(), second.end());
@@ -285,8 +286,8 @@ TEST_F(ModemTest, RTSHoldsTheModemInMidPacketAndThePacketIsWhole) {
     plain_.send(both, now());
     for (uint64_t byte : {end, end + 1}) {
         bench_.waitFor([&] { return near_->counters().bytesToHost >= byte; }, "a byte", 100'000);
-        runMs(byte == end ? 0.02 : 0); // the previous byte is in memory, even if the memory was
-                                       // slow
+        // after this time the previous byte is in memory, even if the memory was slow
+        runMs(byte == end ? 0.02 : 0);
         memory_.hold(byte == end);
     }
     runMs(50);
@@ -303,7 +304,7 @@ TEST_F(ModemTest, AFramingErrorEndsThePacketAndIsCounted) {
     ready();
     plain_.send(frame(50, 7), now());
     runMs(5.5);
-    noise_ = true; // a break in the middle of the byte
+    noise_ = true; // a break begins in the middle of the byte
     runMs(0.3);
     noise_ = false;
     runMs(10);

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# names: source-folder work-folder slice2c   core new and core remove: names that they refuse,
-# leaving the tree unchanged. It is a shell script because a case is a command and its output.
+# names: source-folder work-folder slice2c   Names that core new and core remove must reject without
+# changing the tree. This is a shell script because each case is a command and its output.
 set -eu
 source=$1 ip=$1/ip work=$2 slice2c=$3
 rm -rf "$work"
@@ -13,7 +13,7 @@ remove() { "$source/icesoc" core remove --built --build build "$@"; }
 echo '{}' >"$work/hdl/modem/modem.regs.json"
 echo 'module bus_thing (' >"$work/bus/other.v"
 echo 'entity Vhdl_Thing is' >"$work/ip/old/other.vhd"
-# Not the repository that the work folder may be in.
+# The commands must not use a repository that contains the work folder.
 export GIT_CEILING_DIRECTORIES="$(dirname "$work")"
 before=$(ls "$work/ip")
 refused() { # message, arguments
@@ -42,7 +42,7 @@ refused 'already exists' old --lang verilog
 refused 'modem.regs.json' modem --lang verilog
 refused 'a module' bus_thing --lang verilog
 refused 'a module' vhdl_thing --lang verilog
-# A user's interface.
+# An interface that a user has written.
 mkdir -p "$work/build/slice"
 printf '#!/bin/sh\nexec "%s" "$@"\n' "$slice2c" >"$work/build/slice/slice2c"
 chmod +x "$work/build/slice/slice2c"
@@ -75,7 +75,7 @@ for language in verilog vhdl; do
     [ ! -e "$work/ip/low_pass" ] && [ ! -s "$work/ip/cores.list" ] ||
         { echo 'rm-ip left something' && exit 1; }
 done
-# An input driven only by cores does not prevent the removal of the core that drives it.
+# If cores drive an input only from other cores, the core that drives it can still be removed.
 new low_pass --lang verilog --ice "$work/a.ice" >/dev/null
 mkdir -p "$work/ip/taker"
 touch "$work/ip/taker/taker.v" "$work/ip/taker/taker.regs.json"
@@ -97,7 +97,7 @@ for wrong in '' missing template ../bus; do
         grep -q 'expected the name of a core\|ip/.* not found' "$work/log" ||
         { echo "rm-ip takes '$wrong'" && exit 1; }
 done
-# Uncommitted work is kept, unless forced.
+# A core with uncommitted changes is not removed, unless this is forced.
 (cd "$work" && git init -q . && new fir --lang verilog >"$work/log")
 grep -q 'make ip-test IP=fir' "$work/log" && [ -f "$work/ip/fir/fir.v" ] &&
     ! grep -rq '@[A-Z]*@' "$work/ip/fir" || { echo 'ip/fir is not what it should be' && exit 1; }
@@ -106,7 +106,7 @@ grep -q 'make ip-test IP=fir' "$work/log" && [ -f "$work/ip/fir/fir.v" ] &&
 remove fir --force >/dev/null
 [ ! -e "$work/ip/fir" ] || { echo 'rm-ip FORCE=1 left it' && exit 1; }
 rm -rf "$work/.git" "$work/build"
-# A core with which the build cannot be configured is removed again.
+# If the build cannot be configured with a new core, the core is removed again.
 mkdir "$work/build"
 touch "$work/build/build.ninja"
 refused 'nothing was changed' fir --lang verilog

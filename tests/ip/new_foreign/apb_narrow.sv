@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// apb_narrow: an APB core as written by others: 8-bit data, registers at consecutive byte
-// addresses, request and response as packed structures of a package, and one structure of pins.
+// apb_narrow: an APB core for tests, in the style of other people: 8-bit data, registers at
+// consecutive byte addresses, request and response as packed structures of a package, and pins as
+// one structure.
 
 package apb_narrow_types;
     typedef struct packed {

@@ -1,11 +1,12 @@
 `include "timescale.v"
 // SPDX-License-Identifier: MIT
 //
-// apb_words: an APB 5 core as written by others: old Verilog with a delay and a signal named int, a
-// parameter, several interrupts, a gated clock. It waits `waits` clocks in each access, with PREADY
-// high at rest if 0, takes data for a read in the set-up phase, and refuses word 3. Word 0 counts
-// the transfers that begin correctly, awake, and with strobes only for a write. Its outputs while
-// it is not ready are meaningless.
+// apb_words: an APB 5 core for tests, in the style of other people: old Verilog with a delay and a
+// signal named int, a parameter, several interrupts, a gated clock. It waits for `waits` clocks in
+// each access; if `waits` is 0, PREADY is always high. It takes the data of a read in the set-up
+// phase, and rejects word 3. Word 0 counts the correct transfers: they begin correctly, while the
+// core is awake, and have strobes only in a write. While the core is not ready, its outputs are
+// meaningless.
 
 module apb_words #(parameter WORDS = 1) (
     input             PCLK, PCLKG, PRESETn, PWAKEUP,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// axil_words: an AXI core as written by others: four words, with the signals of bursts, names in
-// capitals, an active-low reset. It accepts an address after `aw_late` clocks and data after
-// `w_late` clocks; if `aw_late` is larger, the data comes first. It answers `late` clocks later, if
-// it is awake and the request is for a single word.
+// axil_words: an AXI core for tests, in the style of other people: four words, signals for bursts,
+// names in capitals, an active-low reset. It accepts an address after `aw_late` clocks and data
+// after `w_late` clocks, so either can come first. It answers `late` clocks later, if it is awake
+// and the request is for a single word.
 
 module axil_words (
     input             S_AXI_ACLK, S_AXI_ARESETN, S_AXI_AWAKEUP,
@@ -40,7 +40,7 @@ module axil_words (
     reg         has_aw, has_w, has_ar;
     reg  [1:0]  word;
     reg  [31:0] value;
-    // A channel is ready while idle if it is not late.
+    // While idle, a channel is ready if its delay is 0.
     assign S_AXI_AWREADY = !has_aw && aw_waited == aw_late;
     assign S_AXI_ARREADY = !has_ar && aw_waited == aw_late;
     assign S_AXI_WREADY  = !has_w && w_waited == w_late;

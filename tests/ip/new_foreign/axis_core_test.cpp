@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// axis_core_test: tests third-party cores with AXI-Streams, connected by `make new-foreign
-// BUS=axis`, through their generated servants.
+// axis_core_test: tests third-party cores with AXI-Streams, which `make new-foreign BUS=axis` has
+// connected, through their generated servants.
 
 #include "Vmy_scale_slot.h"
 #include "Vmy_twice_slot.h"
@@ -47,8 +47,8 @@ TEST_F(Scale, GivesABeatAClockWhenTheMemoryKeepsUp) {
     auto clocksOf = [&](size_t count) {
         scaled(std::vector<Ice_Short>(count, 1));
         uint64_t before = core_.bench_.cycles();
-        core_.bus_.write(MY_SCALE_CONTROL, 1u << 1); // starts once more, without the copying by the
-                                                     // driver
+        // starts the core again, without the time in which the driver copies data
+        core_.bus_.write(MY_SCALE_CONTROL, 1u << 1);
         core_.bench_.waitFor([&] { return core_.bench_.top().irq_o; }, "the core's interrupt",
                              9999);
         core_.bus_.write(MY_SCALE_EVENT, ~0u);
@@ -69,7 +69,7 @@ TEST_F(Scale, WhatDoesNotEndIsGivenUpAndTheNextCallWorks) {
     EXPECT_THROW(scaled(std::vector<Ice_Short>(300, 5)), CoreError);
     core_.memory_.hold(false);
     EXPECT_SAME(scaled({1, 2, 3}), (std::vector<Ice_Short>{2, 4, 6}));
-    // In the middle of an operation, while words wait for the core.
+    // aborts in the middle of an operation, while words wait for the core
     scaled(std::vector<Ice_Short>(512, 5));
     core_.bus_.write(MY_SCALE_CONTROL, 1u << 1); // again
     core_.bench_.tick(250);
@@ -95,8 +95,8 @@ TEST_F(Twice, AnswersAreAsLongAsWhatComesOut) {
         for (size_t i = 0; i < 2 * n; ++i)
             ASSERT_EQ(out[i], static_cast<Ice_Byte>(7 * (i / 16 * 8 + i % 8))) << i << " of " << n;
     }
-    auto out = twice(5); // the first word is complete; of the second word only the kept bytes are
-                         // written
+    // the first word is complete; of the second word, only the bytes that are kept are written
+    auto out = twice(5);
     ASSERT_EQ(out.size(), 13u);
     for (size_t i = 0; i < 5; ++i)
         EXPECT_EQ(out[8 + i], 7 * i);

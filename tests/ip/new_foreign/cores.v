@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// cores: third-party cores of one file each, in the styles of other people.
+// cores: third-party cores for tests, each in the style of other people.
 
 // memory_words: four words with select and write enable; read data is valid LATE clocks later.
 module memory_words #(parameter LATE = 0) (
@@ -28,9 +28,10 @@ module memory_words #(parameter LATE = 0) (
     wire unused = rst;
 endmodule
 
-// wb_words: Wishbone as in a pipelined core: it stalls each strobe for `stalls` clocks and answers
-// `late` clocks after taking it, in the same clock if late is 0. Without STALL it is a classic
-// core, and counts from the start of the strobe. Its addresses count bytes.
+// wb_words: a Wishbone core in the style of pipelined cores: it stalls each strobe for `stalls`
+// clocks, and answers `late` clocks after it has taken the strobe, or in the same clock if `late`
+// is 0. Without STALL it is a classic core, and counts both delays from the start of the strobe.
+// Its addresses count bytes.
 module wb_words (
     input             wb_clk_i, wb_rst_i,
     input             wb_cyc_i, wb_stb_i, wb_we_i,
@@ -42,7 +43,7 @@ module wb_words (
     input      [2:0]  stalls, late
 );
     reg  [31:0] words [0:3];
-    reg  [3:0]  waited; // clocks since the strobe began
+    reg  [3:0]  waited; // number of clocks since the strobe began
     reg         we;
     reg  [1:0]  word;
     wire        begins = wb_cyc_i && wb_stb_i && waited <= stalls;
@@ -62,13 +63,13 @@ module wb_words (
     end
 endmodule
 
-// axis_scale: multiplies 16-bit samples, as a third-party core with AXI-Streams, a setting and a
-// pin; without tlast.
+// axis_scale: multiplies samples of 16 bits; a core with AXI-Streams without tlast, a setting and a
+// pin.
 module axis_scale (
     input  wire        aclk,
     input  wire        aresetn,
     input  wire [7:0]  gain_factor,
-    output reg         over, // a product was too large
+    output reg         over, // high if a product was too large
     input  wire [15:0] s_axis_tdata,
     input  wire        s_axis_tvalid,
     output wire        s_axis_tready,
@@ -91,7 +92,7 @@ module axis_scale (
     end
 endmodule
 
-// axis_twice: outputs each 64-bit word twice, with its byte enables: packets become longer.
+// axis_twice: outputs each 64-bit word twice, with its byte enables, so that packets become longer.
 module axis_twice (
     input  wire        clk,
     input  wire        rst,
@@ -119,8 +120,8 @@ module axis_twice (
             second <= !second;
 endmodule
 
-// req_words: a core with a request that lasts until the grant, two clocks later; word 3 gets no
-// grant.
+// req_words: a core whose request must last until the grant, which comes two clocks later. Word 3
+// is never granted.
 module req_words (
     input             clock, nrst,
     input             req, wr,
@@ -142,8 +143,8 @@ module req_words (
     end
 endmodule
 
-// wbs_names: Wishbone signals with names as written by others, without strobe and acknowledge, for
-// a core that is also a master.
+// wbs_names: Wishbone signals with names in the style of other people; the core is also a master.
+// Strobe and acknowledge are missing.
 module wbs_names (
     input         wbs_clk, rst_ni, gate_clk_pad_i,
     input  [3:0]  clk_div,
@@ -157,8 +158,9 @@ module wbs_names (
     assign {wbs_dat_o, intr, spare} = 34'd0;
 endmodule
 
-// avalon_words: Avalon-MM as in a pipelined slave: it delays each request for `waits` clocks, and
-// returns read data `late` clocks after taking the request, in the same clock if 0.
+// avalon_words: an Avalon-MM core in the style of pipelined slaves: it delays each request by
+// `waits` clocks, and returns read data `late` clocks after it has taken the request, or in the
+// same clock if `late` is 0.
 module avalon_words (
     input             csi_clk, rsi_reset_n,
     input             avs_read, avs_write_n,
@@ -194,8 +196,8 @@ module avalon_words (
     end
 endmodule
 
-// two_ways: reads and writes have separate addresses, requests of one clock and acknowledges;
-// writes are counted.
+// two_ways: reads and writes have separate addresses, requests that last one clock, and
+// acknowledges. The core counts the writes.
 module two_ways (
     input             up_clk, up_rstn,
     input             up_wreq, up_rreq,

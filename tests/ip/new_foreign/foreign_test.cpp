@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// foreign_test: tests third-party cores as connected by make new-foreign: registers, pins,
-// interrupt; a separate clock; cores that answer at any time that their bus allows. Checkers of the
-// bus rules (bus/*_rules.v) end the test if a wrapper or a core breaks a rule.
+// foreign_test: tests third-party cores that make new-foreign has connected: registers, pins,
+// interrupt, a separate clock, and cores that answer at any time that their bus allows. Checkers of
+// the bus rules (bus/*_rules.v) end the test if a wrapper or a core breaks a rule.
 
 #include "Va_bridge_slot.h"
 #include "Vmy_apb2_slot.h"
@@ -31,7 +31,7 @@
 
 namespace {
 
-// Checks that two registers, starting with `first`, hold the values written.
+// Checks that two registers, beginning with `first`, keep the values that are written.
 template <class Module>
 void holdsRegisters(CoreSlot<Module>& slot, unsigned first, const std::string& how) {
     for (uint32_t round : {0x12345678u, 0xEDCBA987u}) {
@@ -107,7 +107,8 @@ TEST(Axi4Lite, AChannelIsReadyAndAnsweredWhenItLikes) {
     CoreSlot<Vmy_words_slot> slot;
     auto& top = slot.bench_.top();
     const uint8_t clocks[] = {0, 1, 4};
-    for (uint8_t address : clocks) // the address is taken before the data, with it, or after it
+    // the core takes the address before the data, together with the data, or after it
+    for (uint8_t address : clocks)
         for (uint8_t data : clocks)
             for (uint8_t late : clocks) {
                 top.aw_late_i = address;
@@ -129,7 +130,7 @@ TEST(Apb, TransfersBeginWithoutEnableAndEndWithReady) {
     EXPECT_TRUE(slot.bus_.transfer(false, A_BRIDGE_REG3, 0).error) << "refused by PSLVERR";
     EXPECT_EQ(slot.bus_.read(A_BRIDGE_REG0), 5u);
     EXPECT_EQ(slot.bus_.read(1), 0u);
-    slot.bench_.top().clk_div_i = 3; // the second of the core's interrupts
+    slot.bench_.top().clk_div_i = 3; // activates the second of the core's interrupts
     slot.tick();
     slot.tick();
     EXPECT_EQ(slot.bus_.read(1), A_BRIDGE_EVENT_CORE_MASK);
@@ -157,11 +158,11 @@ TEST(Apb, RegistersOfOneByteAreReachedThroughPackedStructures) {
         slot.bus_.write(MY_NARROW_PAGE, i / 8 * 32);
         EXPECT_EQ(slot.bus_.read(MY_NARROW_REG0 + i % 8), 0x80 + i);
     }
-    EXPECT_EQ(slot.bench_.top().lamp_o, 1u); // bit 7 of register 8; colour 0
+    EXPECT_EQ(slot.bench_.top().lamp_o, 1u); // the lamp's pin is bit 7 of register 8, with colour 0
     EXPECT_TRUE(slot.bus_.transfer(false, MY_NARROW_REG9, 0).error) << "refused by PSLVERR";
 }
 
-// Runs the generated test with a table that lists one register twice.
+// Runs the generated test with a table in which two names belong to one register.
 TEST(RegistersApart, OneThatHasTheValueOfAnotherIsFound) {
     CoreSlot<Vmy_memory_slot> slot;
     const Hw_Register table[] = {MY_MEMORY_TABLE},
@@ -189,7 +190,7 @@ TEST(RegistersApart, EachThatIsNotReadBackIsNamed) {
               std::string::npos);
 }
 
-// A Verilated model of a counter, which counts in every `every`th clock.
+// A model of a counter in place of a Verilated model; it counts in every `every`th clock.
 struct Counter {
     explicit Counter(VerilatedContext*) {}
     void eval() { root_.count += clk_i && ++clocks_ % every == 0; }
@@ -236,7 +237,7 @@ TEST(RegistersApart, ACoreThatNeverRestsIsToldWithWhatMoves) {
         bool idle_o = true;
     };
     Counter::every = 1;
-    Bench<Idle> idle; // this core has a clock gate in the chip
+    Bench<Idle> idle; // in the chip, this core has a clock gate
     Bench<Vmy_port_slot> bench;
     bench.reset();
     ::testing::internal::CaptureStdout();
@@ -270,8 +271,8 @@ TEST(OwnClock, AnyRatioOfTheTwoClocksWillDo) {
     }
 }
 
-// A time-out of the core is an event. The core's interrupt crosses the clock domains; when the
-// write that clears it has ended, it is inactive.
+// A time-out of the core causes an event. The core's interrupt crosses the clock domains; it is
+// inactive when the write that clears it has ended.
 TEST(OwnClock, TheInterruptComesAndGoes) {
     CoreSlot<Vmy_requests_slot> slot;
     slot.interrupt_ = [] {};
@@ -295,8 +296,8 @@ TEST(OwnClock, OneThatStandsStillIsAnErrorAndHangsNothing) {
         EXPECT_FALSE(slot.bench_.top().irq_o);
     }
     slot.ownClock_.run(24576000);
-    EXPECT_EQ(slot.bus_.read(0), MY_REQUESTS_ID_VALUE); // must not be the late answer to the
-                                                        // previous read
+    // this read must not return the late answer to the previous read
+    EXPECT_EQ(slot.bus_.read(0), MY_REQUESTS_ID_VALUE);
     EXPECT_EQ(slot.bus_.read(MY_REQUESTS_REG0), 5u);
 }
 

@@ -1,9 +1,9 @@
 -- SPDX-License-Identifier: MIT
 --
--- lamps: a core in VHDL with strobes for reading and writing in a record of lamps_types.vhd; it
--- counts reads. Its features: a Synopsys package, an attribute of an output, an assertion for
--- simulation.
-library ieee, lights; -- the library `lights` contains the core's own package
+-- lamps: a core in VHDL for tests; its strobes for reading and writing are in a record of
+-- lamps_types.vhd. It counts reads. It uses a Synopsys package, an attribute of an output, and an
+-- assertion for simulation.
+library ieee, lights; -- the library `lights` contains the core's package
 use ieee.std_logic_1164.all;
 use ieee.numeric_std.all;
 use ieee.std_logic_misc.all;

@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: MIT
 --
--- lamps_types: the record of lamps' inputs.
+-- lamps_types: defines the record of the inputs of lamps.
 library ieee;
 use ieee.std_logic_1164.all;
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// late_words: four words of 16 bits, written byte by byte. A value is valid one clock after its
-// strobe, and a read clears the word. A file contains the initial values.
+// late_words: a core for tests with four words of 16 bits, which are written byte by byte. Read
+// data is valid one clock after its strobe, and a read clears the word. A file contains the initial
+// values.
 
 module late_words (
     input             mclk, rst_ni,

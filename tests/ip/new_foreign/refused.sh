@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# refused: source-folder work-folder GHDL   Input that make new-foreign refuses, with a reason and
-# without writing files. It is a shell script because a case is a command and its output.
+# refused: source-folder work-folder GHDL   Input that make new-foreign must reject, with a reason
+# and without writing files. This is a shell script because each case is a command and its output.
 set -eu
 source=$1 work=$2 ghdl=$3
 new() { "$source/tools/python" -m icesoc.cores.new_foreign "$@"; }
@@ -10,7 +10,7 @@ rm -rf "$work"
 mkdir -p "$work"
 cd "$work"
 for file in wb_port.v cores.v axil_words.v lamps.vhd; do cp "$here/$file" .; done
-named() { # name of the core, message, top, bus, options and files
+named() { # arguments: name of the core, message, top, bus, options and files
     name=$1 words=$2 top=$3 bus=$4
     shift 4
     ! new "$name" "$top" "$bus" out "$@" >log 2>&1 ||
@@ -99,16 +99,16 @@ refused 'CLOCK: a core with AXI-Streams' axis_scale axis CLOCK=24000000 cores.v
 refused 'LIBRARY: expected VHDL files, got Verilog' req_words own LIBRARY=lights cores.v
 refused 'a setting requires BUS=axis' req_words own setting=value cores.v
 refused "setting is an input of a core, and 'over' is not" axis_scale axis setting=over cores.v
-# A module of one name in two cores of a chip is refused.
+# The same module name in two cores of a chip is an error.
 ! "$source/tools/python" -m icesoc.cores.foreign_files wb_port.v again.v 2>log &&
     grep -q "again.v:6: module 'wb_port' is also in .*a chip has one of each" log ||
     { cat log && exit 1; }
-# Names of ports that reveal their roles.
+# Port names from which the command recognises the role of a port.
 new my_port wbs_names wishbone names ack=2 open=spare cores.v >log
 prints 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pin' \
     'wbs_cyc_i: cyc' 'wbs_adr_i: adr, counts words: it has 2 bits; if not, ADDRESS=bytes' \
     'wbs_cti_i: low' 'intr: interrupt' 'spare: open'
-# Macros that are multiples of 4 are byte addresses.
+# If macros are multiples of 4, they are byte addresses.
 printf '%s\n' "\`define PORT_MODE 8'h0" '  `define PORT_MODE_BITS 2' \
     "\`define PORT_LEVEL 8'h8 // of pins" >macros.vh
 echo 'module macros(input clk, we, input [7:0] a, input [31:0] d, output [31:0] q);
@@ -118,7 +118,7 @@ new my_port macros own macros write=we address=a wdata=d rdata=q macros.vh macro
 grep -q 'a: adr, counts bytes: PORT_MODE, PORT_LEVEL are multiples of 4; if not' log &&
     grep -q 'registers: MODE LEVEL' log && grep -q '"word": 10' macros/my_port.regs.json ||
     { cat log && exit 1; }
-# The command asks about outputs that may be interrupts; it reports an active-low interrupt.
+# The command asks about outputs that may be interrupts. It recognises an active-low interrupt.
 echo 'module asked(input clk, we, input [31:0] d, output [31:0] q, output TIMERINT, irq_no, point,
     output [3:0] rx_events); endmodule' >asked.v
 new my_port asked own asked write=we wdata=d rdata=q asked.v >log
@@ -129,10 +129,10 @@ new my_port asked own open write=we wdata=d rdata=q 'open=*t*' asked.v >log
 prints 'TIMERINT: pin' 'rx_events: open' 'point: open' 'irq_no: interruptn'
 refused "has no port 'TIMER\*'" asked own write=we wdata=d rdata=q 'low=TIMER*' asked.v
 grep -q 'interrupt = !interrupt_0;' asked/my_port.v
-# Many pins that are not needed.
+# 'open=*' leaves many unneeded pins open.
 new my_port asked own spared write=we wdata=d rdata=q 'open=*' pin=point asked.v >log
 prints 'irq_no: interruptn$' 'rx_events: open$' 'point: pin point_o$'
-# A file that is listed twice is taken once; a real number may have an exponent.
+# A file that is listed twice is used once. A real number may have an exponent.
 echo 'module gain #(parameter real G = 1.0) (input clk, we, input [31:0] d, output [31:0] q);
     assign q = G > 100.0 ? d : 0;
 endmodule' >gain.v
@@ -140,7 +140,7 @@ new my_port gain own gain write=we wdata=d rdata=q PARAM:G=2.5e3 gain.v "$PWD/./
 grep -q 'gain #(.G(2.5e3)) u_core' gain/my_port.v &&
     [ "$(grep -c 'gain\.v"' gain/core.toml)" = 1 ] ||
     { cat log gain/core.toml gain/my_port.v && exit 1; }
-# The level of a reset by OpenCores' parameter, whatever other signal uses the name.
+# OpenCores' parameter sets the level of a reset, whatever other signal uses the name.
 echo 'module level #(parameter ARST_LVL = 0) (input clk, arst_i, we, input [31:0] d,
         output reg [31:0] q);
     wire rst = arst_i ^ ARST_LVL[0];
@@ -149,7 +149,8 @@ endmodule' >level.v
 new my_port level own level write=we wdata=d rdata=q level.v >log
 grep -q '^  arst_i: resetn' log && grep -q 'level u_core' level/my_port.v ||
     { cat log && echo 'the level of a reset is wrong' && exit 1; }
-# A narrow APB counts registers by its data width, unless its address begins at bit 2.
+# In a narrow APB core, register addresses count units of the data width, unless the address begins
+# at bit 2.
 for bits in 8 16; do
     echo "module apb$bits(input pclk, psel, penable, pwrite, input [5:0] paddr,
         input [$((bits - 1)):0] pwdata, output [$((bits - 1)):0] prdata);
@@ -163,9 +164,9 @@ grep -q 'paddr(adr\[6:1\])' apb16/my_port.v && grep -q 'at 0x2 in' apb16/my_port
 sed 's/5:0/7:2/' apb8.v >apb8_high.v
 new my_port apb8 apb apb8_high apb8_high.v >log
 prints 'paddr: adr, counts bytes: it begins at bit 2'
-# A memory of 64 KiB with initial contents is read in seconds, because Yosys need not unroll the
-# loop. A loop in the memory's reset is left to Verilator after a time; until then a message reports
-# the wait.
+# A memory of 64 KiB with initial contents is read within seconds, because Yosys need not unroll the
+# loop. If the reset of the memory contains a loop, the command stops waiting for Yosys after a time
+# and uses Verilator; until then a message reports the wait.
 cat >big.v <<'END'
 module big (input clk, rst_n, we, input [13:0] a, input [31:0] d, output reg [31:0] q);
     reg [31:0] words [0:16383];
@@ -210,7 +211,7 @@ new_foreign.main(sys.argv[1:])'
     grep -q 'Yosys has not elaborated big in 2 s: Verilator reads its ports' log ||
     { cat log && echo 'a slow core is not reported' && exit 1; }
 prints 'd: wdata'
-# Packed structures: a bus in the style of AXI with nested members; members assigned by PORTS; a
+# Packed structures: a bus in the style of AXI with nested members, whose roles PORTS assigns, and a
 # structure of pins.
 cat >nested.sv <<'END'
 package nested_types;
@@ -237,7 +238,7 @@ grep -q 'resp_o({awready, wready, arready, bvalid, bresp, rvalid, rdata, rresp})
 new my_port nested axil parts open=state_o.on nested.sv >log
 prints 'state_o.on: open' 'state_o.level: pin state_level_o'
 grep -q 'state_o({unused_state_o_on, state_level_o})' parts/my_port.v || exit 1
-# A SystemVerilog interface as port is refused, with a message that shows the solution.
+# A SystemVerilog interface as a port is rejected, with a message that shows the solution.
 echo 'interface bus_if (input logic clk); logic sel; modport slave (input clk, sel); endinterface
 module faced (input logic reset, bus_if.slave s); endmodule' >faced.sv
 refused "faced has the port 's', a SystemVerilog interface (bus_if.slave)" faced apb faced.sv
@@ -245,7 +246,7 @@ refused 'bus_if s (...);' faced apb faced.sv
 # VHDL files in several libraries.
 refused 'LIBRARY: util=none.vhd: expected a library.s name and a file of FILES' lamps own \
     LIBRARY=util=none.vhd lamps.vhd
-if [ -x "$ghdl" ]; then # GHDL 5 is fetched by the build
+if [ -x "$ghdl" ]; then # the build downloads GHDL 5
     cp "$here/lamps_types.vhd" .
     sed 's/lights/types/' lamps.vhd >two_libraries.vhd
     new my_port lamps own libraries GHDL="$ghdl" LIBRARY=main LIBRARY=types='*_types.vhd' \
@@ -256,7 +257,7 @@ if [ -x "$ghdl" ]; then # GHDL 5 is fetched by the build
         grep -q '"LIBRARIES" "types=.*/lamps_types.vhd"' ||
         { cat libraries/core.toml && exit 1; }
 fi
-# SystemVerilog with packages, in any order, and a loop about which Verilator warns.
+# SystemVerilog with packages in any order, and a loop about which Verilator prints a warning.
 cat >system.sv <<'END'
 module system import sizes::*; #(parameter EXTRA = 1) (
     input logic clk, input logic we, input logic [1:0][7:0] d, output pair_t q,
@@ -281,14 +282,15 @@ prints 'state_o: pin state_o' "sv2v --top=system .*/widths.sv .*/sizes.sv .*/sys
     grep -q '"width": 16' system/my_port.regs.json &&
     ! grep -q UNOPTFLAT system/core.toml ||
     { cat log system/my_port.v && exit 1; }
-# A register is as wide as the data written to it or, if wider, read from it.
+# A register has the width of the data that is written to it, or of the data that is read from it if
+# that is wider.
 echo 'module narrow(input clk, we, input [16:0] d, output [12:0] q);
     assign q = d[12:0];
 endmodule' >narrow.v
 new my_port narrow own narrow write=we wdata=d rdata=q narrow.v >log &&
     grep -q '"width": 17' narrow/my_port.regs.json ||
     { cat log && echo 'a register has not 17 bits' && exit 1; }
-# Parameters in the forms that users type, and a file that begins with a byte order mark.
+# Parameters in all forms that users type, and a file that begins with a byte order mark.
 cat >typed.v <<'END'
 module typed #(parameter MODE = "SLOW", parameter [31:0] INIT = 0, parameter signed [7:0] LOW = 0)
     (input clk, input we, input [(MODE == "FAST" ? 8 : 7) - LOW:0] d, output reg [31:0] q);
@@ -307,7 +309,7 @@ for value in FAST '"FAST"'; do
 done
 refused "PARAMS: INIT: expected a number such as .*, got '2[*]1'" typed own PARAM:INIT='2*1' \
     write=we wdata=d rdata=q typed.v
-# The same by make, and a core whose name is taken.
+# The same command by make, and a core whose name already exists.
 mkdir -p "$work/tree/ip"
 made() { "$source/tests/regress/make_in.sh" "$source" "$work/tree" build \
     new-foreign NAME=my_port TOP=req_words BUS=own FILES="$work/cores.v" "$@" >log 2>&1; }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// registers_test: tests Hw::Registers, the servant for the registers of any core, called through
-// IceC's proxies.
+// registers_test: tests Hw::Registers, the servant for the registers of any core; IceC's proxies
+// call it.
 
 #include "Vmy_port_slot.h"
 #include "Vmy_requests_slot.h"
@@ -24,7 +24,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-// A core in its slot, its servant, and a proxy to it.
+// A core in its slot, with its servant and a proxy.
 template <class Module> class Served {
 public:
     template <size_t N> Served(U32 id, const Hw_Register (&table)[N]) {
@@ -52,7 +52,7 @@ public:
         Hw_Registers_set_Exception e;
         reason_ = check(Hw_RegistersPrx_set(&prx_, Ice_String_from(name), v, &e), e);
     }
-    // Begins a call of wait; its answer sets `answer_` to the names of the events.
+    // Begins a call of `wait`. The reply sets `answer_` to the names of the events.
     void wait(Ice_Int ms) {
         answer_.reset();
         call_.completed = [](Hw_Registers_wait_Async* call) {
@@ -66,7 +66,8 @@ public:
         EXPECT_EQ(Hw_RegistersPrx_wait_async(&prx_, ms, &call_), ICE_OK);
         settle();
     }
-    // Advances time as the firmware's task does, until the servant needs no more calls.
+    // Advances time and calls the servant, as the firmware's task does, until the servant needs no
+    // more calls.
     void poll() {
         for (U32 next; (next = Hw_Registers_Core_poll(&core_, slot_.nowMs(&slot_))) != HW_NEVER;)
             slot_.wait(&slot_, 0, next + 1);
@@ -81,7 +82,7 @@ public:
     CoreSlot<Module> slot_;
     Hw_Registers_Core core_;
     Ice_ObjectPrx prx_;
-    std::string reason_; // reason of the last call's exception
+    std::string reason_; // reason in the exception of the last call
     std::optional<std::vector<std::string>> answer_;
     int interrupts_ = 0;
 
@@ -101,7 +102,7 @@ public:
     Port() : Served(MY_PORT_ID_VALUE, table) {}
 };
 
-// Fields and accesses that generated descriptions of foreign cores do not contain.
+// Tests with fields and accesses that generated descriptions of third-party cores do not have.
 class Requests : public Served<Vmy_requests_slot> {
     static constexpr Hw_Register table[] = {MY_REQUESTS_TABLE,
                                             {{3, "ALL"}, Hw_rw, 8, 0, 32, 0},
@@ -121,7 +122,7 @@ TEST(HwRegisters, NamesAndByteAddressesReachTheCore) {
     EXPECT_EQ(core.get("LEVELS"), 0x42u);
     EXPECT_EQ(core.get("0x0"), 0x42u);
     EXPECT_EQ(core.get("0x4"), 0xA5u);
-    core.set("0x24", 0x5A); // the core uses only the low bits of its addresses
+    core.set("0x24", 0x5A); // the core uses only the low bits of the address
     EXPECT_EQ(core.slot_.bench_.top().port_out_o, 0x5A);
     EXPECT_EQ(core.get("PAGE"), 0x20u);
     EXPECT_EQ(core.get("DRIVEN"), 0x5Au);
@@ -201,12 +202,13 @@ TEST(HwRegisters, WaitTakesTheEventThatWasThereOrComes) {
     Port core;
     core.wait(100);
     EXPECT_FALSE(core.answer_);
-    core.set("DRIVEN", 1); // other calls are served during this call
+    core.set("DRIVEN", 1); // other calls are handled while this call waits
     core.slot_.bench_.top().port_in_i = 0x80;
     core.poll();
     ASSERT_TRUE(core.answer_);
     EXPECT_THAT(*core.answer_, ElementsAre("CORE"));
-    // The interrupt line stays high: it interrupts once per wait, and the event occurs again.
+    // The interrupt line stays high. It must interrupt only once per `wait`, and the event must
+    // occur again.
     EXPECT_EQ(core.interrupts_, 1);
     core.slot_.wait(&core.slot_, 0, 5);
     EXPECT_EQ(core.interrupts_, 1);
@@ -244,8 +246,8 @@ TEST(HwRegisters, AnotherCoreInTheSlotIsNotServed) {
               HW_WRONG_CORE);
 }
 
-// Different hashes of registers in chip and firmware are detected. The system slot of this chip has
-// the hashes slot * 17.
+// Checks that different hashes of registers in chip and firmware are detected. In the system slot
+// of this chip, the hash of a slot is 17 times its number.
 struct Chip {
     U32 slot = 0;
     static U32 read(void* context, U32 address) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// wb_port: a Wishbone core as written by others: 8 bits, word addresses, an interrupt, pins.
+// wb_port: a Wishbone core for tests, in the style of other people: 8 bits, word addresses, an
+// interrupt, pins.
 
 module wb_port (
     input            wb_clk_i, wb_rst_i,

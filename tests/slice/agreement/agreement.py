@@ -1,12 +1,15 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""agreement: slice2c takes, warns of and refuses the same as ZeroC's slice2cpp.
+"""agreement: checks that slice2c accepts, warns about and rejects the same code as ZeroC's
+slice2cpp.
 
-agreement.py SLICE2C CASES.ice WORK   Each case, from a line "// ok: ...", "// warning: ..." or
-    "// error: ..." to the next: both take it silently, take it with a warning, or refuse it, at the
-    same first line. Then each keyword of Slice as a name of each kind.
-agreement.py SLICE2C FOLDER           ZeroC's own wrong files (icesoc.util.fetch zeroc): each line
-    with a message of slice2cpp has one of slice2c, or has one of the REASONS.
+agreement.py SLICE2C CASES.ice WORK   A case begins with a line "// ok: ...", "// warning: ..." or
+    "// error: ..." and ends at the next one. Both compilers must accept it silently, accept it with
+    a warning, or reject it; the first line that they report must be the same. Then tests each
+    keyword of Slice as a name of each kind.
+agreement.py SLICE2C FOLDER           Tests ZeroC's own wrong files (icesoc.util.fetch zeroc). For
+    each line with a message of slice2cpp, slice2c must also report a message, or one of the REASONS
+    must apply.
 """
 import collections
 import os
@@ -17,8 +20,8 @@ import sys
 import tempfile
 
 NEXT = "slice2c reports the line of the name, slice2cpp the line of the bracket after it"
-REASONS = {  # regular expression for "FILE:LINE: message" -> the reason why slice2c does not report
-             # it
+# regular expression for "FILE:LINE: message", with the reason why slice2c does not report this
+REASONS = {
     "only at module scope|IdentAsKeyword.*(syntax error|capitalization from (dict|enum))":
         "after a syntax error slice2cpp has lost the module; slice2c continues in it",
     "metadata `cpp:": "metadata of C++ alone",
@@ -38,7 +41,7 @@ NAMES = """struct % { int a; };|struct S# { int %; };|enum % { x# };|enum E# { %
 
 
 def said(compiler, file, work="out"):
-    """Returns the exit status of a compiler, and {line: messages in order}."""
+    """Runs a compiler. Returns its exit status, and {line: messages in order}."""
     words = [compiler, "--output-dir", work, file.name]
     words += ["--underscore"] * ("Underscore" in file.name)
     run = subprocess.run(words, cwd=file.parent, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -68,7 +71,7 @@ def cases(compiler, file, work):
                 (ours[0], list(ours[1])[:1]) != (theirs[0], list(theirs[1])[:1]):
             differ += 1
             print(f"{text}\nslice2c: {ours}\nslice2cpp: {theirs}")
-    for form in NAMES:  # slice2cpp refuses each keyword as it is, and accepts it after a backslash
+    for form in NAMES:  # slice2cpp rejects each keyword as a name, but accepts it after a backslash
         for escape, wanted in ("", len(KEYWORDS)), ("\\", 0):
             line = f"module A# {{ {form.strip()} }};\n"
             ours, theirs = both("".join(

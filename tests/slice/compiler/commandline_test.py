@@ -42,24 +42,24 @@ module Top {
     interface Service extends Lib::Named { void go(Lib::Points points, Leaf leaf) throws Worse; };
 };
 """,
-    # Two files of the same name become part of one program; a file name may begin with a digit.
+    # Two files with the same name can be part of one program. A file name may begin with a digit.
     "slice/2nd/Base.ice": "module Second { class Node { int x; }; };\n",
     "slice/Both.ice": "#include <Lib/Base.ice>\n#include <2nd/Base.ice>\n"
                       "module Both { struct S { Lib::Node a; Second::Node b; }; };\n",
     "file": "in the way\n", "bad.ice": "module {\n",
     "names.ice": "module A_b { struct iceS { int x; }; };",
-    # More than the preprocessor can handle
+    # A line that is longer than the preprocessor can handle
     "long.ice": "module L { // " + 70000 * "x" + "\n};\n",
     "includes.ice": "\n#include <long.ice>\n",
     "joined.ice": "module L { struct S { int a; }; };" + 8000 * "          \\\n",
-    # Line ends of another system, or none
+    # Line ends of another operating system, and a file without a line end
     "crlf.ice": "module L {\r\n struct S { int a; };\r\n};",
     "without.ice": "#include <crlf.ice>\nmodule M { struct T { L::S a; }; };",
     "twice.ice": "#include <crlf.ice>\n#include <crlf.ice>\n",
     "text.ice": f'module L {{ const string T = "{509 * "0"}"; '
                 f'struct S {{ string a = "{510 * "0"}"; }}; }};',
-    # A file next to the including file, or in the folder above, in whichever folder the compiler
-    # runs
+    # Files next to the including file and in the folder above it are found, in whichever folder the
+    # compiler runs
     "siblings/above.ice": "module Above { struct S { int a; }; };\n",
     "siblings/sub/next.ice": "module Next { struct S { Above::S a; Nothing b; }; };\n",
     "siblings/sub/low.ice": '#include "../above.ice"\n#include "next.ice"\n'
@@ -102,7 +102,7 @@ class Cases(Script):
                                       stderr=subprocess.PIPE, text=True)
             self.assertNotEqual(said.returncode, 0, option)
             self.assertIn("cannot write", said.stderr)
-        # Files of one program: two names in different files must not become the same name in C.
+        # In files of one program, two different names must not become the same name in C.
         one = "--one-program one/fir.ice"
         self.slice2c(f"{one} one/crc.ice", 1, "crc.ice:2:31: error: '::Cores::Bytes' becomes "
                      "'Cores_Bytes' in C, as one/fir.ice:1 does")
@@ -113,7 +113,7 @@ class Cases(Script):
         self.slice2c("--hw-c x crlf.ice", 1,
                      r"crlf.ice:1:1: error: expected an interface with \[\":hw\"\], found none")
         self.assertFalse(Path("crlf.h").exists())
-        # The description of declarations for other programs.
+        # --describe writes a description of the declarations for other programs.
         self.slice2c("--describe -I slice slice/Top.ice bad.ice", 1, "bad.ice:1:8: error: ")
         self.slice2c("--describe -I slice slice/Top.ice one/fir.ice")
         described = json.loads(self.said)
@@ -126,7 +126,7 @@ class Cases(Script):
                 {"name": "leaf", "type": "::Top::Leaf"}],
              "throws": ["::Top::Worse"]}])
         self.assertIn("::Cores::Fir", described)
-        # An exception that no operation throws, alone or as a base of another.
+        # An exception that no operation throws, by itself or as a base of another exception.
         Path("thrown.ice").write_text(
             "module M { exception Base { int a; }; exception Thrown extends Base { int b; };\n"
             "exception Forgotten { int c; };\n"
@@ -135,8 +135,8 @@ class Cases(Script):
                      "exception 'Forgotten'")
 
     def files_that_include_others(self):
-        """Several files in one run, all in one folder; a header is included by its name on
-        the -I path."""
+        """Several files are compiled in one run, into one folder. A header is included by its name
+        on the -I path."""
         self.slice2c("-I slice slice/Lib/Base.ice slice/Lib/Middle.ice --output-dir out/Lib")
         more = "-Islice -DWITH_MORE=7 slice/Top.ice --output-dir out"
         self.slice2c(more)
@@ -161,7 +161,7 @@ class Cases(Script):
         self.has('#include "sub/Top.hh"', file="ext/Top_client.cc")
 
     def limits(self):
-        """C metadata from a .limits file, also for definitions of an included file."""
+        """A .limits file contains C metadata, also for definitions of an included file."""
         write("limits/mesh.ice", "module G { sequence<int> Points; enum E { a }; enum F { b }; };")
         write("limits/user.ice", "#include <mesh.ice>\nmodule U { struct S { G::Points p; }; };")
         write("limits/mesh.limits", "# of a board\n\nG::Points c:max:21 # room\n::G::E c:scoped")
@@ -182,14 +182,14 @@ class Cases(Script):
                      "Top.h Top_types.c Top_client.c Top_async.c Top_server.c:")
         self.slice2c("--depend-file deps -Islice slice/Top.ice")
         self.has("Top_client.c", file="deps")
-        # Make reads the file of dependencies, and runs the rule for the header when an included
-        # file has changed.
+        # Make reads the dependency file, and runs the rule for the header if an included file has
+        # changed.
         write("Makefile", "include deps\nTop.h:\n\t@echo remade\n")
         write("Top.h", "")
         self.ask("touch", "-d", "+1 hour", "slice/Lib/Base.ice")
         self.ask("make", "-s", "Top.h")
         self.has("remade")
-        # An invalid file does not prevent the others from being compiled.
+        # An invalid file does not prevent the other files from being compiled.
         self.slice2c("bad.ice slice/Lib/Base.ice --output-dir mixed", 1,
                      "expected the name of the module")
         self.assertTrue(Path("mixed/Base.h").exists())
@@ -202,7 +202,7 @@ class Cases(Script):
         self.slice2c("-I . includes.ice", 1, f"long.ice:1: {too_long}")
         self.slice2c("joined.ice", 1, f"joined.ice:[0-9]*: {too_long}")
         self.slice2c("-I . crlf.ice without.ice --output-dir x")
-        self.assertEqual(self.said, "")  # line ends of any kind are accepted without a message
+        self.assertEqual(self.said, "")  # line ends of all kinds are accepted without a message
         self.slice2c("-I . twice.ice", 1, "crlf.ice:2:9: error: .S. is already defined: this file "
                      "is included twice; begin it with #pragma once")
         self.slice2c("text.ice", 1, "^1 error$", "text.ice:1:[0-9]*: error: string of 510 bytes: "

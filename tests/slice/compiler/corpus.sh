@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# corpus: inputs for the compiler's fuzzer: every Slice file of the tests, and each case of the
-# agreement test in a file. Next to the folder, as <folder>.dict, the words of Slice.
-# Usage: corpus.sh output-folder source-folder
+# corpus: writes the inputs for the fuzzer of the compiler: every Slice file of the tests, and each
+# case of the agreement test as a file. Also writes <folder>.dict next to the folder, with the words
+# of Slice. Usage: corpus.sh output-folder source-folder
 set -eu
 rm -rf "$1"
 mkdir -p "$1"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_compiler: libFuzzer's entry: any text through lexer, parser, checks and all generators, as
-// called by slice2c. Text without errors must produce C, and each of its [":hw"] interfaces
-// registers, wrappers, servant, proxy and skeletons; nothing may crash, hang or leak (built with
-// sanitizers).
+// fuzz_compiler: entry point for libFuzzer: it passes any text through lexer, parser, checks and
+// all generators, as slice2c does. A text without errors must result in C, and each of its [":hw"]
+// interfaces in registers, wrappers, servant, proxy and skeletons. Nothing may crash, hang or leak
+// (built with sanitizers).
 
 #include "c/generator.h"
 #include "front/front.h"
@@ -28,7 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         blocks = hw::mapHardware(unit, diagnostics);
     if (diagnostics.errors() > 0) {
         if (out.str().empty())
-            std::abort(); // a failure without an error message
+            std::abort(); // the compiler failed without an error message
         return 0;
     }
     if (generateC(unit, names).empty())

@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""names: every identifier of generated C is tried as every kind of name that a Slice file can give.
+"""names: tries each identifier of generated C as a name of each kind that a Slice file can define.
 
     names.py SLICE2C SW WORK
 
-The C of TEMPLATES gives the identifiers. Each identifier replaces X in each template, in a separate
-module. There is one Slice file per kind of name; its C must compile as C90, and its header as C++.
-slice2c may refuse a name with an underscore that already exists at file scope in C. It must accept
-all names without an underscore, which Slice forbids by default.
+The identifiers come from the C code that TEMPLATES generate. Each identifier replaces X in each
+template, in a module of its own. There is one Slice file per kind of name; its C must compile as
+C90, and its header as C++. slice2c may reject a name with an underscore that already exists at file
+scope in C. It must accept all names without an underscore; Slice forbids underscores by default.
 """
 import os
 import re
@@ -15,7 +15,8 @@ import subprocess
 import sys
 
 SLICE2C, SW, WORK = sys.argv[1:4]
-C_FLAGS = ["-std=c90", "-pedantic", "-Werror"]  # optimisation would take most of the test's time
+# without optimisation, which would take most of the test's time
+C_FLAGS = ["-std=c90", "-pedantic", "-Werror"]
 INCLUDES = [f"-I{SW}/base", f"-I{SW}/icec"]
 COMMON = "struct qS { int qa; string qb; }; class qC { int qa; }; exception qE { int qa; };"
 
@@ -93,7 +94,8 @@ def identifiers(folder):
 def is_slice_name(name):
     return re.match("[A-Za-z]", name) and not (name.endswith(("_", "Helper", "Holder", "Prx",
                                                               "Ptr")) or "__" in name
-                or re.fullmatch(r"q\w{1,3}(Disp)?", name))  # these names belong to the templates
+                # the names q... are used by the templates
+                or re.fullmatch(r"q\w{1,3}(Disp)?", name))
 
 
 def written(module, template, name):
@@ -115,7 +117,7 @@ def main():
     bad, refused, tried = [], 0, 0
     for kind, template in TEMPLATES.items():
         folder = f"{WORK}/{kind}"
-        # A name with M_ in it exists only in the C of its template.
+        # A name that contains M_ occurs only in the C code of its own template.
         names = sorted(n for n in own[kind] | {n for n in parts if "M_" not in n}
                        if is_slice_name(n))
         left = dict(enumerate(names, 2))  # by line

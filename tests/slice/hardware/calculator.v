@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// calculator: a core behind its generated wrapper: adds, swaps, divides in 40 clocks.
+// calculator: a core for tests, behind a generated wrapper. It adds, swaps, and divides in 40
+// clocks.
 //
-// Dividing by 0 is refused; dividing by 666 never ends, so that a hung core can be tested.
+// It refuses to divide by 0. A division by 666 never ends, to test a core that hangs.
 
 `default_nettype none
 
@@ -23,7 +24,7 @@ module calculator (
     reg         negate;
     reg  [7:0]  shift;
     reg  [31:0] sum, quotient, remainder;
-    reg  [5:0]  left; // clocks of the division
+    reg  [5:0]  left; // number of clocks until the division ends
 
     wire        divide_done    = left == 6'd1;
     wire        divide_refused = divide_b == 32'd0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// hardware_test: generated servants call cores through the FSMC driver, a port to the register bus
-// of a slot, and generated wrappers.
+// hardware_test: tests that generated servants can call cores through the FSMC driver, a port to
+// the register bus of a slot, and generated wrappers.
 
 #include "VCalculatorSlot.h"
 #include "VManySlot.h"
@@ -48,7 +48,7 @@ TEST_F(CalculatorServant, IdentityIsTypeAndVersionOfTheInterface) {
     EXPECT_EQ(Hw_Core_init(&other, slot, 0x43410103, &core_.port, &core_), HW_WRONG_CORE);
 }
 
-// The separate clock stops (OWN_CLOCK): a read then has no result.
+// With a separate clock (OWN_CLOCK) that has stopped, a read has no result.
 TEST_F(CalculatorServant, ACoreThatNoLongerAnswersIsATimeOut) {
     core_.core_.core.id ^= 1;
     EXPECT_EQ(statusOf([&] { core_.add(2, 3); }), ICE_TIMEOUT);
@@ -105,7 +105,7 @@ TEST_F(CalculatorServant, AHungCoreIsATimeOutAndIsResetForTheNextCall) {
 }
 
 TEST_F(CalculatorServant, OtherCallsGoOnWhileALongOneIsUnderWay) {
-    FSMC_write(slot, 3, 1u << 3); // divide begins; its parameters are 0 / 0
+    FSMC_write(slot, 3, 1u << 3); // starts `divide` by its register; both parameters are 0
     EXPECT_EQ(divided(8, 2), ICE_LIMIT) << "busy";
     EXPECT_EQ(core_.add(1, 2), 3);
     for (int i = 0; i < 60; ++i)
@@ -113,7 +113,7 @@ TEST_F(CalculatorServant, OtherCallsGoOnWhileALongOneIsUnderWay) {
     EXPECT_EQ(divide(8, 2), 4);
 }
 
-// 64-bit values, floating point, and words chosen by metadata, at the wrapper pins.
+// Tests 64-bit values, floating point, and words that metadata selects, at the pins of the wrapper.
 class WideEchoServant : public ::testing::Test {
 protected:
     WideEchoServant() {
@@ -174,8 +174,9 @@ bool isSame(const Demo_Five& x, const Demo_Five& y) {
     return std::memcmp(&x, &y, sizeof x) == 0;
 }
 
-// An operation with 20 words of parameters and 20 words of results, and another with three, at the
-// pins of the wrapper. (The VHDL wrapper behaves the same: slice.hardware.vhdl.many.)
+// Tests an operation with 20 words of parameters and 20 words of results, and another with three
+// words, at the pins of the wrapper. (slice.hardware.vhdl.many shows that the VHDL wrapper behaves
+// the same.)
 class ManyServant : public ::testing::Test {
 protected:
     ManyServant() {
@@ -199,7 +200,7 @@ protected:
     ~ManyServant() override { EXPECT_EQ(rig_.errors_, 0u) << "accesses to no register"; }
     static Ice_Long number(U32 n) { return {n * 0x9E3779B9U, static_cast<Ice_Int>(n * 77 + 1)}; }
     static Ice_Long inverted(Ice_Long n) { return {~n.low, ~n.high}; }
-    // Each call has different values, so that a stale value is detected.
+    // Makes a call. Each call has other values, so that a value of an earlier call is detected.
     void turn() {
         Ice_Long n[10];
         for (Ice_Long& one : n)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// many: a core with more words than a slot has: rotates five numbers by one place, inverts five,
-// and adds two.
+// many: a core for tests with more words than a slot: it rotates five numbers by one place, inverts
+// five, and adds two.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// scaler: adds an offset to the samples in one buffer in DDR3 and writes them to another, one
-// sample per clock. The offset 0x7777 makes the core hang.
+// scaler: a core for tests that adds an offset to the samples in a buffer in DDR3 and writes the
+// sums to another buffer, one sample per clock. The offset 0x7777 makes it hang.
 
 `default_nettype none
 
@@ -19,7 +19,7 @@ module scaler (
     wire [15:0] offset, limit;
     reg  [2:0]  state;
     reg  [6:0]  index;
-    reg  [47:0] earlier; // samples of the incomplete word
+    reg  [47:0] earlier; // samples of the word that is not complete yet
     reg  [31:0] total;
     reg  [15:0] largest, largest_index, over_index;
     reg         over;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// scaler_test: tests sequences in DDR3, exceptions, calls that are answered later, and events; also
+// scaler_test: tests sequences in DDR3, exceptions, calls that end later, and events. It also tests
 // the generated proxy, which drives the pins of a wrapper.
 
 #include "VScalerSlot.h"

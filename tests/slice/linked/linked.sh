@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# linked: slice2c sw-folder work-folder   A program for the Cortex-M3 contains only the used parts
-# of an interface and of the run time. Checked by nm on a client of one operation and a server of
-# one interface (docs/slice-mapping.md).
+# linked: slice2c sw-folder work-folder   Checks with nm that a program for the Cortex-M3 contains
+# only those parts of an interface and of the run time that it uses. The programs are a client of
+# one operation and a server of one interface (docs/slice-mapping.md).
 set -eu
 slice2c=$1 sw=$2 work=$3
 here=$(cd "$(dirname "$0")" && pwd)
@@ -31,7 +31,8 @@ build() { # name, flags
         awk 'NR == 2 {print $1}') bytes of text, $(wc \
         -l <"$work/$name.names") names of IceC and of generated code"
 }
-# Also with AddressSanitizer on a host, without the tables of interfaces that are not served.
+# The same with AddressSanitizer on the host, without the tables of the interfaces that the program
+# does not serve.
 (mkdir -p "$work/host" && cd "$work/host" &&
     # shellcheck disable=SC2046 # a list of words
     gcc -std=c90 -Os -fsanitize=address --param asan-globals=0 -ffunction-sections -fdata-sections \

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * program: a client of one operation of an interface with more operations; with -DSERVER, one
- * servant of a file that declares more interfaces.
+ * program: a client that uses one operation of an interface; with -DSERVER, a servant of one
+ * interface. The file declares more operations and interfaces.
  */
 #include "Linked.h"
 

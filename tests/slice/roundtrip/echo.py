@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""echo: stock ZeroC Ice on both sides of a bridge of generated C.
+"""echo: the programs with stock ZeroC Ice on both sides of generated C code, which forwards calls.
 
-echo.py generate SEED FOLDER     writes Random.ice, Hidden.ice and Definer.ice
-echo.py server SEED FOLDER       gives back what it gets; prints its port
-echo.py client SEED FOLDER PORT  sends random values of every type, in both encodings, and compares
+echo.py generate SEED FOLDER     writes Random.ice, Hidden.ice and Definer.ice echo.py server SEED
+FOLDER       returns the values that it receives; prints its port echo.py client SEED FOLDER PORT
+sends random values of every type, in both encodings, and compares
+    them with the returned values
 """
 
 import os
@@ -16,7 +17,8 @@ from model import Model
 
 
 def same(t, a, b, encoding, seen):
-    """Compares two values. In encoding 1.0 optional members are lost."""
+    """Returns True if two values are equal. In encoding 1.0 optional members are lost, so they are
+    not compared."""
     if a is None or b is None:
         return a is None and b is None
     if t.kind == "sequence":
@@ -29,14 +31,15 @@ def same(t, a, b, encoding, seen):
         return all(same(ft, getattr(a, n), getattr(b, n), encoding, seen) for n, ft, _ in t.fields)
     if t.kind == "class":
         if id(a) in seen:
-            return seen[id(a)] is b  # instances that were shared must be shared afterwards
+            # an instance that was sent in several places must be received as one instance
+            return seen[id(a)] is b
         if type(a) is not type(b):
             return False
         seen[id(a)] = b
         t = next(d for d in model.declared if d.name == type(a).__name__)
         return members(t, a, b, encoding, seen)
-    if t.kind == "proxy" and encoding == "1.0":  # encoding 1.0 does not transfer the encoding of a
-                                                 # proxy
+    # encoding 1.0 does not transfer the encoding of a proxy
+    if t.kind == "proxy" and encoding == "1.0":
         return a.ice_encodingVersion(Ice.Encoding_1_0) == b.ice_encodingVersion(Ice.Encoding_1_0)
     return a == b
 
@@ -53,7 +56,7 @@ def members(t, a, b, encoding, seen):
 
 
 class Members:
-    """Returns values for the members of an exception."""
+    """An object whose attributes are the members of an exception."""
 
 
 def check(what, ok, *values):
@@ -99,10 +102,10 @@ def thrown(echo, module, ic, encoding, form, e):
 
 
 def hide(v, t, module, ic, values):
-    """Fills an instance of the class or exception Hidden...; `values`: number of values that the
-    members of `t` may have."""
-    graph = [(v, t)] if t.kind == "class" else []  # members of the class may refer to the instance
-                                                   # itself
+    """Fills an instance of the class or exception Hidden... with random members. `values` is the
+    number of values that the members of `t` may contain."""
+    # members of the instance may refer to the instance itself
+    graph = [(v, t)] if t.kind == "class" else []
     for name, ft, tag in t.all_fields():
         setattr(v, name, model.value(ft, module, ic, [values], graph))
     v.more, v.last = "unknown to C", Ice.Unset if model.random.random() < 0.5 else 5
@@ -110,7 +113,8 @@ def hide(v, t, module, ic, values):
 
 
 def same_hidden(t, v, got, encoding):
-    """Returns the value as sent if slices are preserved, otherwise reduced to `t`."""
+    """Returns True if `got` is the value that was sent. If slices are preserved, it must be
+    unchanged, otherwise reduced to the type `t`."""
     kept = t.preserves() and encoding == "1.1"
     if type(got).__name__ != ("Hidden" if kept else "") + t.name or not members(t, v, got, encoding,
                                                                                 {id(v): got}):
@@ -119,8 +123,8 @@ def same_hidden(t, v, got, encoding):
 
 
 def unknown(echo, module, ic, encoding, t):
-    """Sends an instance of a type unknown to C. It is refused if the format does not contain the
-    size of a slice."""
+    """Sends an instance of a type that the C side does not know. If the format does not contain the
+    size of a slice, the instance must be rejected."""
     v = getattr(module, "Hidden" + t.name)()
     graph = hide(v, t, module, ic, 15)
     v.other = v.same = model.value(t, module, ic, [15], graph)
@@ -143,7 +147,8 @@ def unknown(echo, module, ic, encoding, t):
 
 
 def lone(echo, module, encoding):
-    """Sends a graph unknown to C through a parameter of type Object, unchanged."""
+    """Sends a graph of a type that the C side does not know through a parameter of type Object; it
+    must return unchanged."""
     first, second = module.Lone(1, None, "one"), module.Lone(2)
     first.next, second.next, first.any = second, first, second
     if encoding == "1.0":
@@ -163,8 +168,8 @@ def lone(echo, module, encoding):
 
 def declared(echo, module, encoding):
     """Sends a class that the file of the operation only declares, and interfaces by value. The
-    compact format does not allow unknown names of interfaces; with encoding 1.0 Python does not
-    return them."""
+    compact format forbids interface names that the receiver does not know; with encoding 1.0 Python
+    does not return them."""
     for form in ("Compact", "Sliced"):
         sent = module.Later(7)
         sent.next = sent
@@ -176,14 +181,15 @@ def declared(echo, module, encoding):
 
 
 class Thrower:
-    """Throws `what` when the server forwards a call to this object."""
+    """An object that throws the exception `what` when the server forwards a call to it."""
 
     def forward(self, to, current):
         raise self.what
 
 
 def forwarded(echo, module, ic, encoding, thrower, own, e):
-    """Makes the server throw an exception whose type C does not know; C must pass it on."""
+    """Makes the server throw an exception of a type that the C side does not know; the C side must
+    pass it on."""
     thrower.what = sent = getattr(module, "Hidden" + e.name)()
     hide(sent, e, module, ic, 15)
     sent.other = module.Lone(7)
@@ -214,7 +220,7 @@ def forwarder(module, e):
 
 
 def server(module):
-    """Returns every value it receives, until `shutdown` is called."""
+    """Serves an object that returns every value it receives, until `shutdown` is called."""
     def echo(self, v, current):
         return v, v
 

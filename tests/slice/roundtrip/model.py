@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""model: generates random Slice types from a seed, their Slice text, and random values of them."""
+"""model: generates random Slice types from a seed, their Slice text, and random values of these
+types."""
 
 import random
 import string
@@ -12,11 +13,12 @@ KEYS = ["bool", "byte", "short", "int", "long", "string"]
 
 
 class Type:
-    """kind: name of a scalar, enum, struct, sequence, dictionary, class, proxy or exception."""
+    """A Slice type. `kind` is the name of a scalar, or enum, struct, sequence, dictionary, class,
+    proxy or exception."""
 
     def __init__(self, kind, name=None):
         self.kind, self.name = kind, name
-        self.fields = []  # struct, class, exception: (name, type, tag or None)
+        self.fields = []  # members of a struct, class or exception: (name, type, tag or None)
         self.base = None
         self.element = self.key = self.maximum = None
         self.values = []  # enum
@@ -30,7 +32,7 @@ class Type:
         return (self.base.all_fields() if self.base else []) + self.fields
 
     def preserves(self):
-        """Returns whether slices of unknown derived types are preserved."""
+        """Returns True if slices of unknown derived types are preserved."""
         return self.preserve or (self.base is not None and self.base.preserves())
 
     def legal_key(self):
@@ -114,7 +116,7 @@ class Model:
     # ---- Slice
 
     def slice_text(self, hidden=False):
-        """Returns the Slice text; with `hidden`, including classes that the C side does not
+        """Returns the Slice text. With `hidden`, it includes classes that the C side does not
         know."""
         out = ["module T {"]
         for t in self.declared:
@@ -167,7 +169,7 @@ class Model:
         out.append("};")
         return '[["underscore", "suppress-warning:deprecated"]]\n' + "\n".join(out) + "\n"
 
-    # File that defines the types which the other file only declares.
+    # Slice file with the definitions of those types that the other file only declares.
     DEFINER = """module T {
 class Later { int id; Later next; };
 interface Marker { void op(); };
@@ -210,8 +212,8 @@ interface Marker { void op(); };
     # ---- values
 
     def value(self, t, module, ic, budget, graph):
-        """Returns a random value. `budget`: [number of values that may still be created]; `graph`:
-        instances created so far, which may be shared."""
+        """Returns a random value. `budget` is a list with the number of values that may still be
+        created. `graph` contains the instances created so far, which may be used again."""
         r = self.random
         budget[0] -= 1
         if t.kind in SCALARS or t.kind == "proxy":

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""relay: forwards connections between a client and a server on 127.0.0.1, prints its own port, and
-runs until it is killed. relay.py PCAP PORT: writes every byte to PCAP as TCP over IPv4, including
-the start and end of each connection."""
+"""relay: forwards connections from clients to a server on 127.0.0.1, prints its own port, and runs
+until it is killed. Usage: relay.py PCAP PORT. It writes every byte to the file PCAP as TCP over
+IPv4, with the start and end of each connection."""
 import asyncio
 import socket
 import struct
@@ -14,7 +14,8 @@ PORT = int(sys.argv[2])
 
 
 class Capture:
-    """One TCP connection in the pcap file (LINKTYPE_IPV4); `side` 0: from the client."""
+    """One TCP connection in the pcap file (LINKTYPE_IPV4). `side` is 0 for bytes from the
+    client."""
     file = open(sys.argv[1], "wb")
     file.write(struct.pack("<IIIIII", 0xA1B2C3D4, 0x00040002, 0, 0, 0xFFFF, 228))
 
@@ -38,7 +39,7 @@ class Capture:
 
 
 async def connection(reader, writer):
-    """Passes on bytes from both sides until one ends."""
+    """Forwards bytes in both directions until one side closes the connection."""
     try:
         server_reader, server_writer = await asyncio.open_connection("127.0.0.1", PORT)
     except OSError:  # the server no longer listens

@@ -1,9 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # roundtrip: slice2c sw-folder work-folder test-folder-of-IceC
-# Random Slice types and values (SEED) by stock ZeroC Ice through generated C servants and proxies,
-# to stock Ice and back; with sanitizers. Wireshark's ICEP dissector sees nothing malformed on
-# either side of the C.
+# Sends values of random Slice types (SEED) from stock ZeroC Ice through generated C proxies and
+# servants to stock Ice and back; with sanitizers. Wireshark's ICEP dissector must find nothing
+# malformed on either side of the C code.
 set -eu
 slice2c=$1 sw=$2 work=$3 icec=$4
 here=$(dirname "$0")

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// crypto_test: tests that the firmware's Ascon-AEAD128 gives the known answers of Ascon's authors,
-// and rejects a message with a wrong bit. Its X25519 gives the answers of the standard and, for
-// random numbers, the answers of OpenSSL.
+// crypto_test: checks that the firmware's Ascon-AEAD128 gives the known answers that Ascon's
+// authors published, and rejects a message with a wrong bit. Checks that its X25519 gives the
+// results of the standard and, for random numbers, the results of OpenSSL.
 
 #include "known_answers.h"
 #include "random.h"
@@ -36,7 +36,7 @@ Bytes seal(const Bytes& associated, Bytes message) {
     return message;
 }
 
-// Returns the message; empty if the tag is wrong.
+// Returns the decrypted message, or an empty message if the tag is wrong.
 Bytes open(const Bytes& associated, Bytes sealed) {
     Ascon ascon;
     U8 tag[ASCON_TAG_BYTES];
@@ -83,7 +83,7 @@ Value multiply(const Value& number, const U8* point) {
     return result;
 }
 
-// RFC 7748, 5.2: multiplies repeatedly, starting with 9 as number and as point.
+// Test of RFC 7748, 5.2: multiplies repeatedly, beginning with 9 as the number and as the point.
 TEST(X25519Code, GivesTheStandardsAnswerAfterAThousandTimes) {
     Value number = {9}, point = {9};
     for (int i = 0; i < 1000; ++i) {
@@ -97,8 +97,8 @@ TEST(X25519Code, GivesTheStandardsAnswerAfterAThousandTimes) {
     EXPECT_EQ(number, expected);
 }
 
-// The points are random or near 2^255, where some are not below the prime p. OpenSSL refuses points
-// for which the result is 0.
+// The points are random or near 2^255, where some of them are not less than the prime p. Points for
+// which OpenSSL refuses the result 0 are skipped.
 TEST(X25519Code, AgreesWithOpenSsl) {
     using Key = std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)>;
     using Context = std::unique_ptr<EVP_PKEY_CTX, decltype(&EVP_PKEY_CTX_free)>;

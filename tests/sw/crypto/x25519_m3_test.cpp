@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// x25519_m3_test: measures a multiplication on a Cortex-M3, in the ARM binary of the firmware.
+// x25519_m3_test: measures an X25519 multiplication in the ARM binary of the firmware on a
+// Cortex-M3.
 
 #include "plain_bus.h"
 #include "random.h"
@@ -47,7 +48,7 @@ TEST(X25519M3, TakesTheSameCyclesForAnyNumberAndALittleStack) {
         EXPECT_EQ(m3.cpu.word(stack - 576), 0xA5A5A5A5u) << "more than 576 bytes of stack";
     }
     EXPECT_LT(cycles[0], 12'000'000u); // 100 ms at 120 MHz
-    // The model counts 2 more cycles if it was stopped before.
+    // The model counts 2 cycles more for a multiplication before which it was stopped.
     EXPECT_NEAR(double(cycles[0]), double(cycles[1]), 4);
     EXPECT_EQ(cycles[1], cycles[2]);
     std::printf("%llu cycles\n", static_cast<unsigned long long>(cycles[0]));

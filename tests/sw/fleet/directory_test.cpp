@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// directory_test: gateways with IceGrid's registries and IceStorm, all real processes: stock
-// clients find a vehicle by name, follow it from one ground station to another, and are informed of
-// it.
+// directory_test: tests gateways together with IceGrid's registries and IceStorm, all as real
+// processes. Stock clients find a vehicle by its name, continue to reach it when it moves from one
+// ground station to another, and are notified of this.
 
 #include "gateway_rig.h"
 #include <IceSSL/IceSSL.h>
@@ -19,7 +19,7 @@ Words with(Words words, const Words& more) {
     return words;
 }
 
-// Returns a free port of 127.0.0.1, below the ones that the system assigns.
+// Returns a free port of 127.0.0.1 that is lower than the ports that the system assigns.
 int freePort() {
     static int port = 20000 + getpid() % 1000 * 12;
     const Ice::CommunicatorHolder ic(Ice::initialize());
@@ -32,7 +32,7 @@ int freePort() {
         }
 }
 
-// A folder that is removed together with this object.
+// A folder that is removed when this object is destroyed.
 struct Folder {
     explicit Folder(const std::string& name)
         : path(testing::TempDir() + name + "." + std::to_string(getpid())) {
@@ -42,11 +42,11 @@ struct Folder {
     const std::string path;
 };
 
-// A registry of IceGrid, which may be killed and restarted.
+// A registry of IceGrid, which can be killed and restarted.
 class Registry {
 public:
-    // `protocol`: tcp or ssl. `more`: options of the certificate; for a replica also the locator of
-    // the master.
+    // `protocol` is tcp or ssl. `more` contains the options for the certificate and, for a replica,
+    // the locator of the master.
     Registry(const std::string& name, const std::string& protocol, const Words& more)
         : here_(protocol + " -h 127.0.0.1"), folder_("registry." + name),
           words_(with({PROGRAMS "/icegridregistry", "--IceGrid.InstanceName=IceGrid",
@@ -82,11 +82,11 @@ private:
 
 class Directory : public Gateway {
 protected:
-    // `isSecure`: TLS between machines, and a key for the vehicle.
+    // `isSecure`: TLS is used between the machines, and the vehicle has a key.
     explicit Directory(bool isSecure = false) : isSecure_(isSecure) {
         rig_.placeOther(rig_.elsewhere);
     }
-    // Returns a certificate for IceSSL, as options of Ice; empty without encryption.
+    // Returns the options of Ice that set a certificate for IceSSL; empty without encryption.
     Words certificate() const {
         if (!isSecure_)
             return {};
@@ -98,7 +98,7 @@ protected:
         return {"--Ice.Plugin.IceSSL=IceSSL:createIceSSL",
                 "--IceSSL.CAs=" + secrets_.path + "/authority.pem", "--IceSSL.CertFile=" + pem};
     }
-    // Gives the vehicle a key; returns its file.
+    // Gives the vehicle a key. Returns the path of the key file.
     std::string key() {
         const std::string path = secrets_.path + "/my.key";
         std::ofstream(path) << std::string(32, '5');
@@ -107,7 +107,7 @@ protected:
         rig_.with([&] { Link_setKey(rig_.uav.link(), 0, key.data(), 1); });
         return path;
     }
-    // Moves the vehicle into reach of the first ground station, or of the other one.
+    // Moves the vehicle into reach of the first ground station (`isHome`), or of the second one.
     void fly(bool isHome) {
         rig_.with([&] { rig_.uav.move(isHome ? rig_.air : rig_.elsewhere); });
     }
@@ -131,7 +131,7 @@ protected:
         return Ice::initialize(data);
     }
     void followAVehicle(const Words& more);
-    // Calls until a reply arrives; an unknown number of calls may have been executed.
+    // Calls repeatedly until a reply arrives. The number of calls that were executed is unknown.
     int callOn(const std::shared_ptr<RadioTest::UavPrx>& echo) {
         for (int unknown = 0;;)
             try {
@@ -203,7 +203,7 @@ TEST_F(SecureDirectory, ClientsFollowAVehicleFromOneGroundToAnother) {
         << "without a certificate";
 }
 
-// Both ground stations can hear the vehicle, and have the same address and key.
+// The vehicle is in reach of both ground stations, which have the same address and key.
 TEST_F(Directory, AGroundThatTakesOverKeepsTheVehicleUntilItEnds) {
     rig_.placeOther(rig_.air);
     const std::string file = key();
@@ -241,7 +241,7 @@ TEST_F(Directory, OneOfTwoRegistriesIsKilledAndComesBack) {
         Ice::CommunicatorHolder late(client());
         EXPECT_EQ(callOn(echoOf(late.communicator())), 0) << "one that asks the replica";
     }
-    fly(false); // the registry cannot be updated until the master is back
+    fly(false); // while the master is down, the registry cannot be updated
     ASSERT_TRUE(other->hear("does not answer")) << other->said();
     master_.start();
     ASSERT_TRUE(other->hear("uav1 is here")) << other->said();
@@ -251,8 +251,8 @@ TEST_F(Directory, OneOfTwoRegistriesIsKilledAndComesBack) {
     EXPECT_EQ(world_.echo->twice(), 0);
 }
 
-// Records the events that it receives: name of the vehicle, its proxy, and the bytes of the other
-// parameters.
+// Records the events that it receives: the name of the vehicle, the vehicle's proxy, and the bytes
+// of the other parameters.
 class Subscriber : public Ice::Blobject {
 public:
     bool ice_invoke(std::vector<Ice::Byte> in, std::vector<Ice::Byte>&,

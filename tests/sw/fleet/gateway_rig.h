@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// gateway_rig: runs icesoc-gateway between the radio and programs without the plugin.
+// gateway_rig: runs icesoc-gateway between the radio and programs that do not use the plugin.
 
 #pragma once
 
@@ -9,7 +9,7 @@
 
 class Gateway : public ::testing::Test {
 protected:
-    // Runs the gateway; `port_` and `echo_` then refer to it.
+    // Starts the gateway, and sets `port_` and `echo_`.
     void start(std::vector<std::string> more = {}, const std::string& at = "127.0.0.1:0") {
         more.insert(more.begin(), GATEWAY);
         more.insert(more.end(),
@@ -25,7 +25,7 @@ protected:
     bool hasPrinted(const std::string& text) const {
         return said().find(text) != std::string::npos;
     }
-    // Returns the communicator of a program without the plugin.
+    // Returns a communicator without the plugin.
     static Ice::CommunicatorPtr plain() {
         return program(
             {{"Ice.Default.InvocationTimeout", "1800000"}, {"Ice.RetryIntervals", "-1"}});
@@ -39,7 +39,7 @@ protected:
     void expectAnswer(int id = 1) {
         EXPECT_EQ(echo_->repeat(id, {1, 2}), (RadioTest::Bytes{1, 2}));
     }
-    // Asks repeatedly for the number of notes, until it has reached `wanted`.
+    // Asks for the number of notes until it has reached `wanted`.
     void expectNoted(int wanted) {
         int noted = 0;
         for (int calls = 0; calls < 1000 && noted < wanted; ++calls)
@@ -53,7 +53,7 @@ protected:
     std::shared_ptr<RadioTest::UavPrx> echo_;
 };
 
-// Returns the reason of a call's failure; empty if it succeeds.
+// Returns the reason why a call fails, or an empty string if it succeeds.
 inline std::string whyFails(const std::function<void()>& call) {
     try {
         call();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// gateway_rights_test: tests which calls a client may make through icesoc-gateway: objects for
-// maintenance, rights by certificate, and the addressee of the vehicle's calls.
+// gateway_rights_test: tests which calls clients may make through icesoc-gateway: calls to
+// maintenance objects, rights by certificate, and which program receives the vehicle's calls.
 
 #include "gateway_rig.h"
 #include <IceSSL/IceSSL.h>
@@ -12,19 +12,20 @@
 
 namespace {
 
-// Maintained has the type of objects for maintenance.
+// An object that has the type of maintenance objects.
 struct Maintained : Ice::Object {
     bool ice_isA(std::string id, const Ice::Current&) const override {
         return id == "::IceSoC::Maintenance";
     }
-    std::string ice_id(const Ice::Current&) const override { // the gateway itself sends ice_ping
+    // the gateway itself only calls ice_ping
+    std::string ice_id(const Ice::Current&) const override {
         ++calls;
         return ice_staticId();
     }
     mutable std::atomic<int> calls{0};
 };
 
-// Heard answers each call with the same number.
+// A listener that answers each call with the same number.
 struct Heard : RadioTest::Listener {
     explicit Heard(int result) : answer(result) {}
     int heard(int, const Ice::Current&) override {
@@ -49,8 +50,8 @@ TEST_F(Gateway, MaintenanceIsReachedAtItsOwnDoor) {
         const std::string facet = name == "faceted" ? "f" : "";
         world_.uav->addFacet(servant, id, facet);
         const std::string proxy = name + (facet.empty() ? "" : " -f f");
-        for (int turn = 0; turn < 2; ++turn) // in the first turn the gateway asks the object, in
-                                             // the second it uses the cached answer
+        // for the first call the gateway asks the object, for the second it uses the cached answer
+        for (int turn = 0; turn < 2; ++turn)
             expectRefusal(call(proxy, port_), "'" + name + "' is a maintenance object");
         EXPECT_EQ(whyFails(call(proxy, door)), "");
         const auto oneway = ic_->stringToProxy(proxy + " -o:" + endpoint());
@@ -63,10 +64,10 @@ TEST_F(Gateway, MaintenanceIsReachedAtItsOwnDoor) {
     EXPECT_EQ(servant->calls, 5) << "calls on the maintenance endpoint";
 }
 
-// ---- the vehicle's calls ----
+// ---- calls made by the vehicle ----
 
-// Both programs have an object with this name, and the vehicle calls it while it serves one of the
-// two programs.
+// Both programs have an object with the same name. The vehicle calls this name while it serves a
+// call of one of the programs; the call must reach this program.
 TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
     start();
     struct Program {
@@ -93,7 +94,8 @@ TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
     EXPECT_EQ(one.heard->calls, 6);
     EXPECT_EQ(two.heard->calls, 6);
     EXPECT_EQ(idle.heard->calls, 0);
-    // A program passes a proxy of the object, as if the vehicle were to call it later.
+    // Passes a proxy of the program's object to an operation, as if the vehicle were to call the
+    // object later.
     const auto passes = [](const Program& program, const std::string& operation) {
         Ice::OutputStream out(program.ic.communicator());
         out.startEncapsulation();
@@ -105,10 +107,12 @@ TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
         out.finished(in);
         try {
             program.echo->ice_invoke(operation, Ice::OperationMode::Normal, in, result);
-        } catch (const Ice::LocalException&) { // the operation has no such parameter
+            // expected, because the operation has no such parameter
+        } catch (const Ice::LocalException&) {
         }
     };
-    passes(idle, "ice_ping"); // allowed for every client, because ice_ping passes no objects
+    // every client may call ice_ping, so its parameters do not count as passed objects
+    passes(idle, "ice_ping");
     EXPECT_EQ(two.echo->callBack(1), 10);
     passes(one, "fetch");
     EXPECT_EQ(two.echo->callBack(1), 1) << "only one has passed this object";
@@ -117,8 +121,8 @@ TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
     EXPECT_EQ(idle.heard->calls, 0);
 }
 
-// With TLS the subject of a client's certificate is known; the certificates are made by `./icesoc
-// key FILE --certificate`.
+// With TLS, the gateway knows the subject of a client's certificate. `./icesoc key FILE
+// --certificate` makes the certificates.
 TEST_F(Gateway, ACertificateSaysWhoAsks) {
     const std::string folder = testing::TempDir() + "gateway_tls." + std::to_string(getpid());
     std::filesystem::create_directories(folder + "/others");

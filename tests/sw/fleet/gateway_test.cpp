@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // gateway_test: tests icesoc-gateway between the radio and stock Ice programs without the plugin,
-// in comparison with ZeroC's forwarders. The gateway preserves the same parts of a call as
-// IceBridge, and also facets; programs reach it through a Glacier2 router. (Many clients at once:
-// bench.load. A modem that disappears and returns: test_ground_engine.)
+// and compares it with ZeroC's forwarders. The gateway must preserve the same parts of a call as
+// IceBridge, and also facets. Programs must be able to reach it through a Glacier2 router.
+// (bench.load tests many clients at once; test_ground_engine tests a modem that disappears and
+// returns.)
 
 #include "gateway_rig.h"
 #include <Glacier2/Router.h>
@@ -25,7 +26,7 @@ TEST_F(Gateway, TheUavCallsTheStationBehindIt) {
         std::dynamic_pointer_cast<Ice::TCPEndpointInfo>(adapter->getEndpoints()[0]->getInfo());
     start({"-t", "1", "--station", "127.0.0.1:" + std::to_string(info->port)});
     EXPECT_EQ(echo_->callStation(10), 90);
-    // No server at --station: the UAV gets an error, and the gateway continues.
+    // If no server listens at --station, the UAV gets an error, and the gateway continues.
     adapter->destroy();
     EXPECT_ANY_THROW(echo_->callStation(1));
     expectAnswer();
@@ -33,7 +34,7 @@ TEST_F(Gateway, TheUavCallsTheStationBehindIt) {
     EXPECT_TRUE(hasPrinted("no server listens at 127.0.0.1"));
 }
 
-// Stores the vehicle's proxy from a vehicleState.
+// Stores the proxy that the vehicle passes with vehicleState.
 struct Station : Ice::Blobject {
     bool ice_invoke(std::vector<Ice::Byte> in, std::vector<Ice::Byte>& out,
                     const Ice::Current& current) override {
@@ -58,11 +59,11 @@ TEST_F(Gateway, TheStationGetsAProxyByWhichItReachesTheVehicle) {
     auto info =
         std::dynamic_pointer_cast<Ice::TCPEndpointInfo>(adapter->getEndpoints()[0]->getInfo());
     start({"--station", "127.0.0.1:" + std::to_string(info->port)});
-    expectAnswer(2); // wait until the link has a session
+    expectAnswer(2); // waits until the link has a session
     const auto vehicles = world_.uav->getCommunicator();
     Ice::OutputStream out(vehicles);
     out.startEncapsulation();
-    // The endpoint of this proxy does not exist on the ground.
+    // The address in this proxy's endpoint does not exist on the ground.
     out.write(vehicles->stringToProxy("echo:opaque -t 16728 -e 1.1 -v AQD/ECcAAA=="));
     out.writeSize(0);
     out.endEncapsulation();
@@ -87,7 +88,8 @@ TEST_F(Gateway, ListensAtAnIPv6Address) {
 // ---- sharing the radio ----
 
 TEST_F(Gateway, WhatAProgramHasSentArrivesAlthoughItLeaves) {
-    start({"--wait", "600"}); // a call that is served late does not fail, even on a slow machine
+    // with a long --wait, a call does not fail even if it has to wait on a slow machine
+    start({"--wait", "600"});
     constexpr int count = 1000;
     {
         Ice::CommunicatorHolder ic(plain());
@@ -111,7 +113,7 @@ TEST_F(Gateway, AFloodLeavesRoomForOthers) {
     EXPECT_LT(echo_->noted(), 1000) << "the flood went first";
 }
 
-// Returns the durations of calls by the rig clock, in ms, sorted.
+// Returns the durations of calls in simulated time, ms, sorted.
 std::vector<double> timesOf(World& world, const std::shared_ptr<RadioTest::UavPrx>& echo,
                             int calls) {
     const auto now = [&world] {
@@ -129,7 +131,8 @@ std::vector<double> timesOf(World& world, const std::shared_ptr<RadioTest::UavPr
     return times;
 }
 
-// A hundred connections of another host send long one-way calls continuously.
+// A hundred connections from another host send long one-way calls continuously; a normal client
+// must still be served.
 TEST_F(Gateway, AHundredFloodingConnectionsLeaveAGoodClientItsTurns) {
     start();
     constexpr int connections = 100, calls = 100;
@@ -155,7 +158,7 @@ TEST_F(Gateway, AHundredFloodingConnectionsLeaveAGoodClientItsTurns) {
                 try {
                     ++sent;
                     proxy->ice_invoke("note", Ice::OperationMode::Normal, in, out);
-                } catch (const Ice::LocalException&) { // too many requests are waiting
+                } catch (const Ice::LocalException&) { // expected if too many requests are waiting
                     std::this_thread::sleep_for(std::chrono::milliseconds(50));
                 }
         });
@@ -175,9 +178,9 @@ TEST_F(Gateway, AHundredFloodingConnectionsLeaveAGoodClientItsTurns) {
     EXPECT_LE(crowded[calls / 2], 6 * alone[calls / 2]);
 }
 
-// Ice 3.8 closes a connection on which nothing arrives for a minute.
+// Ice 3.8 closes a connection on which nothing has arrived for a minute.
 TEST_F(Gateway, AnIdleClientGetsHeartbeats) {
-    start({"--Ice.ACM.Timeout=2"}); // s; heartbeats are sent after half of this time
+    start({"--Ice.ACM.Timeout=2"}); // time-out, s; heartbeats are sent after half of this time
     const int client = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     sockaddr_in to{};
     to.sin_family = AF_INET;
@@ -209,11 +212,11 @@ TEST_F(Gateway, CompressedCallsArrive) {
     for (int i = 0; i < 30; ++i)
         batch->note(100 + i);
     batch->ice_flushBatchRequests();
-    expectNoted(30); // the server has several threads
+    // waits, because the server has several threads, which may serve later calls first
+    expectNoted(30);
 }
 
-// One-way calls to an absent vehicle are dropped after --wait, also the calls of a program that has
-// ended.
+// One-way calls to an absent vehicle are discarded after --wait, even if their program has ended.
 TEST_F(Gateway, AOnewayThatWaitsTooLongIsNeverCarriedOut) {
     start({"--wait", "3"});
     const auto power = [&](bool isOn) {
@@ -228,18 +231,19 @@ TEST_F(Gateway, AOnewayThatWaitsTooLongIsNeverCarriedOut) {
     batch->note(2);
     batch->note(3);
     batch->ice_flushBatchRequests();
-    // this call waits behind the other calls
+    // this call waits until the calls before it have been handled
     expectRefusal([&] { echo_->ice_ping(); }, "waited 3 s for the radio");
     power(true);
     int noted = -1;
-    for (int tries = 0; tries < 50 && noted < 0; ++tries) // until the link has a session
+    for (int tries = 0; tries < 50 && noted < 0; ++tries) // repeated until the link has a session
         try {
             noted = echo_->noted();
         } catch (const Ice::LocalException&) {
         }
     EXPECT_EQ(noted, 0);
     stop();
-    int dropped = 0; // sum of the numbers in one or two lines of the log
+    // sum of the numbers of dropped calls, which are in one or two lines of the log
+    int dropped = 0;
     for (size_t at = 0; (at = said().find("were not sent: ", at)) != std::string::npos;)
         dropped += std::atoi(said().c_str() + (at += 15));
     EXPECT_EQ(dropped, 3) << said();
@@ -276,9 +280,8 @@ TEST(GatewayOptions, WrongOnesAreRefusedByName) {
         Server gateway(words);
         EXPECT_GT(gateway.wait(), 0) << said;
         EXPECT_NE(gateway.said().find(said), std::string::npos) << gateway.said();
-        for (const char* internal : {".h:", ".cpp:", "::Ice::"}) // texts that must not appear: a
-                                                                 // place in the source, the name of
-                                                                 // a class
+        // texts that a message must not contain: a place in the source, a class name
+        for (const char* internal : {".h:", ".cpp:", "::Ice::"})
             EXPECT_EQ(gateway.said().find(internal), std::string::npos) << gateway.said();
     }
 }
@@ -287,7 +290,7 @@ std::string textOf(const Ice::EncodingVersion& e) {
     return std::to_string(e.major) + "." + std::to_string(e.minor);
 }
 
-// Records the data of a request. Its operation "fail" ends in a user exception.
+// Records the data of each request. The operation "fail" throws a user exception.
 class Witness : public Ice::Blobject {
 public:
     bool ice_invoke(std::vector<Ice::Byte> in, std::vector<Ice::Byte>& out,
@@ -307,7 +310,7 @@ public:
     }
 };
 
-// Returns the result of a call to the witness: its reply, or the name of the exception.
+// Calls the witness. Returns the reply, or the name of the exception.
 std::string ask(const std::shared_ptr<Ice::ObjectPrx>& proxy, const std::string& operation,
                 Ice::OperationMode mode = Ice::OperationMode::Normal,
                 const Ice::Context& context = {}, const std::vector<Ice::Byte>& in = {}) {
@@ -329,7 +332,7 @@ std::string ask(const std::shared_ptr<Ice::ObjectPrx>& proxy, const std::string&
     }
 }
 
-// Returns the results that a program gets at an endpoint, one line per call.
+// Makes several calls to an endpoint. Returns the results, one line per call.
 std::string tryAll(const Ice::CommunicatorPtr& communicator, const std::string& endpoint,
                    bool facets = true) {
     const Ice::CommunicatorHolder ic(communicator);
@@ -373,7 +376,7 @@ std::string tryAll(const Ice::CommunicatorPtr& communicator, const std::string& 
     return seen;
 }
 
-// Returns the port of a server by ZeroC, from the endpoints that it prints.
+// Returns the port of one of ZeroC's servers, taken from the endpoints that it prints.
 int portOf(Server& server) {
     return server.port("127.0.0.1 -p ", " -t");
 }
@@ -391,8 +394,8 @@ TEST_F(Gateway, KeepsOfACallWhatIceBridgeKeepsAndFacets) {
     EXPECT_EQ(tryAll(plain(), endpoint()), tryAll(plain(), vehicle));
 }
 
-// Programs have a session with the router, and the router calls at the gateway's machine, as
-// docs/security.md shows it.
+// Programs have a session with the router, and the router calls the gateway on its machine, as in
+// the drawing in docs/security.md.
 TEST_F(Gateway, IsReachedThroughAGlacier2Router) {
     start();
     Server router({"glacier2router", "--Glacier2.Client.Endpoints=tcp -h 127.0.0.1",

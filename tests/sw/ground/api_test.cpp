@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// api_test: tests the frames of a modem in API mode, and its answers.
+// api_test: tests how the ground parses the frames of a modem in API mode, and how it handles the
+// modem's answers.
 
 #include "api_modem.h"
 #include "random.h"
@@ -12,8 +13,8 @@ using XBeeAT::ApiFrames;
 using XBeeAT::ApiModem;
 using Bytes = ApiFrames::Bytes;
 
-// Output of a modem in API mode: data with their source; '+' for an acknowledged packet, '-' for a
-// lost one.
+// Collects the output of a modem in API mode: received data with its source, and '+' for each
+// packet that was acknowledged or '-' for each packet that was lost.
 struct Heard {
     Bytes data;
     int source = 0;
@@ -57,7 +58,7 @@ TEST(Api, PacketsOfAllBytesArriveWithAndWithoutEscapes) {
     EXPECT_EQ(std::count(bytes.begin(), bytes.end(), 0x13), 0);
 }
 
-// Data are passed on at once: a short packet does not wait for the packets after it.
+// Received data is passed on at once: a short packet does not wait for the packets after it.
 TEST(Api, DataAreGivenAsTheyCome) {
     ApiModem modem(false);
     Heard heard;
@@ -105,15 +106,15 @@ TEST(Api, APacketThatIsNotAnsweredForThreeSecondsIsLost) {
 TEST(Api, AnswersComeInTheOrderOfPacketsAndALostOneCountsAsALoss) {
     ApiModem modem(false);
     Heard heard;
-    for (int i = 0; i < 300; ++i) // the frame numbers wrap around
+    for (int i = 0; i < 300; ++i) // enough packets for the frame numbers to wrap around
         modem.packet(1, Bytes{1}.data(), 1, 2, 0);
     for (int i = 0; i < 296; ++i)
         heard.feed(modem, ApiFrames().pack({0x89, static_cast<uint8_t>(i % 255 + 1), 0}));
     EXPECT_EQ(heard.answers, std::string(296, '+'));
     heard.answers.clear();
     heard.feed(modem, ApiFrames().pack({0x89, 298 % 255, 2}));
-    heard.feed(modem, ApiFrames().pack({0x89, 298 % 255, 0})); // an answer for which no packet
-                                                               // waits
+    // the packet was already reported, so no packet waits for this answer
+    heard.feed(modem, ApiFrames().pack({0x89, 298 % 255, 0}));
     Bytes spoilt = ApiFrames().pack({0x89, 299 % 255, 0});
     spoilt.back() ^= 1;
     heard.feed(modem, spoilt);
@@ -130,7 +131,8 @@ TEST(Api, AfterNoiseFramesAreReadAgain) {
             Heard heard;
             for (uint32_t i = random.below(40); i; --i)
                 heard.feed(modem, {static_cast<uint8_t>(random.below(4) ? random.next() : 0x7E)});
-            for (int i = 0; i < 3; ++i) // a false frame delays at most the first ones
+            // a wrong frame in the noise can delay only the first frames
+            for (int i = 0; i < 3; ++i)
                 heard.feed(modem, packetFrom(frames, 1, Bytes(60, 0x55)));
             heard.data.clear();
             heard.feed(modem, packetFrom(frames, 1, {1, 2, 3}));

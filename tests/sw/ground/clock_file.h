@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// clock_file: simulated time for programs on the ground. XBEEAT_CLOCK contains the path of the
-// file, which has no name on the disk, while this object exists.
+// clock_file: a simulated clock for programs on the ground. While this object exists, the variable
+// XBEEAT_CLOCK contains the path of a file with the time; the file has no name on the disk.
 
 #pragma once
 
@@ -12,8 +12,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-// A file in memory, mode 0600, that this process and its children open by a path. If the test is
-// killed, the file disappears.
+// A file in memory, with mode 0600, that this process and its children can open by a path. If the
+// test is killed, the file disappears.
 class UnnamedFile {
 public:
     UnnamedFile() { fchmod(fd_, 0600); }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// clock_test: the engine clock, from a simulator's counters and from the machine; and a program
-// that keeps step with simulated time, on a machine that rarely lets it run: no simulated time
-// passes while it works, and no byte is late.
+// clock_test: tests the clock of the engine, which reads the time from a simulator's counters or
+// from the machine. Also tests a program that keeps step with simulated time on a machine that
+// rarely runs this program: no simulated time may pass while the program works, and no byte may be
+// late.
 
 #include "clock.h"
 #include "clock_file.h"
@@ -55,7 +56,8 @@ TEST_F(ClockOfASimulator, WaitLastsUntilSimulatedTimeHasPassed) {
     pollfd fds[] = {{pipe_[0], POLLIN, 0}};
     std::atomic<bool> isOver{false};
     std::thread simulator([&] {
-        for (uint64_t us = 100; !isOver; us += 100) { // time passes ten times too slowly
+        // simulated time passes ten times more slowly than real time
+        for (uint64_t us = 100; !isOver; us += 100) {
             std::this_thread::sleep_for(std::chrono::milliseconds(1));
             show(us);
         }
@@ -115,7 +117,7 @@ TEST_F(ClockOfASimulator, WithoutANameItIsTheMachines) {
     EXPECT_GE(machine.nowUs() - begin, 1000u);
 }
 
-// A simulation of only the pty, with a modem that answers each byte with the next higher one.
+// A simulation with only a pty, and a modem that answers each byte with the next higher byte.
 class Step : public testing::Test, public SerialClient {
 protected:
     Step() {
@@ -135,7 +137,7 @@ protected:
         answer_.erase(answer_.begin());
         return true;
     }
-    // Simulates as fast as possible, until `done` returns true.
+    // Simulates as fast as possible until `done` returns true.
     void simulate(const std::function<bool()>& done, double patience = 60) {
         GroundStep step(*status_, pty_, [&] { return !done(); }, patience);
         while (!done()) {
@@ -144,7 +146,7 @@ protected:
             step.wait(status_->ns);
         }
     }
-    // Runs a program that keeps step with simulated time, in parallel, until it returns.
+    // Runs `program`, which keeps step with simulated time, in a parallel thread until it returns.
     void alongside(const std::function<void(Clock&, SerialPort&)>& program) {
         std::atomic<bool> over{false};
         std::thread thread([&] {
@@ -157,7 +159,8 @@ protected:
             port.open(pty_.path());
             port.setSpeed(115200);
             clock.keepStep(port.fd(), pty_.path());
-            ASSERT_EQ(clock.wait(&none_, 1, 1000), 0); // by then the pty has been polled
+            // after this time the simulation has polled the pty
+            ASSERT_EQ(clock.wait(&none_, 1, 1000), 0);
             program(clock, port);
         });
         simulate([&] { return over.load(); });
@@ -169,7 +172,8 @@ protected:
     pollfd none_ = {-1, 0, 0};
 };
 
-// When a program begins, bytes may be considered read by the previous one.
+// Bytes that were counted but never arrive are considered read by an earlier program; the line
+// waits for them only once.
 TEST(Pty, BytesThatNeverComeAreWaitedForOnce) {
     struct Modem : SerialClient {
         void fromHost(uint8_t, uint64_t) override {}
@@ -190,12 +194,12 @@ TEST_F(Step, NoTimePassesWhileTheProgramWorksAndNoByteIsLate) {
         Random random(testSeed());
         for (uint8_t i = 0; i < 60; ++i) {
             const uint32_t begin = clock.nowUs();
-            if (i % 4 == 0) // the machine runs other programs
+            if (i % 4 == 0) // the machine is busy with other programs
                 std::this_thread::sleep_for(std::chrono::milliseconds(random.below(20)));
             ASSERT_EQ(clock.nowUs(), begin) << "time passed while the program worked";
             ASSERT_EQ(port.write(&i, 1), 1);
             pollfd fds[] = {{port.fd(), POLLIN, 0}};
-            // A byte takes 90 us each way, and the pty is polled every 100 us.
+            // A byte takes 90 us in each direction, and the pty is polled every 100 us.
             ASSERT_EQ(clock.wait(fds, 1, 1'000'000), 1);
             ASSERT_LE(clock.nowUs() - begin, 500u);
             uint8_t byte = 0;
@@ -208,7 +212,8 @@ TEST_F(Step, NoTimePassesWhileTheProgramWorksAndNoByteIsLate) {
     });
 }
 
-// An engine that failed and retries follows the other between two polls of the pty.
+// An engine that has failed and tries again may take the place of the previous engine between two
+// polls of the pty.
 TEST_F(Step, WhoKeepsStepNextIsHeardFromTheFirstByte) {
     alongside([&](Clock& clock, SerialPort& port) {
         for (uint8_t i = 0; i < 240; ++i) {
@@ -247,8 +252,8 @@ TEST_F(Step, AnotherPortsProgramIsNotWaitedFor) {
     simulate([&] { return status_->ns >= end; });
 }
 
-// The program is alive but does nothing: time continues without waiting for it, and a message on
-// stderr reports this.
+// If the program is alive but does nothing, time soon continues without waiting for it, and a
+// message on stderr reports this.
 TEST_F(Step, WhoHoldsTimeForTooLongIsWaitedForNoLonger) {
     SimulatedClock clock(status_.path());
     SerialPort port(clock);
@@ -260,7 +265,7 @@ TEST_F(Step, WhoHoldsTimeForTooLongIsWaitedForNoLonger) {
               std::string::npos);
 }
 
-// A debugger, or SIGSTOP, may stop it for any time.
+// A debugger, or SIGSTOP, may stop the program for any time.
 TEST_F(Step, WhoIsHeldByADebuggerIsWaitedFor) {
     int ready[2];
     ASSERT_EQ(pipe(ready), 0);
@@ -284,7 +289,8 @@ TEST_F(Step, WhoIsHeldByADebuggerIsWaitedFor) {
     close(ready[1]);
 }
 
-// A simulation that must end checks once whether it should continue, and then waits for no program.
+// A simulation that must end asks once whether it may continue, and then does not wait for any
+// program.
 TEST_F(Step, NobodyIsWaitedForAfterTheStop) {
     SimulatedClock clock(status_.path());
     SerialPort port(clock);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// crowd_test: programs at one engine that do not read, that send more than the link carries, or
-// that disconnect. Also heartbeats for a program that closes silent connections, in simulated time.
+// crowd_test: tests several programs at one engine that do not read, that send more than the link
+// can carry, or that disconnect. Also tests heartbeats, in simulated time, for a program that
+// closes silent connections.
 
 #include "../../support/delivery_check.h"
 #include "program_connection.h"
@@ -11,7 +12,7 @@
 
 namespace {
 
-// A program's end of a connection; reads and writes do not block.
+// The program's end of a connection; reading and writing do not block.
 class Program {
 public:
     explicit Program(int fd) : fd_(fd) {}
@@ -49,7 +50,7 @@ private:
 
 class Crowd : public ::testing::Test {
 protected:
-    // Makes a call and reads the reply.
+    // Makes a call and checks the reply.
     void echoes(Program& program, size_t size = 30) {
         const size_t want = program.got + size;
         program.send(message(1, size));
@@ -100,7 +101,8 @@ TEST_F(Crowd, WhatAProgramHasWrittenArrivesAlthoughItLeaves) {
     wire_.onMessage = [&](int channel, const Bytes& oneway) {
         EXPECT_EQ(delivery.arrived(channel, oneway), "");
     };
-    size_t most = 0; // greatest number of bytes in transit between the program and the peer
+    // largest number of bytes that the program had written and the peer had not received
+    size_t most = 0;
     ASSERT_TRUE(wire_.until([&] {
         program.write();
         most = std::max(most, program.written - wire_.received[0] * message(1).size());
@@ -121,7 +123,8 @@ TEST_F(Crowd, CallsThatTheLinkCouldNotDeliverAreReportedWhenTheirProgramHasLeft)
         program.send(call);
     program.write();
     program.leave();
-    while (wire_.log().find("has ended") == std::string::npos) // the UAV receives nothing
+    // the UAV receives nothing, so the engine must end the connection
+    while (wire_.log().find("has ended") == std::string::npos)
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     engine_.reset();
     EXPECT_NE(wire_.log().find("may not have reached the UAV: 20"), std::string::npos)
@@ -143,7 +146,7 @@ TEST_F(Crowd, AfterAFloodEveryNewProgramIsServed) {
                 program->write();
             return std::chrono::steady_clock::now() > end;
         });
-        flood.clear(); // in the middle of a message
+        flood.clear(); // ends the programs in the middle of a message
         for (int i = 0; i < 3; ++i) {
             unsigned openings = 2 * round + 1;
             Program next(engine_->connect(i));
@@ -157,11 +160,12 @@ TEST_F(Crowd, AfterAFloodEveryNewProgramIsServed) {
     }
 }
 
-// Three programs keep their channels without using them: they leave replies unread, or never end a
-// message. A fourth program gets one of these channels after some time.
+// Three programs occupy their channels without using them: they leave replies unread, or never
+// complete a message. After some time, a fourth program must get one of these channels.
 class Keepers : public ::testing::Test {
 protected:
-    // Checks that the fourth program gets a reply while the other three repeat `meanwhile`.
+    // Checks that the fourth program gets a reply while the other three programs repeat
+    // `meanwhile`.
     template <class F> void theFourthIsServed(F meanwhile) {
         Program fourth(engine_->connect(-1));
         fourth.send(message(1));
@@ -185,8 +189,8 @@ protected:
 TEST_F(Keepers, AnswersThatAreNotRead) {
     for (auto& keeper : keepers_)
         for (int i = 0; i < 10; ++i)
-            keeper->send(message(1, 4000)); // more than the socket accepts, but not a complete
-                                            // message
+            // more bytes than the socket accepts, but not a complete message
+            keeper->send(message(1, 4000));
     theFourthIsServed([](Program& keeper) { keeper.write(); });
 }
 
@@ -224,16 +228,16 @@ TEST_F(Crowd, AFloodLeavesRoomForOthers) {
             other.read();
             return other.got >= want;
         }));
-        // The link's queue is sent first, not the whole flood.
+        // Only the part of the flood that is already in the link's queue is sent first.
         EXPECT_LT(flood.got - before, 60'000u);
     }
 }
 
 using XBeeAT::ProgramConnection;
 
-// Ice 3.8's manual: a connection without incoming bytes for 60 s (Ice.Connection.IdleTimeout) is
-// closed, and a program that has written nothing for half of that time sends a heartbeat. Ice 3.7
-// sends no heartbeats by itself.
+// According to Ice 3.8's manual, a connection on which no bytes arrive for 60 s
+// (Ice.Connection.IdleTimeout) is closed, and a program that has written nothing for half of this
+// time sends a heartbeat. Ice 3.7 sends no heartbeats by itself.
 class Timed {
 public:
     Timed() {
@@ -258,7 +262,7 @@ public:
             stream.taken(seconds * 1000000);
         }
     }
-    // Lets seconds pass. `isNew`: the program uses Ice 3.8.
+    // Lets seconds pass. `isNew` is true if the program uses Ice 3.8.
     void pass(U32 seconds, bool isNew) {
         if (isNew && seconds - wroteAt_ >= 30)
             send(3, seconds);
@@ -272,7 +276,7 @@ public:
 
     ProgramConnection stream;
     unsigned onTheAir = 0, heard = 0;
-    U32 silence = 0; // s; longest time without a byte
+    U32 silence = 0; // longest time without a byte, s
 
 private:
     int fd_ = -1;
@@ -307,7 +311,8 @@ TEST(ProgramConnection, SignsOfLifeAreNoActivity) {
     EXPECT_GT(program.heard, 1u);
 }
 
-// They would keep its own time-out (Ice.ACM) from closing the connection.
+// The engine sends no heartbeats to a program with Ice 3.7, because they would prevent the
+// program's own time-out (Ice.ACM) from closing the connection.
 TEST(ProgramConnection, AProgramOfTheOldKindIsLeftAloneWhileIdle) {
     Timed program;
     program.send(1, 1);
@@ -325,8 +330,9 @@ TEST(ProgramConnection, AProgramThatHasEndedItsWritingHearsNoSigns) {
     EXPECT_EQ(program.heard, 0u);
 }
 
-// It cannot be informed, so messages still held by the kernel are also counted, although the
-// connection is reset because a heartbeat was left unread.
+// The program cannot be notified of the loss. The calls that it left unread are counted as not
+// received, including those that the kernel still holds, although the connection is reset because
+// of an unread heartbeat.
 TEST(ProgramConnection, CallsThatAProgramLeftUnreadAreCountedWhenTheLinkIsLost) {
     constexpr unsigned count = 3000;
     int pair[2];

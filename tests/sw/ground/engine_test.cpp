@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// engine_test: tests the ground's engine on a pty with a modem.
+// engine_test: tests the engine of the ground with a modem on a pty.
 
 #include "../../support/environment.h"
 #include "engine.h"
@@ -40,7 +40,7 @@ protected:
             << got.size() << " of " << size << " bytes; the engine's log:\n"
             << log_.text();
     }
-    // Checks that a call of the UAV reaches the program that listens.
+    // Checks that a call made by the UAV reaches the program that listens.
     void isCalled(XBeeAT::Peer& engine, int ready) {
         rig_.with([&] {
             Link_openChannel(rig_.uav.link(), 3);
@@ -67,7 +67,7 @@ TEST_F(EngineTest, MoreProgramsThanChannelsWaitTheirTurn) {
     EXPECT_EQ(engine->waiting(), 3u);
     close(gone);
     close(fds[2]);
-    echoes(next, 2); // the reply must not go to the program that has disconnected
+    echoes(next, 2); // a reply for the program that has disconnected must not reach this program
     close(fds[0]);
     close(fds[1]);
     echoes(last, 3);
@@ -86,7 +86,7 @@ TEST_F(EngineTest, AModemThatIsResetInFlightIsSetUpAgain) {
         rig_.ground->resetPin(false, rig_.ns() + 1000);
         EXPECT_EQ(rig_.ground->parameter("BD"), 3u);
     });
-    EXPECT_TRUE(rig_.read(fd, 1).empty()); // the connection is reported lost ...
+    EXPECT_TRUE(rig_.read(fd, 1).empty()); // the loss of the connection is reported ...
     close(fd);
     fd = engine->connect(0); // ... and the next call waits until the link is back
     echoes(fd, 2);
@@ -108,8 +108,8 @@ TEST_F(EngineTest, AMessageThatIsTooLongEndsItsConnectionOnly) {
     close(bad);
 }
 
-// The UAV's program does not accept a message in time; neither this message nor the next one is
-// delivered later.
+// If the UAV's program does not accept a message in time, this message and the next one are
+// withdrawn, and not delivered later.
 TEST_F(EngineTest, WhatIsLateIsWithdrawnAndItsSenderIsTold) {
     auto engine = start();
     const int other = engine->connect(0), fd = engine->connect(1, 2000);
@@ -178,7 +178,7 @@ TEST_F(EngineTest, HeartbeatsTakeNoAir) {
     for (int i = 0; i < 10; ++i)
         writeAll(fd, heartbeat);
     EXPECT_EQ(rig_.read(fd, 14),
-              heartbeat); // after 5 s, sent by the engine, because the UAV is silent
+              heartbeat); // the engine sends a heartbeat after 5 s without bytes from the UAV
     rig_.with([&] {
         EXPECT_EQ(rig_.uav.received.size(), 1u) << "a heartbeat crossed the air";
         Bytes reply = message(1, 30);
@@ -189,7 +189,8 @@ TEST_F(EngineTest, HeartbeatsTakeNoAir) {
     close(fd);
 }
 
-// A modem may be in any mode and at any rate when it is found; AP 2 is the user's choice.
+// The modem may be in any mode and at any rate when the engine finds it. AP 2 is kept, because it
+// is the user's choice.
 TEST_F(EngineTest, AModemInAnyModeIsSetToTheWantedOne) {
     const auto fly = [&](const XBeeAT::Settings& s, uint32_t mode, uint32_t rate) {
         SCOPED_TRACE("AP " + std::to_string(mode));
@@ -208,7 +209,7 @@ TEST_F(EngineTest, AModemInAnyModeIsSetToTheWantedOne) {
     fast.baud = 250000;
     slow.baud = 57600;
     fly(s, 1, 7);
-    fly(s, 1, 7); // found in API mode
+    fly(s, 1, 7); // the engine finds this modem in API mode
     fly(slow, 1, 6);
     fly(fast, 1, 250000);
     fly(plain, 0, 7);
@@ -260,7 +261,8 @@ TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     int ready = engine->listen();
     EXPECT_EQ(engine->listen(), -1) << "a second listener";
     int fd = engine->connect(0);
-    EXPECT_TRUE(rig_.read(fd, 1).empty()); // no reply: the waiting program gets an error
+    // there is no reply; the program that waits gets an error
+    EXPECT_TRUE(rig_.read(fd, 1).empty());
     close(fd);
     EXPECT_TRUE(log_.has("0 no modem answers"));
     rig_.with([&] { rig_.ground->power(true, rig_.ns()); });
@@ -271,8 +273,8 @@ TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     close(fd);
 }
 
-// A program killed during the set-up leaves the modem in command mode, in the middle of a line. By
-// itself, the modem leaves command mode only after CT, 10 s.
+// If a program is killed during the set-up, the modem stays in command mode, in the middle of a
+// line. By itself, it leaves command mode only after CT, which is 10 s.
 TEST_F(EngineTest, AModemThatWasLeftInCommandModeIsFoundAtOnce) {
     const int port = open(rig_.pty.path().c_str(), O_RDWR | O_NOCTTY);
     ASSERT_GE(port, 0);
@@ -294,7 +296,7 @@ TEST_F(EngineTest, AModemThatWasLeftInCommandModeIsFoundAtOnce) {
     EXPECT_LT(rig_.seconds() - begin, 3);
 }
 
-// A failure is reported once, with its cause.
+// A failure is reported once, together with its cause.
 TEST_F(EngineTest, ARefusedCommandIsToldAsWhatItIs) {
     XBeeAT::Settings s = settings();
     s.pan = 0x1FFFF;
@@ -306,8 +308,8 @@ TEST_F(EngineTest, ARefusedCommandIsToldAsWhatItIs) {
     EXPECT_FALSE(log_.has("no modem answers"));
 }
 
-// A vehicle that is up before the ground's program: its frames leave the modem between the replies,
-// including carriage returns.
+// If the vehicle starts before the ground's program, its frames arrive from the modem between the
+// modem's replies; they may contain carriage returns.
 TEST_F(EngineTest, TheModemIsSetUpWhileTheUavSends) {
     uint64_t commands = 0;
     rig_.with([&] {
@@ -341,8 +343,8 @@ TEST_F(EngineTest, AListenerAloneHasTheModemTriedAgain) {
     EXPECT_TRUE(rig_.until([&] { return rig_.uav.isUp(); }));
 }
 
-// BYTES=10000000 from the line, and noise from a program for every 64 KiB: nothing hangs or
-// crashes, and afterwards the link works.
+// BYTES=10000000 sets the number of random bytes from the line. For every 64 KiB there is also
+// noise from a program. Nothing may hang or crash, and the link must work afterwards.
 TEST(Engine, RandomBytesFromTheLineAndFromProgramsAreSurvived) {
     const auto total = static_cast<size_t>(numberFromEnvironment("BYTES", 10'000'000));
     Wire wire;
@@ -354,7 +356,7 @@ TEST(Engine, RandomBytesFromTheLineAndFromProgramsAreSurvived) {
             byte = static_cast<uint8_t>(random.next());
         wire.flood(noise);
         int fd = engine->connect(0);
-        if (fd >= 0) { // an invalid message ends the connection
+        if (fd >= 0) { // an invalid message ends the program's connection
             (void)!send(fd, noise.data(), noise.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
             close(fd);
         }

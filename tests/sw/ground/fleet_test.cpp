@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// fleet_test: tests several vehicles on one modem of the ground, and calls to all of them.
+// fleet_test: tests several vehicles that are reached over one modem of the ground, and calls to
+// all of them.
 
 #include "../../support/delivery_check.h"
 #include "engine.h"
@@ -18,7 +19,7 @@ namespace {
 
 using XBeeAT::LinkKeys;
 
-// A program that connects to a vehicle.
+// A program that is connected to a vehicle.
 struct Program {
     explicit Program(std::shared_ptr<XBeeAT::Peer> of) : peer(std::move(of)) {}
     ~Program() { close(fd); }
@@ -28,7 +29,7 @@ struct Program {
     const int fd = peer->connect(-1);
 };
 
-// A vehicle that receives calls to all vehicles; its modem is in API mode.
+// A vehicle that receives the calls to all vehicles; its modem is in API mode.
 class Hearer {
 public:
     Hearer(Rig& rig, int address, const XBeeAT::LinkKey& key) : rig_(rig), key_(key) {
@@ -45,8 +46,8 @@ public:
         line_.received.clear();
     }
 
-    std::vector<Rig::Bytes> packets, calls; // received packets, and the calls in these packets that
-                                            // must be executed
+    // packets that were received, and calls in them that the vehicle must execute
+    std::vector<Rig::Bytes> packets, calls;
 
 private:
     void take(Rig::Bytes packet) {
@@ -72,8 +73,8 @@ protected:
         settings_.device = rig_.pty.path();
         settings_.guardMs = Rig::guardMs;
         rig_.with([&] {
-            rig_.uav.modem->power(false, rig_.ns()); // this file adds its own vehicles, so the
-                                                     // rig's is off
+            // this test adds vehicles of its own, so the vehicle of the rig is switched off
+            rig_.uav.modem->power(false, rig_.ns());
             rig_.step = [this] {
                 for (auto& [place, vehicle] : vehicles_)
                     vehicle->advance(rig_.ns());
@@ -85,8 +86,8 @@ protected:
     ~FleetTest() override {
         rig_.with([&] { rig_.step = nullptr; });
     }
-    // Adds a vehicle. It answers a message with its first bytes, followed by its address as last
-    // byte. `place`: its index in `vehicles_`, if another one has its address.
+    // Adds a vehicle. It answers a message with the first bytes of the message, followed by its own
+    // address. `place` is its index in `vehicles_` if another vehicle has the same address.
     void fly(int address, const LinkKeys& keys = {}, int place = 0) {
         rig_.with([&] {
             auto& v = vehicles_[place ? place : address];
@@ -112,7 +113,7 @@ protected:
     unsigned sessions(int place) {
         return rig_.with([&] { return vehicles_[place]->sessions(); });
     }
-    // Makes a call and checks the vehicle in the reply; -1: no reply.
+    // Makes a call, and checks which vehicle replies; -1 means that none may reply.
     void answers(int fd, int vehicle) {
         writeAll(fd, message(1));
         const Bytes answer = rig_.read(fd, 30);
@@ -124,8 +125,8 @@ protected:
             sum += bytes;
         return sum;
     }
-    // Returns the simulated seconds in which the vehicles receive this many bytes while all
-    // programs write as much as is accepted. Then their connections end.
+    // Returns the simulated seconds in which the vehicles receive this number of bytes, while all
+    // programs write as much as possible. Then ends the connections.
     double secondsFor(const std::list<Program>& programs, size_t bytes) {
         std::atomic<bool> stop{false};
         std::list<std::thread> writers;
@@ -153,9 +154,9 @@ protected:
     EngineLog log_;
     XBeeAT::Settings settings_;
     Rig rig_{testSeed()};
-    std::map<int, size_t> taken_; // received bytes, by address
+    std::map<int, size_t> taken_; // number of received bytes; the key is the address
     std::map<int, std::unique_ptr<Uav>> vehicles_;
-    std::list<Hearer> hearers_; // receivers of calls to all vehicles
+    std::list<Hearer> hearers_; // vehicles that receive the calls to all vehicles
     std::list<Program> programs_;
 };
 
@@ -188,7 +189,7 @@ TEST_F(FleetTest, VehiclesShareTheAirAlikeAndOneThatIsAwayCostsTheOthersLittle) 
         return log.rfind("0x0002: link connecting") > log.rfind("0x0002: link up");
     };
     ASSERT_TRUE(rig_.until(isSought));
-    rig_.pass(4.5); // the first HELLOs follow one another faster
+    rig_.pass(4.5); // waits, because the first HELLOs follow each other faster
     const auto airNs = [&] { return double(rig_.air.counters().airNs); };
     const double before = rig_.with(airNs);
     rig_.pass(8);
@@ -226,7 +227,7 @@ TEST_F(FleetTest, AnotherOfOneAddressABabblerAndAChangeOfKeysDisturbNobodyElse) 
     answers(first.fd, 1);
     answers(second.fd, 2);
 
-    rig_.with([&] { // the session ends, and the next one uses the next key
+    rig_.with([&] { // ends the session; the next session uses the next key
         Link_setKey(vehicles_[1]->link(), 1, next[0].data(), 1);
         Link_setKey(vehicles_[1]->link(), 0, nullptr, 1);
     });
@@ -259,7 +260,7 @@ TEST_F(FleetTest, AnotherOfOneAddressABabblerAndAChangeOfKeysDisturbNobodyElse) 
     EXPECT_EQ(sessions(101), 0u);
 }
 
-// Two ground stations with the same address and, if the links have keys, the same key.
+// Tests two ground stations with the same address and, if the links have keys, with the same key.
 class TwinGrounds : public FleetTest, public ::testing::WithParamInterface<LinkKeys> {};
 
 TEST_P(TwinGrounds, TheNewerOneKeepsTheVehicleAndTheOlderOneHasItAgainAfterIt) {
@@ -291,7 +292,8 @@ TEST_P(TwinGrounds, TheNewerOneKeepsTheVehicleAndTheOlderOneHasItAgainAfterIt) {
     answers(Program(older).fd, 1);
 }
 
-// A vehicle that loses its power leaves a truncated frame, which belongs to no session.
+// A vehicle that loses power in the middle of a frame leaves a truncated frame, which belongs to no
+// session.
 TEST_P(TwinGrounds, AVehicleThatFallsSilentInAFrameHasNoOtherGround) {
     fly(1, GetParam());
     const auto ground = peer(1, GetParam());
@@ -349,7 +351,8 @@ TEST_F(FleetTest, AModemServesAsManyVehiclesAsItMay) {
 
 const XBeeAT::LinkKey groupKey = {7, 7, 7};
 
-// A call of `size` bytes in Ice's format; `id`: 0 oneway; `type`: 1 batch, 4 close.
+// Returns a call of `size` bytes in Ice's format. `id` 0 makes it one-way; `type` 1 is a batch, 4
+// closes the connection.
 Bytes callOf(uint8_t tag, uint8_t id = 0, size_t size = 40, uint8_t type = 0) {
     Bytes m = message(tag, size);
     m[8] = type;
@@ -358,7 +361,8 @@ Bytes callOf(uint8_t tag, uint8_t id = 0, size_t size = 40, uint8_t type = 0) {
     return m;
 }
 
-// Five receivers, the last one with another key, and programs that call all vehicles.
+// Tests with five receivers, the last of which has another key, and with programs that call all
+// vehicles.
 class BroadcastTest : public FleetTest {
 protected:
     BroadcastTest() {
@@ -367,8 +371,8 @@ protected:
                 hearers_.emplace_back(rig_, address, address == 5 ? XBeeAT::LinkKey{1} : groupKey);
         });
     }
-    // Returns the bytes read after these messages, until the connection ends, which happens when
-    // the messages are on the air; without the greeting.
+    // Sends messages to all vehicles. Returns the bytes that the program reads until the connection
+    // ends, without the greeting. The connection ends when all messages have been sent on the air.
     std::string say(const std::vector<Bytes>& messages) {
         const Program all(peer(XBeeAT::everybody, {groupKey}));
         (void)rig_.read(all.fd, 14);
@@ -397,7 +401,7 @@ TEST_F(BroadcastTest, EachVehicleTakesACallOnceInOrder) {
             DeliveryCheck delivery;
             for (uint32_t call = 0; call < calls.size(); ++call)
                 delivery.sent(0, call, calls[call]);
-            (void)delivery.forget(0); // a broadcast is not acknowledged, so calls may be missing
+            (void)delivery.forget(0); // broadcasts are not acknowledged, so some calls may be lost
             for (const Bytes& call : h.calls)
                 EXPECT_EQ(delivery.arrived(0, call), "");
             EXPECT_GT(h.packets.size(), 2 * h.calls.size());

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_engine: libFuzzer target of the ground's engine: its serial input and programs' writes. An
-// input is a sequence of steps; between them the engine runs with a link layer at the other end of
-// the wire, so that sessions come up. Nothing may crash, hang or leak, and a message passed to a
-// program is complete.
+// fuzz_engine: fuzzes the ground's engine with libFuzzer: its serial input, and the bytes that
+// programs write. An input is a sequence of steps. Between the steps the engine runs with a link
+// layer at the other end of the wire, so that sessions are opened. Nothing may crash, hang or leak,
+// and each message that is passed to a program must be complete.
 //
-// If the lowest bit of the first byte is 1, the modem is set up first. Then each step has two
-// bytes, its kind (mod 8) and its argument n; data follows:
+// If the lowest bit of the first byte is 1, the modem is set up first. Each step then has two
+// bytes, its kind (mod 8) and its argument n, and may be followed by data:
 //   0     n bytes of noise arrive on the serial line
 //   1     a frame of the peer is damaged
 //   2     n frames are lost
@@ -15,8 +15,8 @@
 //   6     this program disconnects; if n > 127, it connects again
 //   7     8 n ms pass
 //
-// Clock and serial port are implemented here, so the engine's thread runs alone, in the input's
-// time.
+// This file implements clock and serial port itself, so that only the thread of the engine runs,
+// and time depends only on the input.
 
 #include "../../support/link_end.h"
 #include "engine.h"
@@ -41,7 +41,7 @@ void expect(bool condition) {
         std::abort();
 }
 
-// The program's end of a connection; takes the output of the engine in pieces of any size.
+// The program's end of a connection; it reads the output of the engine in pieces of any size.
 class Program {
 public:
     ~Program() { leave(); }
@@ -78,7 +78,7 @@ private:
     Bytes in_;
 };
 
-// The surroundings of one input: the wire, the peer's link, programs, time.
+// Simulates everything around the engine for one input: the wire, the peer's link, programs, time.
 class Surroundings : private LinkEnd {
 public:
     Surroundings(const uint8_t* data, size_t size) : at_(data), end_(data + size) {
@@ -95,7 +95,8 @@ public:
         settings.random = [this] { return random(); };
         std::unique_lock<std::mutex> lock(mutex_);
         engine_ = XBeeAT::Engine::get(settings, [this](int, const std::string& text) {
-            if (text.find("will try again") != std::string::npos) // the engine has failed
+            // the engine has reported a failure
+            if (text.find("will try again") != std::string::npos)
                 end();
         });
         engine_->listen();
@@ -108,18 +109,18 @@ public:
         engine_.reset();
     }
 
-    // ---- clock and port of the engine ----
+    // ---- clock and serial port of the engine ----
     U32 now = 0xFFFFF000u;
     std::deque<uint8_t> toEngine;
     const int serial = eventfd(0, EFD_CLOEXEC);
 
     void fromEngine(const uint8_t* bytes, size_t size) {
         Link_receive(link(), bytes, static_cast<U32>(size), now);
-        if (bytes[0] == 'A' || bytes[0] == '+') // a modem would interpret such bytes as a command
+        if (bytes[0] == 'A' || bytes[0] == '+') // a modem would interpret these bytes as a command
             for (char c : {'O', 'K', '\r'})
                 toEngine.push_back(static_cast<uint8_t>(c));
     }
-    // Returns, like the engine clock, when a descriptor is ready or `us` have passed.
+    // Waits like the engine's clock: returns when a descriptor is ready or `us` have passed.
     int wait(pollfd* fds, nfds_t count, uint32_t us) {
         std::unique_lock<std::mutex> lock(mutex_);
         changed_.wait(lock, [this] { return stage_ != Stage::Begins; });
@@ -133,7 +134,7 @@ public:
                     ready += !fds[i].revents;
                     fds[i].revents |= POLLIN;
                 }
-            now += 10; // time also passes for an engine that is always busy, so that the input ends
+            now += 10; // time also passes for an engine that never waits, so that the input ends
             if (ready && ++busy_ % 64)
                 return ready;
             const uint32_t step = std::min(us, at_ < end_ ? 10'000u : 200'000u);
@@ -187,8 +188,8 @@ private:
         at_ += count;
         return Bytes(at_ - count, at_);
     }
-    // Executes the next step of the input; after the last, time passes until all time-outs have
-    // expired.
+    // Executes the next step of the input. After the last step, time passes until all time-outs
+    // have expired.
     void next() {
         if (end_ - at_ < 2) {
             pause_ = 1'000'000;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_files: libFuzzer target of the parser of key files, and with RIGHTS of the parser of the
-// gateway's rights file. An input is accepted, or rejected with a proper message that contains
-// no key. No right is granted that the file does not contain.
+// fuzz_files: fuzzes the parser of key files with libFuzzer; with RIGHTS, the parser of the
+// gateway's rights file. An input must be accepted, or rejected with a proper message that contains
+// no key. No right may be granted that the file does not contain.
 
 #ifdef RIGHTS
 #include "rights.h"

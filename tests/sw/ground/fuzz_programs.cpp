@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_programs: libFuzzer target of the bytes from a program with the plugin: they arrive in any
-// pieces on a socket, and the engine's ProgramConnection splits them into messages. Each message
-// must be one that was sent, complete and in order. The replies must also be complete messages.
+// fuzz_programs: fuzzes the bytes from a program with the plugin, with libFuzzer. They arrive in
+// pieces of any size on a socket, and the engine's ProgramConnection splits them into messages.
+// Each message must be one that was sent, complete and in order. The replies must also be complete
+// messages.
 //
-// If the lowest bit of the first byte is 1, the program is a server that the UAV called. Then each
-// step has two bytes, its kind (mod 8) and its argument n; data follows:
+// If the lowest bit of the first byte is 1, the program is a server that the UAV has called. Each
+// step then has two bytes, its kind (mod 8) and its argument n, and may be followed by data:
 //   0, 1  the n bytes that follow are sent
 //   2, 3  a message header of kind n mod 5 is sent, then the bytes that follow
 //   4     the program gets an answer of n bytes
@@ -103,7 +104,7 @@ private:
             got_.erase(got_.begin(), got_.begin() + static_cast<std::ptrdiff_t>(size));
         }
     }
-    // Does the work of the engine's thread.
+    // Does the work of the engine's thread for this program.
     void run() {
         if (!stream_.is(ProgramConnection::State::Open))
             return;
@@ -152,8 +153,8 @@ private:
 
     int ends_[2];
     U32 now_ = 0xFFFFF000u;
-    bool validatesComeThrough_; // the first bytes are a server's greeting
-    std::vector<U8> sent_;      // sent bytes that have not been taken yet
+    bool validatesComeThrough_; // true if the first bytes are the greeting of a server
+    std::vector<U8> sent_;      // bytes that were sent and that the engine has not yet processed
     std::vector<U8> got_;
     ProgramConnection stream_;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// key_file_test: accepted key files, and messages about rejected ones.
+// key_file_test: tests which key files are accepted, and the messages about files that are
+// rejected.
 
 #include "key_file.h"
 #include <cstdio>
@@ -24,7 +25,8 @@ protected:
         chmod(path_, mode);
         return KeyFile(path_);
     }
-    // Returns the message about a rejected file, after checking that it contains no digit of a key.
+    // Returns the message about a file that must be rejected, and checks that the message contains
+    // no digit of a key.
     std::string refusal(const std::string& text, mode_t mode = 0600) {
         try {
             read(text, mode);

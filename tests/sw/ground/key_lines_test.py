@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""key_lines_test: change_key.py keeps the other lines of a key file, whatever bytes are in their
-comments; provide_key.py reads a file with a byte order mark."""
+"""key_lines_test: tests that change_key.py keeps the other lines of a key file, whatever bytes
+their comments contain, and that provide_key.py can read a file with a byte order mark."""
 import argparse
 import tempfile
 import unittest
@@ -24,7 +24,7 @@ class KeyLines(unittest.TestCase):
         self.path.chmod(0o600)
 
     def change(self):
-        """Changes the key of vehicle 1; a function takes the place of the vehicle."""
+        """Changes the key of vehicle 1; a function replaces the vehicle."""
         with mock.patch.object(change_key, "talk", return_value=1), mock.patch("builtins.print"):
             change_key.change(argparse.Namespace(key=str(self.path), address=1))
         return self.path.read_bytes()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""patience_test: the time-out of the calls in a mission counts simulated time, also on a slow
-PC."""
+"""patience_test: tests that the time-out of calls in a mission counts simulated time, even on a
+slow PC."""
 import unittest
 from unittest import mock
 
@@ -8,7 +8,7 @@ import mission_log
 
 
 class Air:
-    """A simulator's counters."""
+    """The counters of a simulator."""
 
     def __init__(self, ns):
         self.ns = ns
@@ -27,7 +27,7 @@ class Patience(unittest.TestCase):
     def test_real_time_does_not_count_while_simulated_time_moves(self):
         air = Air(5 * 10**9)
         patience = mission_log.Patience(air, 16)
-        for _ in range(160):  # ten times slower than real time
+        for _ in range(160):  # simulated time is ten times slower than real time
             self.real += 1
             air.ns += 10**8
             self.assertFalse(patience.is_over())

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// rig: the other end of the ground's serial port: a modem on a pty, the air, and a UAV made of a
-// modem and a link layer. Simulated time follows the machine clock, but waits
-// for an engine that keeps step: on a busy machine, time passes slowly and no time-out is early.
+// rig: simulates the other end of the ground's serial port: a modem on a pty, the air, and a UAV
+// that consists of a modem and a link layer. Simulated time follows the machine's clock, but it
+// waits for an engine that keeps step. On a busy machine, time therefore passes slowly, and no
+// time-out expires too early.
 
 #pragma once
 
@@ -22,7 +23,7 @@
 #include <sys/socket.h>
 #include <thread>
 
-// The UAV: a modem and the link layer that uses it.
+// The UAV: a modem, and the link layer that uses it.
 class Uav : public LinkEnd {
 public:
     using Bytes = std::vector<uint8_t>;
@@ -31,7 +32,7 @@ public:
         move(air);
         begin();
     }
-    // Moves the UAV into reach of the modems of an air.
+    // Moves the UAV to another air, so that it reaches the modems there.
     void move(RfChannel& to) {
         XBee::Options options;
         options.name = "uav " + std::to_string(address_);
@@ -54,10 +55,11 @@ public:
 
     std::unique_ptr<XBee> modem;
     std::vector<std::pair<int, Bytes>> received;
-    std::vector<std::pair<int, int>> opened; // channel, and 1 if it was opened or 0 if it was
-                                             // closed
+    // for each channel that was opened or closed: its number, and 1 (opened) or 0 (closed)
+    std::vector<std::pair<int, int>> opened;
     bool echo = false, refuse = false, runs = true;
-    // If set, takes messages instead of `received`; called in the rig's thread, locked.
+    // If this function is set, it takes the messages instead of `received`. It is called in the
+    // rig's thread, with the mutex locked.
     std::function<int(int channel, const U8* data, U32 size)> taking;
     std::function<void(int channel, bool isOpen)> opening;
 
@@ -105,15 +107,15 @@ public:
     void replaceGround(std::map<std::string, uint32_t> set) {
         place(ground, pty, air, std::move(set));
     }
-    // Puts the modem of another ground station into an air.
+    // Puts the modem of a second ground station into an air.
     void placeOther(RfChannel& where) { place(other, otherPty, where, {}); }
-    // Runs `f` between two steps of the models.
+    // Runs `f` between two steps of the models, with the mutex locked.
     template <class F> auto with(F f) {
         std::lock_guard<std::mutex> lock(mutex_);
         return f();
     }
-    // Waits until `done` returns true, for at most `seconds` of simulated time: a busy machine
-    // takes longer.
+    // Waits until `done` returns true, for at most `seconds` of simulated time; a busy machine
+    // takes longer in real time.
     template <class F> bool until(F done, uint64_t seconds = 60) {
         const uint64_t end = with([&] { return now_ + seconds * 1'000'000'000; });
         bool isLate = false;
@@ -138,7 +140,8 @@ public:
             return poll(&p, 1, 0) == 1;
         });
     }
-    // Reads `size` bytes; fewer if the stream ends, or nothing arrives for a simulated minute.
+    // Reads `size` bytes; returns fewer bytes if the stream ends or nothing arrives for a simulated
+    // minute.
     Bytes read(int fd, size_t size) {
         Bytes bytes(size);
         size_t got = 0;
@@ -155,13 +158,14 @@ public:
     uint64_t ns() const { return now_; }
 
     static constexpr uint32_t guardMs = 20;
-    static constexpr std::chrono::microseconds pause{300}; // between two looks of a test
-    RfChannel air, elsewhere; // two places: a modem in one of them is out of reach of a modem in
-                              // the other
+    // pause between two checks of a condition
+    static constexpr std::chrono::microseconds pause{300};
+    // two separate airs: a modem in one of them cannot reach a modem in the other
+    RfChannel air, elsewhere;
     PtyLine pty, otherPty;
-    std::unique_ptr<XBee> ground, other; // `other` is null until it is placed
+    std::unique_ptr<XBee> ground, other; // `other` is null until placeOther() is called
     Uav uav;
-    std::function<void()> step; // called in the rig's thread, locked
+    std::function<void()> step; // called in the rig's thread at each step, with the mutex locked
 
 private:
     void place(std::unique_ptr<XBee>& modem, PtyLine& line, RfChannel& where,
@@ -176,8 +180,8 @@ private:
     }
     void run() {
         using Steady = std::chrono::steady_clock;
-        constexpr uint64_t longestNs = 1'000'000; // ns; longest time between two steps of the
-                                                  // models
+        // longest time between two steps of the models, ns
+        constexpr uint64_t longestNs = 1'000'000;
         for (auto last = Steady::now(); !stop_;) {
             waiting_ = Steady::now();
             step_.wait(now_);
@@ -200,7 +204,8 @@ private:
         }
     }
 
-    // The rig does not wait for an engine whose thread itself waits for the test.
+    // Returns whether simulated time must wait for the engine. It does not wait if the engine's
+    // thread itself waits for the test.
     bool goesOn() const {
         return !stop_ && std::chrono::steady_clock::now() - waiting_ < std::chrono::seconds(5);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// wire: a serial port with a link layer at the other end and no modem, as fast as bytes are taken;
-// and functions for programs' sockets.
+// wire: a serial port with a link layer at the other end and no modem, as fast as bytes are read;
+// and helpers for the sockets of programs.
 
 #pragma once
 
@@ -26,7 +26,7 @@
 
 using Bytes = std::vector<uint8_t>;
 
-// Returns a message in Ice's format with a valid size and no other meaning.
+// Returns a message in Ice's format that has a valid size and no meaning.
 inline Bytes message(uint8_t tag, size_t size = 30) {
     return IceHeader::pack(7, Bytes(size - IceHeader::bytes, tag));
 }
@@ -42,7 +42,7 @@ inline void writeAll(int fd, const Bytes& bytes) {
     }
 }
 
-// Log of the engines: one line per message, which begins with the level.
+// The log of the engines: one line per message, beginning with the level.
 class EngineLog {
 public:
     XBeeAT::Log taker() {
@@ -65,7 +65,7 @@ private:
 class Wire : private LinkEnd {
 public:
     Wire() {
-        begin(16); // 16 us: the path is fast, so no pacing is needed
+        begin(16); // 16 us for 16 characters: the path is so fast that no pacing is needed
         Link_start(link(), us());
         if (openpty(&master_, &slave_, name_, nullptr, nullptr) != 0)
             throw std::runtime_error("no pty");
@@ -79,7 +79,7 @@ public:
         close(slave_);
         close(master_);
     }
-    // An engine at the other end of the wire, as fast as the machine.
+    // Starts an engine at the other end of the wire; it runs as fast as the machine.
     std::shared_ptr<XBeeAT::Peer> engine(int idleMs = 0) {
         XBeeAT::Settings s;
         s.device = name_;
@@ -101,8 +101,8 @@ public:
             done += count > 0 ? static_cast<size_t>(count) : 0;
         }
     }
-    // Runs the peer's link until `done` returns true. Returns false if it had nothing to read for 2
-    // ms this often, which a busy machine makes longer.
+    // Runs the link of the peer until `done` returns true. Returns false if the link had nothing to
+    // read in `rests` pauses of 2 ms each (longer on a busy machine).
     template <class F> bool until(F done, int rests = 30'000) {
         while (!done()) {
             pollfd p{master_, POLLIN, 0};

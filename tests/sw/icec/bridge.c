@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * bridge: IceC as server and as client between two stock programs, with server.c: each request goes
- * through generated code to the server on the port that is the argument. Ends with `shutdown`.
+ * bridge: IceC as server and as client between two stock programs (with server.c). Each request
+ * passes through generated code to the server whose port is the argument. The program ends with the
+ * operation `shutdown`.
  */
 #include "serve.h"
 
@@ -14,7 +15,7 @@
 Ice_ObjectPrx Bridge_far;
 static Ice_ObjectPrx server;
 
-/* Copies a string to the end of `room`, with a final zero. */
+/* Copies a string to the end of `room`, with a terminating zero. */
 static char* keep(char** room, Ice_String text) {
     char* kept = *room;
     memcpy(kept, text.data, (size_t)text.size);
@@ -23,8 +24,8 @@ static char* keep(char** room, Ice_String text) {
     return kept;
 }
 
-/* Makes the proxy that continues a request on the other side: identity, facet, encoding, mode and
- * context. */
+/* Makes the proxy with which a request continues on the other side. It has the identity, facet,
+ * encoding, mode and context of the request. */
 static Ice_Status aim(const Ice_Current* current, Ice_ObjectPrxPtr far) {
     static Ice_ContextEntry context[CONTEXT + 1];
     static char texts[4096];
@@ -36,7 +37,8 @@ static Ice_Status aim(const Ice_Current* current, Ice_ObjectPrxPtr far) {
     int n, connection;
     Ice_Status status = Ice_ObjectPrx_ice_getConnection(&server, &connection);
     if (current->connection == connection)
-        connection = client; /* over the client's connection, because the server calls back */
+        /* calls of the server back to the client use the client's connection */
+        connection = client;
     else
         client = current->connection;
     id.name = current->name;
@@ -58,7 +60,7 @@ static Ice_Status aim(const Ice_Current* current, Ice_ObjectPrxPtr far) {
     return status;
 }
 
-/* Passes on one of the operations that every object has; its parameters need no decoding. */
+/* Passes on one of the operations that every object has, without decoding its parameters. */
 static Ice_Status passWhole(Ice_ObjectPrxPtr far, const Ice_Current* current, Ice_InputStreamPtr is,
                             Ice_OutputStreamPtr os) {
     Ice_InputStreamPtr back;
@@ -78,7 +80,8 @@ static Ice_Status passWhole(Ice_ObjectPrxPtr far, const Ice_Current* current, Ic
     return Ice_ObjectPrx_end(far, status);
 }
 
-/* Returns the servant for the type of the object; null, with `status` set, if no servant fits. */
+/* Returns the servant for the type of the object. Returns null and sets `status` if no servant
+ * fits. */
 static Ice_ObjectPtr servantOf(const Ice_ObjectPrx* far, Ice_Status* status) {
     Ice_ObjectPrx asked = *far;
     Ice_ObjectPtr servant = 0;
@@ -109,8 +112,8 @@ static Ice_Status pass(Ice_ObjectPtr self, const Ice_Current* current, Ice_Input
     servant = servantOf(&far, &status);
     if (!servant)
         return status;
-    status = aim(current, &Bridge_far); /* requests that arrived during this call have changed the
-                                         * proxy */
+    /* requests that arrived during the call above may have changed this proxy */
+    status = aim(current, &Bridge_far);
     if (status == ICE_OK)
         status = servant->dispatch(servant, current, is, os);
     if (status == ICE_CONNECTION_LOST)

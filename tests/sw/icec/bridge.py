@@ -1,9 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""bridge: bridge.py HEADER... >bridged.c writes servants with operations that call Bridge_far.
+"""bridge: bridge.py HEADER... >bridged.c writes servants whose operations call the proxy
+Bridge_far.
 
-The headers are slice2c's. The servant of an interface passes each operation's parameters to the
-proxy of the same interface, and gives back what returns: results, status and exception.
+The headers are those that slice2c generates. A servant passes the parameters of each operation to
+the proxy of the same interface, and returns the results, the status and the exception of this call.
 """
 import re
 import sys
@@ -20,13 +21,13 @@ def name_of(parameter):
 
 
 def operation(name, self, parameters, calls, servants, responses):
-    """Writes an operation. Results that the call returns are sent later: the servant answers
-    asynchronously."""
+    """Writes one operation. If the call has results, the servant sends its reply asynchronously."""
     owner = max((s for s in servants if name.startswith(s + "_")), key=len)
     call = re.sub("(Disp)?$", "Prx", owner, count=1) + name[len(owner):]
     own = parameters.split(", ")[1:]
     later = calls.get(call, parameters).split(", ")[len(own) + 1:]
-    given = ["(void*)" * ("**" in p) + name_of(p) for p in own]  # an instance is const in this call
+    # the parameters of the servant are const, those of the proxy are not
+    given = ["(void*)" * ("**" in p) + name_of(p) for p in own]
     print(f"\nIce_Status {name}({self}{parameters}, const Ice_Current* current) {{")
     for result in later:
         print(f"    {result.replace('*', '', 1)};")
@@ -38,8 +39,8 @@ def operation(name, self, parameters, calls, servants, responses):
     print(f"    status = {call}({', '.join(arguments)});")
     if later:
         names = [name_of(p) for p in later]
-        own = {name_of(p) for p in later if p.count("*") == 1}  # not classes, because these are
-                                                                # pointers
+        # not classes, because classes are pointers
+        own = {name_of(p) for p in later if p.count("*") == 1}
         own &= {name_of(p) for p in responses[name].split(", ") if "*" in p}
         results = ", ".join(["&reply"] + [
             f"has_{n} ? &{n} : 0" if "has_" + n in names else "&" * (n in own) + n

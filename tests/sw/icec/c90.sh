@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# c90: source-folder   IceC and its portable transports are C90 to gcc, clang and the Cortex-M3's
-#                      gcc, with every warning an error, in the full and the minimal run time.
+# c90: source-folder   Checks that IceC and its portable transports are C90 without warnings for
+#                      gcc, clang and the Cortex-M3's gcc, in the full and the minimal run time.
 set -eu
 sw=$1/sw
 warnings='-std=c90 -pedantic -Wall -Wextra -Wconversion -Wno-sign-conversion -Wstrict-prototypes

@@ -45,7 +45,7 @@ TEST_F(Calls, AFailureIsToldOfItsProxyWhateverOthersCall) {
     EXPECT_EQ(failure.unknown.size, 0) << "the reply is gone, and so is its text";
 }
 
-// Makes a call that returns the string `mine`, which lies in the reply.
+// Makes a call whose result is the string `mine`. The result stays in the buffer of the reply.
 Ice_String askString(Ice_ObjectPrx& prx, const std::string& mine, Ice_Status expected = ICE_OK) {
     Ice_String result = {0, nullptr};
     Ice_InputStreamPtr is;
@@ -151,7 +151,7 @@ TEST_F(Calls, ABatchIsOneMessageAndIsSentWhenFullOrFlushed) {
     settle();
     EXPECT_EQ(got, std::vector<int>({0, 1, 2, 3, 4}));
     EXPECT_EQ(messages, 1);
-    for (int i = 0; i < 20; ++i) // more batched requests than fit
+    for (int i = 0; i < 20; ++i) // more batched requests than fit into a message
         EXPECT_EQ(call(prx_, "op", i), ICE_OK);
     EXPECT_EQ(Ice_ObjectPrx_ice_flushBatchRequests(&prx_), ICE_OK);
     settle();
@@ -187,7 +187,7 @@ TEST_F(Calls, EveryLimitIsSaidWithItsNameAndValue) {
     servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
         if (str(current.operation) == "arena") {
             (void)Ice_InputStream_allocate(is, 1000, 8);
-            return ICE_MARSHAL; // the status that generated code returns
+            return ICE_MARSHAL; // generated code returns the same status
         }
         if (str(current.operation) == "bound") {
             is->failed = ICE_FAILED_BOUND;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_dispatch: runs libFuzzer on the messages of a peer (bytes after a valid head), and on the
-// parser of proxy strings.
+// fuzz_dispatch: fuzzes the messages from a peer (the bytes after a valid header) and the parser of
+// proxy strings, with libFuzzer.
 //
 // The first byte selects the type of the message, or a request of which only the parameters are
-// fuzzed. In the parameters, two bytes select each read. A proxy that is read or parsed must
-// survive conversion to a string and back, and to bytes and back. After each message the
+// fuzzed. In the parameters, two bytes select each read. A proxy that was read or parsed must be
+// the same after conversion to a string and back, and to bytes and back. After each message the
 // communicator must still answer a ping. With ICEC_MINIMAL it tests the minimal run time, without
 // the strings.
 
@@ -26,7 +26,7 @@ std::optional<Loop> loop;
 Ice_ObjectAdapter adapter;
 int replies;
 
-// Writes a proxy in encoding 1.minor, and reads it.
+// Writes a proxy in encoding 1.minor, and reads it again.
 void sendProxy(const Ice_ObjectPrx& prx, Ice_Byte minor, Ice_ObjectPrx& received) {
     Ice_Byte bytes[512];
     Ice_OutputStream os;
@@ -43,8 +43,8 @@ void sendProxy(const Ice_ObjectPrx& prx, Ice_Byte minor, Ice_ObjectPrx& received
         abort();
 }
 
-// Checks that a proxy survives both conversions. `minor`: minor version of the encoding in which
-// the proxy was read; a received proxy takes over the encoding of its message.
+// Checks that a proxy is unchanged after both conversions. `minor` is the minor version of the
+// encoding in which the proxy was read; a received proxy adopts the encoding of its message.
 void checkProxy(const Ice_ObjectPrx& prx, Ice_Byte minor) {
     static char text[8192];
     Ice_ObjectPrx again;
@@ -53,9 +53,9 @@ void checkProxy(const Ice_ObjectPrx& prx, Ice_Byte minor) {
         abort();
     if (Ice_Communicator_stringToProxy(&ic, text, &again) != ICE_OK ||
         (!Ice_ObjectPrx_isNull(&prx) && !Ice_ObjectPrx_equals(&prx, &again))) {
-        // Three differences are allowed. An endpoint of this transport prints in a canonical form,
-        // without unknown bytes. An empty opaque endpoint has no string that Ice reads. Octal
-        // escapes may be longer than the limit.
+        // Three differences are allowed. An endpoint of this transport is printed in a canonical
+        // form, without unknown bytes. An opaque endpoint that is empty has no string that Ice can
+        // parse. Octal escapes may make the string longer than the limit.
         size_t n = strlen(text);
         if (!prints(":loop") && !prints("\\") && !prints("-v :") &&
             (n < 3 || strcmp(text + n - 3, "-v ") != 0)) {
@@ -63,7 +63,8 @@ void checkProxy(const Ice_ObjectPrx& prx, Ice_Byte minor) {
             abort();
         }
     }
-    // An endpoint of this transport adopts the encoding in which it is sent, once.
+    // When it is sent for the first time, an endpoint of this transport adopts the encoding of the
+    // message; after that it does not change.
     Ice_ObjectPrx sent, sentAgain;
     sendProxy(prx, minor, sent);
     sendProxy(sent, minor, sentAgain);
@@ -135,8 +136,8 @@ void inject(const Bytes& message) {
     loop->inject(ICE_EVENT_MESSAGE, 0, message);
 }
 
-// Delivers a message while a call of this side waits, so that a reply can belong to this call.
-// `answers`: the message has the id of the call.
+// Delivers a message while a call of this side waits. If `answers` is true, the message has the id
+// of this call.
 void messageDuringCall(Ice_Byte type, bool answers, Bytes body) {
     static Ice_ObjectPrx prx;
     Ice_InputStreamPtr is;
@@ -196,8 +197,8 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
         rest.insert(rest.begin(), {1, 0, 0, 0});
     }
     messageDuringCall(types[choice], choice == 4, rest);
-    // After any message the connection still works: it can be opened again, and a ping gets one
-    // reply.
+    // After any message the connection still works: it can be opened again, and a ping gets exactly
+    // one reply.
     if (!loop->open[0] || data[0] & 8) {
         loop->inject(ICE_EVENT_OPENED, 0);
         (void)Ice_Communicator_poll(&ic, 0);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_values: libFuzzer target of graphs of instances and of exceptions, through generated code.
+// fuzz_values: fuzzes graphs of instances, and exceptions, in generated code, with libFuzzer.
 //
-// An input is read as a message; every second input is first converted to a valid message with a
-// graph described by its bytes, and then damaged. The instances read are written in each encoding
-// and format; if the result can be read again, writing it must give the same bytes.
+// An input is read as a message. Every second input is first converted to a valid message with a
+// graph that its bytes describe, and this message is then damaged. The instances that were read are
+// written in each encoding and format. If the written message can be read again, writing it once
+// more must give the same bytes.
 
 #include <cstdint>
 #include <cstdio>
@@ -46,7 +47,7 @@ Ice_OutputStream writer(Format format) {
     return os;
 }
 
-// ---- two parameters: a Node and an Object
+// ---- an operation with two parameters: a Node and an Object
 
 struct Parameters {
     Graph_Node* a;
@@ -74,7 +75,7 @@ bool write(const Parameters& p, Format format, Bytes& bytes) {
     return !os.failed;
 }
 
-// ---- exceptions of an operation
+// ---- an operation with exceptions
 
 bool read(Graph_Maker_make_Exception& ex, const Bytes& bytes, Ice_Byte minor, size_t arenaBegin) {
     Ice_InputStream is = reader(bytes, minor, arenaBegin);
@@ -92,7 +93,8 @@ template <class What> void roundTrip(const What& what) {
     for (Format format : formats) {
         Bytes first, second;
         What again{};
-        // The second write may exceed a limit of the run time (instances, types, waiting pointers).
+        // The second write may fail because of a limit of the run time (instances, types, waiting
+        // pointers).
         if (!write(what, format, first) ||
             !read(again, first, format.minor, sizeof arena / sizeof *arena / 2))
             continue;
@@ -104,7 +106,7 @@ template <class What> void roundTrip(const What& what) {
     }
 }
 
-// Writes a message of the graph that the bytes describe.
+// Writes a message with the graph that the bytes describe.
 template <class What> Bytes described(const uint8_t* data, size_t size, Format format) {
     static Graph_Leaf nodes[8];
     static Graph_Plain plain;
@@ -153,8 +155,8 @@ template <class What> Bytes described(const uint8_t* data, size_t size, Format f
         what.u.Failure.node = pick();
     }
     (void)write(what, format, bytes);
-    while (at + 2 < size && !bytes.empty()) { // may also damage names; the slices are then of
-                                              // unknown types
+    // this may also damage the names of types; their slices are then unknown
+    while (at + 2 < size && !bytes.empty()) {
         size_t where = (data[at] << 8 | data[at + 1]) % bytes.size();
         bytes[where] = data[at + 2];
         at += 3;

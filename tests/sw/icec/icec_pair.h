@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// icec_pair: two communicators joined by the loop-back transport, or one communicator that gets
+// icec_pair: two communicators that the loop-back transport connects, or one communicator that gets
 // messages as bytes; and a servant that the tests control.
 
 #pragma once
@@ -27,9 +27,10 @@ inline Operation returns(Ice_Status status) {
     return [=](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr) { return status; };
 }
 
-// A servant that runs the function `run` for every operation.
+// A servant that calls the function `run` for every operation.
 struct Servant {
-    Ice_Object base; // must be the first member: IceC calls with its address
+    // must be the first member, because IceC passes its address as that of the servant
+    Ice_Object base;
     Operation run = returns(ICE_OK);
     int calls = 0;
 
@@ -39,7 +40,7 @@ struct Servant {
         base.ids = ids;
         base.id = ids[1];
     }
-    // Makes operations store their reply in `later`.
+    // Makes operations store their reply in `later` instead of sending it.
     void answerLater(Ice_Reply& later) {
         run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
             Ice_Current_later(&current, &later);
@@ -71,7 +72,7 @@ struct Side {
     }
 };
 
-// Makes a call of one int parameter and one int result.
+// Makes a call with one int parameter and one int result.
 inline Ice_Status call(Ice_ObjectPrx& prx, const char* operation, Ice_Int in = 0,
                        Ice_Int* out = nullptr, Ice_Byte mode = 0) {
     Ice_InputStreamPtr is = nullptr;
@@ -100,7 +101,7 @@ inline std::string reason(const Ice_ObjectPrx& prx) {
     return str(failure.unknown);
 }
 
-// Makes a call without parameters that sets `status` when its reply arrives.
+// Makes an asynchronous call without parameters; `status` is set when the reply arrives.
 inline void callAsync(Ice_ObjectPrx& prx, const char* operation, Ice_Status& status) {
     ASSERT_NE(Ice_ObjectPrx_begin(&prx, operation, 0), nullptr);
     auto done = [](void* cookie, Ice_Status s, Ice_InputStreamPtr) {
@@ -134,7 +135,7 @@ private:
     std::unique_ptr<Side> here_, there_;
 };
 
-// A suite with tests in several files.
+// A test suite whose tests are in several files.
 class Calls : public IcecPair {};
 
 using namespace IceMessages;

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: MIT
 # interop: command -- command ...
 #
-# Runs the commands in order. Each command prints its port, which becomes the last argument of
-# the next command. Ends with the exit status of the last command. If the first command is ended by
-# the last one, its exit status counts instead.
+# Starts the commands in order. Each command prints its port, which becomes the last argument of the
+# next command. The exit status is that of the last command; if the last command ends the first one,
+# it is that of the first command.
 set -eu
 work=$(mktemp -d)
 pids=''

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// loop: IceC's transport between two communicators of one process and one task.
+// loop: a transport of IceC between two communicators of one process and one task.
 //
-// Proxies: "loop [-c n]", n 0 or 1: which of the two connections of this side. Time is simulated:
-// it passes only while a communicator waits and nothing can happen. Without a peer, messages only
-// go to `tap`, and inject acts as the other side.
+// Proxies: "loop [-c n]"; n is 0 or 1 and selects one of the two connections of this side. Time is
+// simulated: it passes only while a communicator waits and nothing else can happen. Without a peer,
+// messages are only passed to `tap`, and inject takes the place of the other side.
 
 #pragma once
 
@@ -40,7 +40,7 @@ public:
                 Ice_OutputStream_writeByte(
                     os, static_cast<Ice_Byte>(Ice_numberOption(options, 'c', 0)));
             },
-            [](void*) {}, // wakes the task: nothing to do, because the only task is awake
+            [](void*) {}, // nothing to do, because the only task is already awake
             [](void* c) { return of(c).nowMs(); },
             [](void*, const Ice_Byte* encoded, Ice_Int size, Ice_OutputStreamPtr text) {
                 if (!isLoop(encoded, size))
@@ -54,13 +54,13 @@ public:
     Loop(const Loop&) = delete;
     Loop& operator=(const Loop&) = delete;
 
-    // Joins two sides: each receives what the other sends.
+    // Connects two sides: each receives the messages that the other sends.
     void join(Loop& other) {
         peer_ = &other;
         other.peer_ = other.clock_ = this;
         other.first_ = 1;
     }
-    // Plays a peer: queues an event.
+    // Queues an event, as if a peer had caused it.
     void inject(Ice_EventKind kind, int connection, const Bytes& message = {}) {
         events_.push_back({kind, connection, message});
         if (kind != ICE_EVENT_MESSAGE)
@@ -69,7 +69,7 @@ public:
     U32 nowMs() const { return clock_->ownMs_; }
 
     bool open[ICE_CONNECTIONS] = {};
-    bool silent = false; // true: connections can be made, but the peer does not answer
+    bool silent = false; // true: connections can be opened, but the peer does not answer
     // Called with every message that is sent.
     std::function<void(const Bytes& message)> tap;
 
@@ -79,7 +79,8 @@ private:
         int connection;
         Bytes message;
     };
-    // Type, an encapsulation's size, encoding 1.1; the connection follows.
+    // Beginning of an encoded endpoint: type, size of the encapsulation, encoding 1.1. The number
+    // of the connection follows.
     static constexpr Ice_Byte head[] = {0x50, 0x4C, 7, 0, 0, 0, 1, 1};
 
     static Loop& of(void* context) { return *static_cast<Loop*>(context); }
@@ -89,7 +90,7 @@ private:
     Ice_Status receive(Ice_Byte* buffer, Ice_Int timeoutMs, Ice_Event* event) {
         U32 begin = nowMs();
         while (events_.empty() && static_cast<Ice_Int>(nowMs() - begin) < timeoutMs) {
-            // Runs the peer, unless the peer is waiting for this side.
+            // Runs the peer, unless the peer itself is waiting for this side.
             if (peer_ && !running_) {
                 running_ = true;
                 Ice_Status status = Ice_Communicator_poll(&peer_->ic_, 0);
@@ -130,8 +131,8 @@ private:
         return ICE_OK;
     }
     void close(int connection) {
-        // The peer may already have closed the connection. Its report is withdrawn, because the
-        // number may now belong to a new connection.
+        // The peer may already have closed the connection. This event is then discarded, because a
+        // new connection may now have the same number.
         for (Event& e : events_)
             if (e.kind == ICE_EVENT_CLOSED && e.connection == connection) {
                 e.kind = ICE_EVENT_NONE;
@@ -145,7 +146,8 @@ private:
     Ice_Communicator& ic_;
     Loop *peer_ = nullptr, *clock_ = this;
     U32 ownMs_ = 0;
-    int first_ = 0; // first connection that this side makes; the other one is this + 2
+    // number of the first connection that this side opens; the second one has this number + 2
+    int first_ = 0;
     bool running_ = false;
     std::deque<Event> events_;
 };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// manual_test: the chapters on proxies and adapters of Ice's manual, except calls (docs/icec.md):
-// parts of a proxy, changes of a copy, adapters, Current, transports that cannot be called;
-// connections that end, calls back on them, time-outs, heartbeats, the properties for adapters and
-// proxies, and addresses of names.
+// manual_test: tests what Ice's manual promises in its chapters on proxies and adapters, except
+// calls (docs/icec.md): parts of a proxy, changes to a copy, adapters, Current, and transports that
+// cannot be called. Also tests connections that end, calls back on a connection, time-outs,
+// heartbeats, the properties of adapters and proxies, and names that have several addresses.
 
 #include "icec_pair.h"
 #include <dlfcn.h>
@@ -14,8 +14,8 @@ extern "C" {
 #include "tcp_private.h"
 }
 
-// A resolver that replaces the system's: "twofold.test" is 127.0.0.2 and 127.0.0.1, "mixed.test" is
-// ::1 and 127.0.0.1.
+// A resolver that replaces that of the system: "twofold.test" has the addresses 127.0.0.2 and
+// 127.0.0.1, "mixed.test" has ::1 and 127.0.0.1.
 static const auto real = reinterpret_cast<decltype(&getaddrinfo)>(dlsym(RTLD_NEXT, "getaddrinfo"));
 static addrinfo* inFront(const char* address, const char* port, addrinfo* rest) {
     addrinfo numeric = {}, *one = nullptr;
@@ -130,8 +130,8 @@ TEST_F(Manual, CurrentTellsWhatIsAsked) {
     EXPECT_EQ(seen, "/thing -f  note mode 0 encoding 1.1 on 0 one-way");
 }
 
-TEST_F(Manual, AServantWithoutTypeIdsIsAskedEverything) { // The servant forwards requests for
-                                                          // unknown objects.
+// The servant forwards requests for objects that it does not know.
+TEST_F(Manual, AServantWithoutTypeIdsIsAskedEverything) {
     static Ice_ObjectPtr target;
     static std::vector<std::string> seen;
     target = &servant_.base;
@@ -157,7 +157,7 @@ TEST_F(Manual, AServantWithoutTypeIdsIsAskedEverything) { // The servant forward
     EXPECT_EQ(call(prx, "secret"), ICE_OPERATION_NOT_EXIST);
     EXPECT_EQ(seen, (std::vector<std::string>{"ice_ping", "ice_isA", "ice_id", "op", "secret"}));
     EXPECT_EQ(servant_.calls, 1);
-    // The target no longer exists. Its forwarder reports this, also for ice_ping.
+    // The target no longer exists. The object that forwards to it reports this, even for ice_ping.
     forwarder.dispatch = [](Ice_ObjectPtr, const Ice_Current*, Ice_InputStreamPtr,
                             Ice_OutputStreamPtr) { return ICE_OBJECT_NOT_EXIST; };
     EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx), ICE_OBJECT_NOT_EXIST);
@@ -296,7 +296,7 @@ TEST_F(Calls, WhoWaitsForALongOperationGetsSignsOfLife) {
     servant_.answerLater(later);
     prx_.timeoutMs = 5 * ICE_HEARTBEAT_MS + 100;
     EXPECT_EQ(call(prx_, "op"), ICE_TIMEOUT);
-    EXPECT_EQ(beats, 1 + 5); // the first call opened the connection
+    EXPECT_EQ(beats, 1 + 5); // one more, because the first call opened the connection
     (void)Ice_Reply_begin(&later);
     EXPECT_EQ(Ice_Reply_end(&later, ICE_OK), ICE_OK);
     beats = 0;
@@ -319,7 +319,7 @@ TEST_F(Calls, DestroyWaitsForAnswersThatComeLater) {
     Ice_Status status = ICE_LIMIT;
     callAsync(prx_, "op", status);
     settle();
-    // A call by the other side, which fails when that side destroys its communicator.
+    // A call made by the other side; it fails when that side destroys its communicator.
     Ice_ObjectPrx own = there().proxy("missing:loop");
     ASSERT_NE(Ice_ObjectPrx_begin(&own, "op", 0), nullptr);
     ASSERT_EQ(Ice_ObjectPrx_invokeAsync(

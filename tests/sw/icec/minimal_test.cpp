@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// minimal_test: tests calls of the minimal run time, and requests that it refuses.
+// minimal_test: tests calls of the minimal run time, and the requests that it rejects.
 
 #include "icec_pair.h"
 
@@ -63,8 +63,8 @@ TEST_F(Minimal, StringsThatAreNoProxiesSaySo) {
                      1, 1,   1,   0x50, 0x4C, 7,   0, 0, 0, 1, 1, 0}));
 }
 
-// Plays the peer of a communicator with prepared messages. Connection 0 is made by the
-// communicator.
+// Takes the place of a communicator's peer, with prepared messages. The communicator has opened
+// connection 0.
 class MinimalPeer : public ::testing::Test {
 protected:
     MinimalPeer() {

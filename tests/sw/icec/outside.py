@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""outside: checks that the program of docs/icec.md, "A program outside this tree", builds and
-prints what the page shows.
+"""outside: checks that the program in docs/icec.md, "A program outside this tree", can be built and
+prints the output that the page shows.
 
 usage: outside.py PROJECT SLICE2C WORK"""
 import os
@@ -23,7 +23,7 @@ for language, text in blocks:
         pathlib.Path(work, name).write_text(text, encoding="utf-8")
 commands = [text for language, text in blocks if language == "sh"][0]
 expected = [text for language, text in blocks if not language][0]
-# The page names the compiler of a clone; this build may be in another folder.
+# The page uses the compiler of a clone, but this build may be in another folder.
 commands = commands.replace("$ICESOC/build/main/slice/slice2c", f"'{slice2c}'")
 ran = subprocess.run(["sh", "-ec", commands], cwd=work, capture_output=True, text=True,
                      env=dict(os.environ, ICESOC=project))

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * radio: makes a test's servants the firmware of the simulated UAV.
+ * radio: lets the simulated UAV run a test's servants as its firmware.
  */
 #include "paper.h"
 #include "serve.h"

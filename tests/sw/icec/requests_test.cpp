@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// requests_test: tests calls, and messages as bytes: answered, malformed, refused or skipped. Full
-// and minimal run time must behave alike.
+// requests_test: tests calls, and messages given as bytes that are answered, malformed, rejected or
+// skipped. The full and the minimal run time must behave in the same way.
 
 #include "icec_pair.h"
 
@@ -70,7 +70,7 @@ TEST_F(Calls, AnAdapterIsFullAtItsLimitAndDeafUntilActive) {
     EXPECT_EQ(call(prx, "op"), ICE_OK);
 }
 
-// Figures in the description of the protocol: a ping has 39 bytes, its reply 25.
+// Numbers from the description of the protocol: a ping has 39 bytes, its reply has 25.
 TEST_F(Wire, APingIsAnsweredAsIceDoes) {
     auto back = exchange(request(7, requestBody("thing", "ice_ping")));
     ASSERT_EQ(back.size(), 1u);
@@ -118,10 +118,10 @@ TEST_F(Wire, MalformedMessagesCloseTheConnection) {
     bad[1][4] = 2;                  // protocol 2.0
     bad[2][8] = 5;                  // type
     bad[3][10] = 13;                // size
-    bad[4][10]++;                   // the size in the header differs from the message's
-    bad[5][18] = 200;               // the name is longer than the message
-    bad[6][good.size() - 10]++;     // the encapsulation is longer than the message
-    bad[7][good.size() - 10] = 5;   // the encapsulation is too short for its own header
+    bad[4][10]++;                   // the size in the header differs from the size of the message
+    bad[5][18] = 200;               // the name would end after the end of the message
+    bad[6][good.size() - 10]++;     // the encapsulation would end after the end of the message
+    bad[7][good.size() - 10] = 5;   // the encapsulation is shorter than its own header
     bad[8][good.size() - 7] = 0x80; // or negative
     bad[9].resize(13);              // shorter than a header
     bad[10].resize(0);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * results_m3: tasks of the kernel on a Cortex-M3 call objects of the same program through one
- * communicator, with the vehicle's Ice_Os, and check the results of each call: a string, an
- * exception with an instance, and an instance with a sequence. An interrupt, at any instruction,
- * wakes the tasks of higher priority. For m3_runner.c.
+ * results_m3: a program with several tasks for a Cortex-M3. The tasks call objects of the same
+ * program through one communicator, with the vehicle's Ice_Os, and check the results of each call:
+ * a string, an exception with an instance, and an instance with a sequence. An interrupt, which may
+ * come at any instruction, wakes the tasks of higher priority. m3_runner.c runs this program.
  */
 #include "Graph.h"
 #include "os_cases.h"
@@ -14,7 +14,7 @@
 #include <string.h>
 
 #define WORDS 1024 /* size of a task's stack, words */
-/* Priorities: two tasks that the interrupt wakes, the server, and two other tasks. */
+/* Priorities of the tasks: two tasks that the interrupt wakes, the server, and two other tasks. */
 #define WOKEN 7
 #define SERVER 9
 #define LOW 10
@@ -67,7 +67,7 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
     return ICE_OK;
 }
 
-/* One task sends at a time, under ICE_LOCK_SEND, which connect does not hold. */
+/* Only one task sends at a time, under ICE_LOCK_SEND; connect does not hold this lock. */
 static Ice_Status send(void* context, int connection, const Ice_Byte* message, Ice_Int size) {
     (void)context;
     OSSchedLock();
@@ -112,7 +112,8 @@ static U32 nowMs(void* context) {
     return OSTimeGet();
 }
 
-/* ---- the servant: returns what it receives; throws an exception if the id is odd ---- */
+/* ---- the servant, which returns the values that it receives, and throws an exception if the id is
+ * odd ---- */
 
 Ice_Status Graph_Maker_echo(Graph_MakerPtr self, Ice_String text, Ice_String* result,
                             const Ice_Current* current) {
@@ -146,7 +147,7 @@ Ice_Status Graph_Maker_make(Graph_MakerPtr self, const Graph_Node* a, const Ice_
     return ICE_OK;
 }
 
-/* ---- the callers ---- */
+/* ---- the tasks that call ---- */
 
 static void say(const char* word) {
     (void)strcat(os_said, word);
@@ -157,7 +158,7 @@ static void check(int isRight, const char* what) {
         say(what);
 }
 
-/* Makes calls with values that contain `letter`. */
+/* Makes calls with values that are made of `letter`, and checks the results. */
 static void call(char letter, Ice_Int id) {
     Graph_MakerPrx prx;
     Graph_Node sent, *node = 0;
@@ -194,7 +195,7 @@ static void call(char letter, Ice_Int id) {
           "instance ");
 }
 
-/* `p`: number of the task. */
+/* `p` is the number of the task. */
 static void callsOnce(void* p) {
     unsigned number = (unsigned)((char*)p - os_said);
     call((char)('a' + number), (Ice_Int)(100 * number));

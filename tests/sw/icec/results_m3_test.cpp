@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// results_m3_test: checks on a Cortex-M3 that the results of a call reach the task that made it,
-// wherever the kernel switches to other tasks that also call.
+// results_m3_test: checks on a Cortex-M3 that the task that made a call gets its results, wherever
+// the kernel switches to other tasks that also make calls.
 
 #include "plain_bus.h"
 #include "random.h"
@@ -10,11 +10,11 @@
 
 namespace {
 
-// instructions that are counted: all, or only those in the function that checks results
+// instructions that are counted: all of them, or only those in the function that checks results
 enum Counted { ALL, LOOKING };
 
-// Runs a case, and raises the interrupt before counted instruction number `where`, starting at the
-// first caller. Returns the number of counted instructions.
+// Runs a case. Counts instructions from the start of the first calling task, and raises the
+// interrupt before instruction number `where`. Returns the number of counted instructions.
 uint64_t run(unsigned number, Counted counted, uint64_t where) {
     PlainCpu m3(RESULTS_ELF);
     const uint32_t first = m3.image.symbol("callsOnce") & ~1u;
@@ -50,7 +50,7 @@ TEST_P(ResultsM3, StayWhileTheirTaskLooksAtThemAndOthersCall) {
     interruptEach(LOOKING, 2);
 }
 
-// Another seed interrupts at other instructions; RESULTS_M3_STEP=1 interrupts at every instruction.
+// Another seed interrupts at other instructions. RESULTS_M3_STEP=1 interrupts at every instruction.
 TEST_P(ResultsM3, ComeWhereverOthersCall) {
     const char* step = std::getenv("RESULTS_M3_STEP");
     interruptEach(ALL, step ? std::strtoull(step, nullptr, 10) : 1499);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * serve: functions of a test's servants, for server.c over tcp and radio.c over the air.
+ * serve: functions that a test's servants provide, for server.c (over tcp) and radio.c (over the
+ * air).
  */
 #pragma once
 
@@ -12,6 +13,6 @@ extern const char* suite_argument; /* first argument of the program server.c */
 
 /* Proxy of the object on the other side of the bridge, for the current request. */
 extern Ice_ObjectPrx Bridge_far;
-/* Returns the servant of interface `number`, counted from 0, of those that bridge.py generates;
- * null after the last one. */
+/* Returns the servant of the interface with this number, counted from 0 in the output of bridge.py;
+ * returns null after the last one. */
 Ice_ObjectPtr Bridge_servant(int number);

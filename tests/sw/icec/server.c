@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * server: serves a test's servants over tcp. Prints its port, and serves until `shutdown` is
- * called.
+ * server: serves the servants of a test over tcp. It prints its port, and serves until `shutdown`
+ * is called.
  */
 #include "serve.h"
 #include "tcp_endpoint.h"

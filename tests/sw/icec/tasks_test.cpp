@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// tasks_test: one communicator used by several threads, over tcp: simultaneous calls, with and
-// without a receiving task, and replies sent by a task other than the operation's.
+// tasks_test: tests a communicator that several threads use over tcp: simultaneous calls, with and
+// without a receiving task, and replies that another task sends than the one that executes the
+// operation.
 
 #include "icec_pair.h"
 
@@ -35,7 +36,7 @@ Ice_Status Graph_Maker_make(Graph_MakerPtr, const Graph_Node* a, const Ice_Value
 
 namespace {
 
-// Implements Ice_Os with threads.
+// Implements Ice_Os with the threads of the host.
 struct Threads {
     std::mutex locks[2], waiting;
     std::condition_variable changed[ICE_CALLS + 1];
@@ -122,7 +123,7 @@ protected:
         serving_.join();
         answering_.join();
     }
-    // Sends the reply from a task other than the one that dispatched the operation.
+    // Sends the reply from another task than the one that dispatched the operation.
     void answer() {
         for (;;) {
             std::unique_lock<std::mutex> lock(laterMutex_);
@@ -141,7 +142,7 @@ protected:
         held_ = held;
         laterCame_.notify_one();
     }
-    // Returns a proxy of the client for an object of the server.
+    // Returns a proxy of the client's communicator for an object of the server.
     Ice_ObjectPrx proxy(const std::string& identity = "thing",
                         const std::string& host = "127.0.0.1") {
         Ice_ObjectPrx prx;
@@ -151,7 +152,7 @@ protected:
         prx.timeoutMs = 60000;
         return prx;
     }
-    // Calls `what` while tasks of the client's program serve.
+    // Calls `what` while this number of tasks serve the client's communicator.
     template <class What> void whileServing(int tasks, What what) {
         std::vector<std::thread> serving;
         for (int t = 0; t < tasks; ++t)
@@ -188,14 +189,15 @@ protected:
     std::thread serving_, answering_;
 };
 
-// Parameter: number of tasks that serve; if it is 0, the calling tasks receive in turns.
+// Tests with a parameter: the number of tasks that serve. If it is 0, the calling tasks receive
+// messages in turns.
 class TasksThatServe : public Tasks, public ::testing::WithParamInterface<int> {};
 TEST_P(TasksThatServe, LetOthersCallAtOnce) {
     whileServing(GetParam(), [this] { callFromThreads(ICE_CALLS); });
 }
 INSTANTIATE_TEST_SUITE_P(Tasks, TasksThatServe, ::testing::Values(0, 1, 2));
 
-// Six tasks, one after the other; each keeps its result until it ends.
+// Six tasks call one after the other; the result of each task is kept until the task ends.
 TEST_F(Tasks, OneThatHasEndedLeavesItsPlaceToOthers) {
     for (int i = 0; i < ICE_CALLS + 2; ++i)
         std::thread([&] {
@@ -212,8 +214,8 @@ TEST_F(Tasks, OneThatHasEndedLeavesItsPlaceToOthers) {
     EXPECT_EQ(ask(prx, "op", 2), 4);
 }
 
-// A task that polls repeatedly takes over the role of the receiving task from a task that waits for
-// a reply, and gives the role back.
+// While one task waits for a reply and receives messages, another task polls repeatedly. For each
+// poll it takes over the role of the receiving task, and then gives it back.
 TEST_F(Tasks, CallWhileTwoPollNowAndThen) {
     std::atomic<bool> over{false};
     auto poll = [&] {
@@ -255,8 +257,8 @@ TEST_F(Tasks, AServerTakesTheRoleFromACallThatWaits) {
     server.join();
 }
 
-// The server listens only on the second address of the name (manual_test.cpp resolves it). The next
-// call uses the existing connection.
+// The server listens only on the second address of the name (see the resolver in manual_test.cpp).
+// The next call uses the existing connection.
 TEST_F(Tasks, TryEachAddressOfAName) {
     Ice_ObjectPrx prx = proxy("thing", "twofold.test");
     for (int i = 0; i < 3; ++i)
@@ -267,7 +269,7 @@ TEST_F(Tasks, TryEachAddressOfAName) {
     EXPECT_EQ(open, 1);
 }
 
-// (Results stay valid while other tasks call: see results_m3.)
+// (results_m3 tests that results stay valid while other tasks call.)
 class Results : public Tasks {
 protected:
     Results() {
@@ -284,7 +286,7 @@ TEST_F(Results, OfAnAsynchronousCallAreThereWhenItIsCompleted) {
     Graph_Node_init(&sent);
     sent.has_text = 1;
     sent.text = text("mine");
-    for (sent.id = 0; sent.id < 2; ++sent.id) { // an exception for an odd number
+    for (sent.id = 0; sent.id < 2; ++sent.id) { // the servant throws an exception for an odd id
         static bool isRight;
         isRight = false;
         Graph_Maker_make_Async async;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// tcp_test: tests IceC's tcp transport with many peers at once, with silent, dead or greedy peers,
-// and with peers that close a silent connection (Ice 3.8).
+// tcp_test: tests IceC's tcp transport with many peers at the same time, with silent, dead or
+// greedy peers, and with peers that close a silent connection (Ice 3.8).
 
 #include "icec_pair.h"
 
@@ -37,7 +37,7 @@ sockaddr_in local(int port) {
     return at;
 }
 
-// A peer that is not an Ice program: a socket, and the bytes written to it.
+// A peer that is not an Ice program: a socket, with functions that write and read bytes.
 class RawSocket {
 public:
     explicit RawSocket(int port) : fd_(socket(AF_INET, SOCK_STREAM, 0)) {
@@ -60,7 +60,8 @@ public:
     bool send(const Bytes& m) {
         return ::send(fd_, m.data(), m.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(m.size());
     }
-    // Returns the next message; empty if none arrives within `ms`, or if the connection ends.
+    // Returns the next message, or an empty message if none arrives within `ms` or the connection
+    // ends.
     Bytes receive(int ms) {
         Bytes m(14);
         if (!read(m.data(), 14, ms))
@@ -89,7 +90,7 @@ private:
     const int fd_;
 };
 
-// Listens for connections, as a server that is not an Ice program.
+// A server that is not an Ice program: it only listens for connections.
 struct Listener {
     Listener() {
         sockaddr_in at = local(0);
@@ -134,8 +135,8 @@ protected:
                 (void)Ice_Communicator_poll(ic_.get(), 20);
         });
     }
-    // Sends a ping and waits for its reply; skips heartbeats in between. Returns false after a
-    // time-out.
+    // Sends a ping and waits for the reply; heartbeats before the reply are skipped. Returns false
+    // after a time-out.
     static bool ping(RawSocket& peer, int ms = 3000) {
         if (!peer.isConnected(ms) || !peer.send(request(7, requestBody("thing", "ice_ping"))))
             return false;
@@ -181,7 +182,7 @@ TEST_F(Tcp, AMessageMayComeByteByByte) {
             ASSERT_TRUE(peer.send({byte}));
             (void)Ice_Communicator_poll(ic_.get(), 1000);
         }
-    serve(); // reads the last byte; the previous turn accepted the connection
+    serve(); // this call of serve() reads the last byte; the call before it accepted the connection
     EXPECT_EQ(peer.receive(20000), message(3, {}));
     for (int turn = 0; turn < 2; ++turn)
         EXPECT_EQ(peer.receive(20000), message(2, {7, 0, 0, 0, 0, 6, 0, 0, 0, 1, 1}));
@@ -227,7 +228,7 @@ TEST_F(Tcp, APeerThatHasBeenServedMakesRoomAtOnce) {
     }
 }
 
-// Sends "thing" a request that exceeds the largest message size.
+// Returns a request to "thing" that is longer than the largest message.
 Bytes tooLong(Ice_Int id) {
     Bytes body = requestBody("thing", "ice_ping");
     body.resize(9000);
@@ -248,8 +249,8 @@ TEST_F(Tcp, ARequestThatIsTooLongIsAnsweredWithTheLimitsName) {
     EXPECT_TRUE(ping(peer)) << "the connection lives";
 }
 
-// A caller that gets no reply is informed of the limit by the end of its connection, as with stock
-// Ice.
+// A caller that gets no reply notices that a limit was exceeded by the end of its connection, as
+// with stock Ice.
 TEST_F(Tcp, WhatIsRefusedWithoutAnAnswerIsLoggedAndEndsTheConnection) {
     ::testing::internal::CaptureStderr();
     serve();
@@ -304,8 +305,8 @@ TEST_F(Tcp, APeerWhoseOperationIsUnderWayIsNotDisplaced) {
     EXPECT_TRUE(peers[0].receive(100).empty()) << "it still waits";
 }
 
-TEST_F(Tcp, AConnectionWithoutCallsCarriesHeartbeats) { // with Ice 3.8, a connection without
-                                                        // heartbeats would be closed
+// Ice 3.8 would close a connection without heartbeats
+TEST_F(Tcp, AConnectionWithoutCallsCarriesHeartbeats) {
     tcp_->heartbeatMs = 50;
     serve();
     RawSocket peer(port());
@@ -315,7 +316,7 @@ TEST_F(Tcp, AConnectionWithoutCallsCarriesHeartbeats) { // with Ice 3.8, a conne
     EXPECT_TRUE(ping(peer));
 }
 
-// A server as documented for Ice 3.8: it closes a connection on which nothing arrives.
+// A server that behaves as documented for Ice 3.8: it closes a connection on which nothing arrives.
 TEST_F(Tcp, AServerThatCutsSilentConnectionsKeepsThisOne) {
     tcp_->heartbeatMs = 50;
     Listener listener;
@@ -329,7 +330,7 @@ TEST_F(Tcp, AServerThatCutsSilentConnectionsKeepsThisOne) {
     const int connection = prx.connection;
     serve();
     for (int i = 0; i < 6; ++i)
-        EXPECT_EQ(peer.receive(20000), message(3, {})) << i; // ms; its idle time-out
+        EXPECT_EQ(peer.receive(20000), message(3, {})) << i; // idle time-out of the server, ms
     std::thread second(ping);
     Bytes asked;
     while ((asked = peer.receive(20000)) == message(3, {}))
@@ -343,7 +344,8 @@ TEST_F(Tcp, ACallWhoseReplyIsCutIsLostAndTheNextOneConnectsAgain) {
     constexpr int calls = 20;
     Listener listener;
     std::thread server([&] {
-        for (int i = 0; i < calls; ++i) { // the reply arrives truncated at any point, or complete
+        // the reply arrives in two parts, cut at each possible point, or complete
+        for (int i = 0; i < calls; ++i) {
             RawSocket peer(listener.fd, true);
             peer.send(message(3, {}));
             const Bytes reply = replyTo(peer.receive(20000));

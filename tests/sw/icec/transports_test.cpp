@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// transports_test: tests a communicator with two transports at once: tcp, and the loop between two
+// transports_test: tests a communicator that has two transports: tcp, and the loop between two
 // communicators. Built with ICE_TRANSPORTS=2.
 
 #include "icec_pair.h"
@@ -32,7 +32,7 @@ struct Both {
 
 enum { LOOP, TCP };
 
-// A servant of `there_` is called from `here_`. The loop of `here_` also runs `there_`.
+// Tests in which `here_` calls a servant of `there_`. The loop of `here_` also runs `there_`.
 class Transports : public ::testing::Test {
 protected:
     Transports() : here_(std::make_unique<Both>()), there_(std::make_unique<Both>()) {
@@ -57,7 +57,7 @@ protected:
         EXPECT_EQ(Ice_Communicator_proxyToString(&prx, printed, sizeof printed), ICE_OK);
         return printed;
     }
-    // Returns the transport on which a call arrived.
+    // Makes a call. Returns the number of the transport on which it arrived.
     int callBy(Ice_ObjectPrx& prx) {
         came_ = -1;
         EXPECT_EQ(ask(prx, "op", 7), 8);

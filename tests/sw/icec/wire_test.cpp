@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// wire_test: tests messages as bytes that only the full run time supports, proxies as strings, and
-// streams.
+// wire_test: tests messages given as bytes that only the full run time supports, proxies as
+// strings, and streams.
 
 #include "icec_pair.h"
 #include <cstdio>
@@ -137,7 +137,8 @@ TEST_F(Wire, StringsThatAreNoProxiesSaySo) {
 }
 
 TEST(Stream, OptionalsOfEveryFormatAreSkipped) {
-    // a member with tag 1 in each format in turn, then tag 2 with the byte 7
+    // a member with tag 1 in each of the formats, one after the other, then a member with tag 2 and
+    // the byte 7
     const std::vector<Bytes> values = {{1}, {1, 2},    {1, 2, 3, 4},       {1, 2, 3, 4, 5, 6, 7, 8},
                                        {5}, {2, 1, 2}, {2, 0, 0, 0, 1, 2}, {0}};
     for (size_t format = 0; format < values.size(); ++format) {
@@ -153,7 +154,8 @@ TEST(Stream, OptionalsOfEveryFormatAreSkipped) {
     }
 }
 
-// The size that a peer sends may be the smallest possible; subtractions from it must not wrap.
+// A peer may send the smallest possible size. The code subtracts from this size, which must not
+// wrap.
 TEST(Stream, ASliceOfAnyWrongSizeIsMalformed) {
     for (uint32_t size : {0x80000000U, 0x80000003U, 0xFFFFFFFFU, 0U, 3U, 5U, 0x7FFFFFFFU}) {
         Bytes wire = {0x39, 1, 'x', 4, 0, 0, 0, // the last slice: a name, a size, and a table after

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_link: libFuzzer target of the full and of the minimal link layer. The input is a small
-// program: bytes for the receiver, with or without a valid checksum, time, messages to send. The
-// full layer has a peer with a session; the minimal one receives a HELLO. Nothing may crash, hang,
-// or write out of bounds, and no frame or message may have an impossible size.
+// fuzz_link: fuzzes the full and the minimal link layer with libFuzzer. An input is a small
+// program: bytes that the receiver gets, with or without a valid checksum, time, and messages to
+// send. The full layer has a peer with a session; the minimal layer receives a HELLO. Nothing may
+// crash, hang, or write out of bounds, and no frame or message may have an impossible size.
 //
 // Each step of the input has two bytes, its kind (mod 8) and its argument n:
 //   0, 1  n bytes arrive, unchanged
@@ -76,7 +76,7 @@ struct Node : LinkProgram {
 #endif
     std::deque<Bytes> out; // frames in transit
     uint32_t nonce = 1;
-    uint64_t sum = 0; // sum of all received bytes, which makes sure that each of them is read
+    uint64_t sum = 0; // sum of all received bytes, computed so that each of them is read
     bool busy = false;
 };
 
@@ -117,7 +117,7 @@ public:
             p += take;
             size -= take;
             if (isMinimal && step > 1 && step < 5)
-                now_ += 30000; // a pause, so that the receiver recognises the end of the frame
+                now_ += 30000; // a pause, by which the receiver recognises the end of the frame
             if (step < 2)
                 feed(bytes);
             else if (step < 5)
@@ -151,8 +151,9 @@ private:
     U32 sessionKey() const { return a_.link->session.handshake.present.key; }
     U32 expected() const { return a_.link->session.receiver.expected; }
     U32 overhead() const { return a_.link->pacing.env.codec->overhead; }
-    // Returns the frame, encrypted with a key. HELLO uses a separate key. The other frames of the
-    // handshake use the current nonce, and the nonce of the peer that the input contains.
+    // Returns the encrypted frame. HELLO uses a separate key. For the other frames of the
+    // handshake, the key depends on the current nonce and on the peer's nonce, which the input
+    // contains.
     Bytes sealed(Bytes bytes, bool isHandshake) const {
         const Link* link = a_.link.get();
         const U8* under = LINK_PEERS_KEY(&link->session.handshake.present, keys);
@@ -172,7 +173,7 @@ private:
                             LINK_NONCE_BYTES);
                 link_deriveKeys(&link->session.handshake.secrets[0], &bytes[LINK_HEADER],
                                 link->session.handshake.nonce, &keys);
-                under = keys.bytes; // the peer is the vehicle
+                under = keys.bytes; // the key for frames from the vehicle, which is the peer
             }
         } else if (bytes[0] & LINK_CONTROL) {
             if (kind == LINK_KIND_ACK)
@@ -192,7 +193,7 @@ private:
         return bytes;
     }
 #endif
-    // Returns a frame that A accepts as its peer's if its content is valid.
+    // Returns a frame that A accepts as a frame from its peer, if its content is valid.
     Bytes frame(Bytes bytes, int step) const {
         const bool isHandshake = step == 4;
         const size_t most = LINK_MAX_FRAME - overhead() + LINK_HEADER;

@@ -2,12 +2,12 @@
 //
 // handshake_model: explores all states of the secure link's handshake (docs/link.md) under attack.
 //
-// The model has two sides and an attacker. Each side calls, answers, ends, and restarts at any time
-// (after a restart, silence, or with an old nonce). The attacker of Dolev and Yao controls the air:
-// he may deliver every frame that was ever sent, at any time, to either side, any number of times,
-// or never. He has no key: frames made by him have no valid tag, so that only a side with a bug
-// accepts them. Keys follow from the two nonces of a session, one per direction, so the nonces
-// identify a frame.
+// The model has two sides and an attacker. Each side calls, answers, ends its session and restarts
+// at any time (after a restart it may be silent, or have an old nonce). The attacker controls the
+// air, as in the model of Dolev and Yao: he may deliver every frame that was ever sent, at any
+// time, to either side, any number of times, or never. He has no key, so the frames that he makes
+// have no valid tag, and only a side with a bug accepts them. A session has one key for each
+// direction, both of which depend on the two nonces; therefore a frame is identified by its nonces.
 
 #include <bitset>
 #include <cstdint>
@@ -19,18 +19,20 @@
 
 namespace {
 
-// Bugs that the model can give to a side.
+// Bugs that the model can put into both sides.
 enum class Bug {
     None,
-    NonceIsNotEchoed,    // a HELLO-ACK is accepted for any earlier nonce of the side
+    // a HELLO-ACK is accepted even if it contains an earlier nonce of this side
+    NonceIsNotEchoed,
     OneKeyForBoth,       // both directions use the same key
-    ResetIsNotAuthentic, // an RST that is not authenticated ends a session
-    HelloEndsTheSession, // a HELLO ends the session before its sender has proved that it is present
-    HelloMakesASession,  // a HELLO begins a session without a CONFIRM
+    ResetIsNotAuthentic, // an RST ends a session although it is not authenticated
+    // a HELLO ends the session although its sender has not proved that it is present
+    HelloEndsTheSession,
+    HelloMakesASession, // a HELLO begins a session, without a CONFIRM
     ConfirmIsNotAuthentic,
-    OwnNonceIsTaken,  // a nonce of this side is accepted if it is reflected
-    NonceServesTwice, // no new nonce is generated when a session begins
-    UnconfirmedCalls, // a side makes a call although its peer may not be in the session yet
+    OwnNonceIsTaken,  // a nonce of this side is accepted as the peer's, if it is reflected
+    NonceServesTwice, // no new nonce is drawn when a session begins
+    UnconfirmedCalls, // a side makes calls although its peer may not have begun the session yet
     OldDataIsTaken,   // the number of an earlier data frame is accepted again
     OldPingIsLife,    // a repeated PING counts as proof that the peer is present
     OldDataIsLife
@@ -39,12 +41,13 @@ enum class Bug {
 class HandshakeModel {
 public:
     struct Limits {
-        // Limits for each side: nonces in total; data frames and PINGs per session.
+        // Limits for each side: number of nonces in total; number of data frames and of PINGs per
+        // session.
         unsigned nonces, data, pings;
     };
     struct Result {
-        std::string fault;            // the first violated rule; "" if there is none
-        std::vector<std::string> way; // the steps that led to the violation
+        std::string fault;            // rule that was violated first; "" if no rule was violated
+        std::vector<std::string> way; // steps that led to the violation
         size_t states = 0;
         bool bothWereUp = false, dataArrived = false;
     };
@@ -79,21 +82,21 @@ public:
     }
 
 private:
-    // Greatest number of nonces per side and of numbers per kind of frame; and a nonce that no side
-    // has.
+    // Largest number of nonces per side, and of frame numbers per kind of frame; and a nonce that
+    // no side has.
     static constexpr unsigned mostNonces = 3, mostNumbers = 2;
     static constexpr uint8_t none = 2 * mostNonces;
     enum Kind { Hello, HelloAck, Confirm, Data, Ping, Answer, Bye, kinds };
 
     struct Frame {
         Kind kind;
-        uint8_t from, to, number; // from, to: nonces of the sender and of the receiver
+        uint8_t from, to, number; // from and to: nonces of the sender and of the receiver
     };
     struct Side {
-        // Nonce of the next session, number of nonces drawn, and a bit mask of the nonces that
-        // began a session.
+        // nonce for the next session, number of nonces drawn so far, and a bit mask of the nonces
+        // with which a session began
         uint8_t nonce, drawn, begun;
-        uint8_t mine, peer; // nonces of the current session
+        uint8_t mine, peer; // nonces of this side and of the peer in the current session
         uint8_t dataSent, dataTaken, pingsSent, pingsSeen, pingsAnswered, lives;
         bool isUp, isAnswered, isUnconfirmed, unused[2];
     };
@@ -135,8 +138,8 @@ private:
         s.isAnswered = false;
     }
 
-    // Checks the end of a session: only one of the two sides, or silence, may end it, never an
-    // attack.
+    // Ends a session, and checks that an attack was not the reason: only one of the two sides, or
+    // silence, may end a session.
     void end(State& state, int who, bool byAttack) {
         Side &s = state.side[who], &other = state.side[1 - who];
         if (!s.isUp)
@@ -172,7 +175,7 @@ private:
             result_.bothWereUp || (other.isUp && other.mine == peer && other.peer == mine);
     }
 
-    // Checks that each proof of presence was sent by the peer in this session.
+    // Checks that each proof of presence was sent by the peer, in this session.
     void live(State& state, int who) {
         Side& s = state.side[who];
         unsigned given = 0;
@@ -239,8 +242,8 @@ private:
                 return;
             s.isAnswered = true;
             if (s.isUp && (!s.isUnconfirmed || bug_ == Bug::UnconfirmedCalls)) {
-                send(state, {Hello, s.nonce, none, 1}); // the last field is 1: the session of the
-                                                        // sender is up
+                // the last field is 1, which means that the sender has a session
+                send(state, {Hello, s.nonce, none, 1});
                 return;
             }
             send(state, {HelloAck, s.nonce, f.from, 0});
@@ -265,7 +268,7 @@ private:
         Side& s = state.side[who];
         const bool isReflected = bug_ == Bug::OneKeyForBoth && f.from == s.mine && f.to == s.peer;
         if (isReflected)
-            std::swap(f.from, f.to); // a frame of this side, reflected
+            std::swap(f.from, f.to); // a frame that this side has sent and that is reflected
         if (!s.isUp || f.from != s.peer || f.to != s.mine)
             return;
         s.isUnconfirmed = false;
@@ -337,16 +340,18 @@ private:
     const Bug bug_;
     const Limits limits_;
     Result result_;
-    std::unordered_map<State, uint32_t, Hash> seen_;     // states found so far, by index in order_
-    std::vector<const State*> order_;                    // states in the order of discovery
-    std::vector<std::pair<uint32_t, std::string>> from_; // predecessor of each state, and the step
-                                                         // from it
-    uint32_t at_ = 0;                                    // index of the state being examined
+    // indexes in order_ of all states found so far
+    std::unordered_map<State, uint32_t, Hash> seen_;
+    std::vector<const State*> order_; // states in the order of discovery
+    // for each state: the index of the state before it, and the step between them
+    std::vector<std::pair<uint32_t, std::string>> from_;
+    // index of the state that is being examined
+    uint32_t at_ = 0;
 };
 
 // ---- the tests ----
 
-// Two nonces per side: one for the session, and an earlier or a later one.
+// Two nonces per side: one for the session, and one that is earlier or later.
 constexpr HandshakeModel::Limits withData = {2, 1, 0}, withPings = {2, 0, 1}, both = {2, 1, 1};
 
 TEST(HandshakeModel, KeepsItsPromisesInEveryState) {

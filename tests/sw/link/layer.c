@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * layer: defines the table of the link layer with which this file is compiled.
+ * layer: defines the table (layer.h) of the link layer with which this file is compiled.
  */
 #include "layer.h"
 
@@ -20,7 +20,7 @@ static void init(Link* link, const Link_Port* port, void* context, U32 byteTimeU
     Link_init(link, &config);
 }
 #else
-#ifdef LINK_SHRUNK /* smaller buffers than the layer allows */
+#ifdef LINK_SHRUNK /* uses smaller buffers than the layer allows */
 #define SENDS 2048U
 #define TAKES 1024U
 #define WINDOW 8U
@@ -30,7 +30,7 @@ static void init(Link* link, const Link_Port* port, void* context, U32 byteTimeU
 #define WINDOW LINK_WINDOW
 #endif
 
-/* A link and its buffers. */
+/* A link together with its buffers. */
 typedef struct Whole {
     Link link;
     LINK_BUFFERS(SENDS, TAKES, WINDOW) buffers;

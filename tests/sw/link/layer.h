@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * layer: table of the functions and sizes of a link layer, so that one test can connect layers
- * compiled with different options.
+ * layer: a table of the functions and sizes of a link layer. With such tables, one test can connect
+ * layers that were compiled with different options.
  */
 #pragma once
 
@@ -12,8 +12,8 @@
 #endif
 
 typedef struct Layer {
-    U32 size;       /* bytes of a Link and its buffers; the Link comes first */
-    U32 maxMessage; /* largest message that can arrive, bytes */
+    U32 size;       /* size of a Link and its buffers, bytes; the Link comes first */
+    U32 maxMessage; /* size of the largest message that can be received, bytes */
     void (*init)(Link* link, const Link_Port* port, void* context, U32 byteTimeUs16);
     void (*setKey)(Link* link, int slot, const U8* key, U32 side);
     void (*start)(Link* link, U32 nowUs);
@@ -28,5 +28,5 @@ typedef struct Layer {
     const Link_Statistics* (*statistics)(const Link* link);
 } Layer;
 
-/* Table of the layer with which this file is compiled. */
+/* The table of the layer with which this file is compiled. */
 extern const Layer layer;

@@ -18,15 +18,16 @@ extern "C" {
 #include <vector>
 
 using Bytes = std::vector<uint8_t>;
-using Messages = std::vector<std::pair<int, Bytes>>; // channel and content of each message
+// messages, each with its channel and its content
+using Messages = std::vector<std::pair<int, Bytes>>;
 
-// The radio's faults, with the probability of each for a packet.
+// Faults of the radio, each with its probability for a packet.
 struct Weather {
     double loss = 0, duplication = 0, corruption = 0;
     uint32_t delayUs = 8000;
 };
 
-// A link with its program and its radio. `now` is the time of the pair.
+// A link with its program and its radio. `now` refers to the time of the pair.
 class Side : private LinkProgram {
 public:
     Side(const Layer& of, const uint64_t& now, uint64_t seed, const Bytes& key, U32 side)
@@ -35,7 +36,7 @@ public:
         boot();
     }
 
-    // Discards all state, as a reboot after a power failure does.
+    // Discards all state, like a reboot after a power failure.
     void boot() {
         layer.init(link(), linkPort(), linkProgram(), byteTimeUs * 16);
         if (!key_.empty())
@@ -73,11 +74,11 @@ public:
 
     const Layer& layer;
     Weather weather;
-    std::deque<Packet> air; // packets in transit to the peer, in order of arrival
+    std::deque<Packet> air; // packets on their way to the peer, in the order of arrival
     Messages received;
     std::map<U32, Link_Outcome> outcomes;
     std::vector<std::string> events;
-    bool refuse = false; // true: the program accepts no message
+    bool refuse = false; // true: the program accepts no messages
     uint64_t serialFreeUs = 0, bytesSent = 0;
     unsigned packetsLost = 0;
 
@@ -86,7 +87,8 @@ private:
 
     U32 us() const { return static_cast<U32>(now_); }
 
-    // One serial port, then the air. The modem and its ring hold up to four packets.
+    // Sends a frame over the serial port and then over the air. Modem and ring hold up to four
+    // packets.
     bool transmit(const U8* frame, U32 size) override {
         if (serialFreeUs > now_ + 4 * 9000)
             return false;
@@ -125,11 +127,11 @@ private:
     const uint64_t& now_;
     Random random_;
     const Bytes key_;
-    const U32 side_; // side, as for Link_setKey
+    const U32 side_; // number of the side, as for Link_setKey
     std::vector<uint64_t> memory_;
 };
 
-// A ground station (a) and a vehicle (b), unless a test states otherwise.
+// A pair of links: a ground station (a) and a vehicle (b), unless a test uses them in another way.
 class LinkPair {
 public:
     explicit LinkPair(uint64_t seed, const Bytes& key = {}, const Layer& ofA = layer,
@@ -138,8 +140,8 @@ public:
 
     void setWeather(const Weather& weather) { a.weather = b.weather = weather; }
 
-    // Advances time, in steps of the firmware's tick, until `done` returns true. Returns false
-    // after `limitUs`.
+    // Advances time in steps of the firmware's tick until `done` returns true. Returns false if
+    // this takes longer than `limitUs`.
     template <class Done> bool until(Done done, uint64_t limitUs) {
         for (uint64_t end = now + limitUs; now < end; now += 1000) {
             deliver(a, b);
@@ -160,7 +162,8 @@ public:
         return until([this] { return bothUp(); }, 30'000'000);
     }
 
-    uint64_t now = 0xFFFF0000u; // near its end, so that the 32-bit time wraps in every test
+    // time, us; starts near its end, so that the 32-bit time wraps in every test
+    uint64_t now = 0xFFFF0000u;
     Side a, b;
 
 private:

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// link_test: tests sessions, channels and messages, one fault at a time. The ground station has the
-// full layer. The vehicle has the full layer, unencrypted or with a key, or the minimal layer.
+// link_test: tests sessions, channels and messages, with one fault at a time. The ground station
+// has the full layer. The vehicle has the full layer, unencrypted or with a key, or the minimal
+// layer.
 
 #include "link_variants.h"
 
@@ -17,7 +18,8 @@ TEST_P(LinkLayer, ChannelsOpenAndCloseFromBothSidesInOrder) {
     ASSERT_EQ(b.open(3), LINK_OK);
     ASSERT_EQ(b.send(3, Bytes(300, 2), 2), LINK_OK);
     if (isMinimal()) {
-        EXPECT_EQ(b.close(3), LINK_FULL); // the opening of the channel has not been sent yet
+        // the channel cannot be closed yet, because its opening has not been sent
+        EXPECT_EQ(b.close(3), LINK_FULL);
     }
     ASSERT_TRUE(until([&] { return b.close(3) == LINK_OK; }, 1'000'000));
     ASSERT_TRUE(until([&] { return b.outcomes.count(2) && a.outcomes.count(1); }, 2'000'000));
@@ -26,7 +28,7 @@ TEST_P(LinkLayer, ChannelsOpenAndCloseFromBothSidesInOrder) {
     EXPECT_EQ(a.events, (std::vector<std::string>{"connecting", "up", "open 3", "close 3"}));
     EXPECT_EQ(a.received, (Messages{{3, Bytes(300, 2)}}));
     EXPECT_EQ(b.received, (Messages{{1, {1}}}));
-    EXPECT_EQ(a.open(1), LINK_OK); // both sides have reported the channel as closed
+    EXPECT_EQ(a.open(1), LINK_OK); // both sides have reported that the channel is closed
     EXPECT_EQ(b.open(3), LINK_OK);
 }
 
@@ -78,8 +80,8 @@ TEST_P(LinkLayer, AChannelThatNobodyHasOpenedIsRefused) {
     EXPECT_EQ(b.received.size(), 1u);
 }
 
-// Random bytes arrive during a session, between messages: nothing fails, and the link continues.
-// BYTES sets their number for the full layer.
+// Random bytes arrive during a session, between messages. Nothing may fail, and the link must
+// continue. BYTES is the number of these bytes for the full layer.
 TEST_P(LinkLayer, TenMillionRandomBytesAreSurvived) {
     const double most = numberFromEnvironment("BYTES", 10'000'000);
     const auto bytes =
@@ -125,7 +127,8 @@ TEST_P(LinkLayer, AVanishedPeerIsNoticedAndAReturningOneFound) {
     EXPECT_TRUE(a.received.empty() && b.received.empty());
 }
 
-// The next frame informs the ground, which does not need to wait for 9 s of silence.
+// The ground learns of the reboot by the reply to its next frame, and need not wait for 9 s of
+// silence.
 TEST_P(LinkLayer, ARebootOfTheVehicleIsNoticedByTheNextFrame) {
     ASSERT_TRUE(connect());
     a.open(0);
@@ -137,7 +140,8 @@ TEST_P(LinkLayer, ARebootOfTheVehicleIsNoticedByTheNextFrame) {
     EXPECT_TRUE(until([&] { return bothUp(); }, 1'000'000));
 }
 
-// The last PING is so long ago that its time would be taken for a future time.
+// Since the last PING so much time has passed that the 32-bit time has wrapped halfway; the time of
+// the PING must not be considered to be in the future.
 TEST_P(LinkLayer, ASilenceAfterFortyMinutesOfTrafficIsAskedAbout) {
     ASSERT_TRUE(connect());
     ASSERT_EQ(a.open(0), LINK_OK);
@@ -216,7 +220,8 @@ TEST_P(LinkLayer, StopTellsThePeer) {
     b.stop();
     run(15'000);
     EXPECT_EQ(a.events.back(), "connecting");
-    ASSERT_TRUE(until([&] { return bothUp(); }, 1'000'000)); // the ground calls again
+    // the ground still calls, so a new session begins
+    ASSERT_TRUE(until([&] { return bothUp(); }, 1'000'000));
     a.stop();
     run(15'000);
     EXPECT_EQ(b.events.back(), "idle");
@@ -228,24 +233,25 @@ INSTANTIATE_TEST_SUITE_P(Vehicles, LinkLayer, ::testing::ValuesIn(vehicles(1)));
 
 class MinimalLayer : public Variants {};
 
-// The link also works if Link_poll is called only at the times that Link_deadline returns.
+// The link must also work if Link_poll is called only at the times that Link_deadline returns.
 TEST_P(MinimalLayer, TheDeadlineIsWhenSomethingIsToBeDone) {
     ASSERT_TRUE(connect());
     ASSERT_EQ(b.open(3), LINK_OK);
     EXPECT_LE(b.deadline(), 1000u);
     run(100'000);
-    EXPECT_GT(b.deadline(), 1'000'000u); // time until the ground counts as silent
+    EXPECT_GT(b.deadline(), 1'000'000u); // time until the ground is considered silent
     setWeather({1, 0, 0});
     ASSERT_EQ(b.send(3, {1}, 1), LINK_OK);
     run(2000);
-    EXPECT_GT(b.deadline(), 100'000u); // time until the frame is sent again, after 144 ms
+    // time until the frame is sent again; that happens after 144 ms
+    EXPECT_GT(b.deadline(), 100'000u);
     EXPECT_LE(b.deadline(), 144'000u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Vehicles, MinimalLayer,
                          ::testing::Values(Variant{"full", "minimal", false}));
 
-// Layers whose sessions end after 60 fragments in one direction, or after 50 wrong tags.
+// Tests with layers whose sessions end after 60 fragments in one direction, or after 50 wrong tags.
 class Limits : public Variants {
 protected:
     Limits() { usualSize = longestSize = 40; } // one fragment
@@ -254,8 +260,8 @@ protected:
             std::count_if(side.outcomes.begin(), side.outcomes.end(),
                           [](auto& tagged) { return tagged.second == LINK_DELIVERED; }));
     }
-    // Sends until `least` messages have been delivered each way; messages that were reported lost
-    // are sent again.
+    // Sends messages until at least `least` of them have been delivered in each direction. Messages
+    // that were reported lost are sent again.
     template <class... Meanwhile> void deliver(size_t least, Meanwhile... meanwhile) {
         for (size_t most = least; delivered(a) < least || delivered(b) < least; most += 10) {
             ASSERT_LT(most, 4 * least);
@@ -288,13 +294,14 @@ TEST_P(Limits, ASessionEndsAtTooManyWrongTagsAndBeginsAnew) {
     frame.back() ^= 1;
     unsigned guesses = 0;
     for (; b.isUp() && guesses < 200; ++guesses) {
-        now += 100'000; // the bytes of an incomplete frame are dropped
+        now += 100'000; // waits until the bytes of an incomplete frame have been dropped
         b.poll();
         b.receive(frame);
         b.poll();
     }
-    EXPECT_GT(guesses, 20u); // the receiver searches for frames inside a frame, so each may count
-                             // several times
+    // one wrong frame may count several times, because the receiver also searches for frames inside
+    // it
+    EXPECT_GT(guesses, 20u);
     EXPECT_LE(guesses, 50u);
     deliver(20);
     EXPECT_EQ(a.sessions(), 2u);
@@ -325,9 +332,10 @@ TEST(FullLayer, LinksOverOneRadioShareWhatMayWaitForItsAnswers) {
         Link_start(&links[i], 0);
     }
     EXPECT_EQ(poll(0), (std::vector<unsigned>{1, 0})); // each calls
-    Link_answer(&links[1], 1, 1000);                   // packet of the first link
+    Link_answer(&links[1], 1, 1000);                   // the answer to the packet of the first link
     EXPECT_EQ(poll(1000), (std::vector<unsigned>{1, 1}));
-    EXPECT_EQ(poll(400'000), (std::vector<unsigned>{1, 1})); // the first link calls again
+    // the first link wants to call again, but must wait for the answer to the second link's packet
+    EXPECT_EQ(poll(400'000), (std::vector<unsigned>{1, 1}));
     Link_answer(&links[0], 0, 400'000);
     EXPECT_EQ(poll(400'000), (std::vector<unsigned>{2, 1}));
 }
@@ -337,7 +345,7 @@ TEST(FullLayer, TheQueueHasAReserveForShortMessages) {
     ASSERT_TRUE(pair.connect());
     ASSERT_EQ(pair.a.open(0), LINK_OK);
     EXPECT_EQ(pair.a.send(0, Bytes(LINK_MAX_MESSAGE), 0), LINK_OK);
-    // The check of each message takes two more bytes.
+    // Each message needs two more bytes, for its checksum.
     const U32 rest = LINK_SEND_BYTES - LINK_RESERVE - LINK_MAX_MESSAGE - 4;
     EXPECT_EQ(pair.a.send(0, Bytes(rest + 1), 1), LINK_FULL);
     EXPECT_EQ(pair.a.send(0, Bytes(rest), 1), LINK_OK);
@@ -350,14 +358,15 @@ TEST(FullLayer, TheQueueHasAReserveForShortMessages) {
     EXPECT_EQ(pair.b.received[1].second.size(), rest);
 }
 
-// If answers arrive faster than modems can send them, the path is a wire, which needs no turns.
+// If acknowledgements arrive faster than modems could send them, the path is a wire, on which both
+// sides may send at the same time.
 TEST(FullLayer, OverAWireACallWaitsForNoTurn) {
     LinkPair pair(testSeed());
     pair.setWeather({0, 0, 0, 0});
     ASSERT_TRUE(pair.connect());
     pair.a.open(0);
     pair.run(100'000);
-    // Makes calls one after the other; returns the time in us.
+    // Makes calls one after the other. Returns the time that they took, us.
     auto take = [&](unsigned calls) {
         const uint64_t start = pair.now;
         for (unsigned i = 0; i < calls; ++i)
@@ -369,7 +378,7 @@ TEST(FullLayer, OverAWireACallWaitsForNoTurn) {
             }
         return pair.now - start;
     };
-    take(20); // both sides then know the speed of the path
+    take(20); // after these calls both sides know the speed of the path
     EXPECT_LE(take(20), 20 * 12'000u);
 }
 

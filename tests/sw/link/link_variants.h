@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// link_variants: test fixture for link layers of different kinds, which sends messages in both
-// directions between them.
+// link_variants: a test fixture for link layers of different kinds; it sends messages between them
+// in both directions.
 
 #pragma once
 
@@ -14,7 +14,8 @@
 #include <gtest/gtest.h>
 #include <tuple>
 
-// Names of the layers of sides a and b (CMakeLists.txt), and whether both have a key.
+// A combination of layers: the names of the layers of sides a and b (CMakeLists.txt), and whether
+// both have a key.
 struct Variant {
     std::string a, b;
     bool hasKey = false;
@@ -27,7 +28,7 @@ inline void PrintTo(const Variant& v, std::ostream* out) {
         *out << "_" << v.seed;
 }
 
-// Returns variants of vehicles with a key.
+// Returns combinations in which the vehicle has the full layer and a key, one per seed.
 inline std::vector<Variant> keyed(unsigned seeds) {
     std::vector<Variant> all;
     for (unsigned seed = 0; seed < seeds; ++seed)
@@ -35,7 +36,8 @@ inline std::vector<Variant> keyed(unsigned seeds) {
     return all;
 }
 
-// Returns the same, and vehicles without encryption with the full and the minimal layer.
+// Returns the combinations of keyed(), and those in which the vehicle has no key and the full or
+// the minimal layer.
 inline std::vector<Variant> vehicles(unsigned seeds) {
     std::vector<Variant> all = keyed(seeds);
     for (const char* vehicle : {"full", "minimal"})
@@ -60,8 +62,9 @@ protected:
 
     static bool isMinimal() { return GetParam().b.find("minimal") == 0; }
 
-    // Offers the next message of a side on a random channel: random bytes, or an Ice message that
-    // contains them as parameters, with increasing ids and operations that the peer knows.
+    // Sends the next message of a side on a random channel. The message consists of random bytes,
+    // or is an Ice message with these bytes as parameters, with increasing ids and with operations
+    // that the peer knows.
     void offer(Side& from, Messages& sent, size_t most) {
         if (sent.size() >= most)
             return;
@@ -80,11 +83,11 @@ protected:
         id += status == LINK_OK;
         if (status == LINK_OK)
             sent.emplace_back(channel, m);
-        else if (status == LINK_CLOSED) // a new session
+        else if (status == LINK_CLOSED) // the channel was closed by a new session
             from.open(channel);
     }
-    // Sends messages in both directions until their number is reached and all are reported, or the
-    // time has elapsed.
+    // Sends messages in both directions until this number of messages has been sent and all have
+    // been reported, or until the time has elapsed.
     template <class Meanwhile>
     bool traffic(size_t messages, uint64_t limitUs, Meanwhile meanwhile) {
         return until(
@@ -99,9 +102,9 @@ protected:
     bool traffic(size_t messages, uint64_t limitUs) {
         return traffic(messages, limitUs, [] {});
     }
-    // Checks that the received messages are a subset of the sent messages, in order and unchanged,
-    // and include all messages that were reported as delivered. Between full layers, a short
-    // message may overtake a message on another channel.
+    // Checks the received messages. They must be a subset of the sent messages, in order and
+    // unchanged, and include all messages that were reported as delivered. Between full layers, a
+    // short message may overtake a message on another channel.
     static void check(const Messages& sent, const Side& sender, const Side& receiver) {
         ASSERT_EQ(sender.outcomes.size(), sent.size()) << "messages not reported";
         DeliveryCheck delivery;
@@ -134,7 +137,8 @@ protected:
     Random random{testSeed() * 77 + GetParam().seed};
 
 private:
-    std::map<std::tuple<const Side*, int, uint32_t>, uint32_t> ids_; // last id of each kind
+    // last id that was used for each kind of message
+    std::map<std::tuple<const Side*, int, uint32_t>, uint32_t> ids_;
 };
 
 // Returns the Link_Kind of a frame.
@@ -142,7 +146,7 @@ inline int kindOf(const Bytes& frame) {
     return frame[0] & LINK_CONTROL ? frame[2] >> 5 : LINK_KIND_DATA;
 }
 
-// The frames in a packet.
+// Returns the frames in a packet.
 inline std::vector<Bytes> framesOf(const Bytes& packet) {
     std::vector<Bytes> frames;
     for (size_t at = 0; at < packet.size() && packet[at] != LINK_FILL;) {

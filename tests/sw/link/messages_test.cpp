@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// messages_test: tests Ice's messages between full layers. Heads that the peer knows are omitted;
-// other messages cross unchanged. Only short messages overtake, and only the rest of a long message
-// on another channel.
+// messages_test: tests Ice messages between full layers. Heads that the peer knows are omitted; all
+// other messages are sent unchanged. Only a short message may overtake, and it overtakes only the
+// rest of a long message on another channel.
 
 #include "ice_messages.h"
 #include "link_variants.h"
@@ -11,8 +11,9 @@ namespace {
 
 using namespace IceMessages;
 
-// Bytes on the air of a call and its reply, including acknowledgements: without a key, with tags of
-// 8 bytes and of 4; compared with MAVLink 2, with a signature of 13 bytes per frame.
+// Counts the bytes that a call and its reply take on the air, including acknowledgements, without a
+// key and with tags of 8 and of 4 bytes. Compares them with MAVLink 2, which has a signature of 13
+// bytes per frame.
 class CallBytes : public Variants {};
 
 TEST_P(CallBytes, ACallAndItsReplyTakeFewerThanMavlink) {
@@ -23,7 +24,7 @@ TEST_P(CallBytes, ACallAndItsReplyTakeFewerThanMavlink) {
     ASSERT_TRUE(connect());
     a.open(0);
     run(400'000);
-    for (uint32_t i = 0; i < 4; ++i) { // the last two calls are oneway
+    for (uint32_t i = 0; i < 4; ++i) { // the last two of the calls are one-way
         const uint64_t before = a.bytesSent + b.bytesSent;
         const uint32_t id = i < 2 ? i + 1 : 0;
         a.send(0, request(id, "hwengine1", "setParameterA", {24, 0}), i);
@@ -38,11 +39,11 @@ TEST_P(CallBytes, ACallAndItsReplyTakeFewerThanMavlink) {
     RecordProperty("bytes", static_cast<int>(took[1]));
     RecordProperty("mavlink", static_cast<int>(mavlink));
     EXPECT_LT(took[0], mavlink);
-    EXPECT_EQ(took[1], 21 + 3 * (tag - LINK_CRC)); // bytes: 5 + 3 for the request, 5 + 1 and 1 of
-                                                   // an acknowledgement for the reply, 6 for the
-                                                   // last acknowledgement
-    EXPECT_EQ(took[3], 14 + 2 * (tag - LINK_CRC)); // bytes: 5 + 3 for the request, 6 for the
-                                                   // acknowledgement
+    // bytes: 5 + 3 for the request, 5 + 1 for the reply, 1 for the acknowledgement in the reply,
+    // and 6 for the last acknowledgement
+    EXPECT_EQ(took[1], 21 + 3 * (tag - LINK_CRC));
+    // bytes: 5 + 3 for the request, and 6 for the acknowledgement
+    EXPECT_EQ(took[3], 14 + 2 * (tag - LINK_CRC));
 }
 
 INSTANTIATE_TEST_SUITE_P(Tags, CallBytes,
@@ -81,8 +82,8 @@ TEST_F(Heads, CallsInARowCarryEachOthersAcknowledgements) {
     for (uint32_t id = 2; id < 52; ++id)
         call(id);
     settle();
-    // A call takes 9 + 7 bytes, because the request also contains the acknowledgement of the
-    // previous reply.
+    // A call takes 9 + 7 bytes, because each request also contains the acknowledgement of the reply
+    // before it.
     EXPECT_LE(bytes() - before, 50u * 16u + 6u);
 }
 
@@ -128,8 +129,9 @@ TEST_F(Heads, MoreHeadsThanThereAreSlots) {
 
 // If a peer violates the rules, both sides start a new session and continue.
 TEST_F(Heads, ATokenThatMakesNoSenseEndsTheSession) {
-    send(a, b, {0x41});                               // crosses unchanged
-    a.link()->session.handshake.present.features = 0; // A then sends this token unmarked
+    send(a, b, {0x41}); // crosses unchanged
+    // A now sends this token as if it were not one
+    a.link()->session.handshake.present.features = 0;
     b.start();
     a.send(0, {0xE0}, 99);
     ASSERT_TRUE(until([&] { return a.outcomes.count(99) != 0; }, 5'000'000));
@@ -137,7 +139,7 @@ TEST_F(Heads, ATokenThatMakesNoSenseEndsTheSession) {
     EXPECT_TRUE(until([&] { return bothUp(); }, 20'000'000));
 }
 
-// channel and size of each message that has arrived
+// messages that have arrived: channel and size of each
 using Arrived = std::vector<std::pair<int, size_t>>;
 
 class Overtaking : public Variants {
@@ -149,7 +151,7 @@ protected:
         run(500'000);
     }
     void send(int channel, const Bytes& m) { ASSERT_EQ(a.send(channel, m, tag_++), LINK_OK); }
-    // Returns the time of one message of 10 bytes, us.
+    // Sends a message of 10 bytes. Returns the time until it is delivered, us.
     uint64_t call() {
         const size_t before = b.received.size();
         const uint64_t start = now;
@@ -158,7 +160,7 @@ protected:
         EXPECT_EQ(b.received.back(), std::make_pair(1, Bytes(10, 2)));
         return now - start;
     }
-    // Waits until all messages are reported as delivered.
+    // Waits until all messages have been reported as delivered. Returns the messages that arrived.
     Arrived arrived() {
         EXPECT_TRUE(until([&] { return a.outcomes.size() == tag_; }, 60'000'000));
         for (auto& [tag, outcome] : a.outcomes)
@@ -177,7 +179,7 @@ TEST_P(FullOvertaking, ACallTakesAtMostThreeTimesAsLongBehindAPicture) {
     const uint64_t idle = call();
     run(200'000);
     for (int i = 0; i < 5; ++i) {
-        send(0, Bytes(1000, 1)); // pictures, each of which takes 90 ms on the line
+        send(0, Bytes(1000, 1)); // pictures of 1000 bytes, each of which takes 90 ms on the line
         send(0, Bytes(1000, 1));
         run(30'000);
         EXPECT_LE(call(), 3 * idle);
@@ -201,10 +203,10 @@ TEST_P(FullOvertaking, ACallDoesNotWaitForALostPartOfAPicture) {
 
 TEST_P(FullOvertaking, OnlyAcrossChannelsAndTheLongOneComesWhole) {
     send(0, Bytes(1000, 1));
-    send(0, Bytes(11, 1)); // after the picture of its channel
+    send(0, Bytes(11, 1)); // must arrive after the picture, because it is on the same channel
     run(20'000);
     send(1, Bytes(300, 3));
-    send(1, Bytes(12, 3)); // after a long one of its channel
+    send(1, Bytes(12, 3)); // must arrive after the long message on its channel
     send(2, Bytes(13, 4));
     send(2, Bytes(14, 4));
     a.close(2);
@@ -224,7 +226,8 @@ TEST_P(FullOvertaking, ManyShortOnesLeaveTheLongOneHalf) {
             return b.received.size() && b.received.back().first == 0;
         },
         5'000'000));
-    EXPECT_LE(b.received.size(), 12u); // at most as many as the message has fragments
+    // at most one short message for each fragment of the long message
+    EXPECT_LE(b.received.size(), 12u);
     EXPECT_GE(b.received.size(), 6u);
 }
 

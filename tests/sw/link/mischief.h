@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// mischief: frames that an attacker can send without the key: recorded frames, unchanged, altered,
-// truncated or joined; control frames and data with a guessed tag; frames of the unencrypted
-// protocol.
+// mischief: makes frames that an attacker can send without the key. These are recorded frames,
+// unchanged, altered, truncated or joined; control frames and data with a guessed tag; and frames
+// of the unencrypted protocol.
 
 #pragma once
 
@@ -14,14 +14,14 @@ extern "C" {
 #include "link.h"
 }
 
-// Returns hostile bytes of a random kind; `any` returns some recorded ones. Only copies contain
-// frames with a valid tag.
+// Returns hostile bytes of a random kind. `any` returns a recorded packet. Only unchanged copies of
+// recorded frames have a valid tag.
 inline std::vector<uint8_t> mischief(Random& random,
                                      const std::function<const std::vector<uint8_t>&()>& any) {
     auto byte = [&] { return static_cast<uint8_t>(random.next()); };
     std::vector<uint8_t> frame = any();
     switch (random.below(8)) {
-    case 0: // replay, reflection, reordering: unchanged, at any time
+    case 0: // an unchanged frame at any time: replay, reflection, reordering
         break;
     case 1: // several recorded frames in a row
         for (const std::vector<uint8_t>& more : {any(), any()})
@@ -34,12 +34,13 @@ inline std::vector<uint8_t> mischief(Random& random,
     case 3: // cut
         frame.resize(1 + random.below(static_cast<uint32_t>(frame.size())));
         break;
-    case 4: // the attacker's header with a recorded payload
+    case 4: // the header is the attacker's, the payload is recorded
         for (size_t i = 0; i < LINK_HEADER && i < frame.size(); ++i)
             if (random.below(2))
                 frame[i] = byte();
         break;
-    case 5: { // a control frame: ACK, HELLO, HELLO-ACK, CONFIRM (or RST), BYE, PING; guessed tag
+    // a control frame with a guessed tag: ACK, HELLO, HELLO-ACK, CONFIRM (or RST), BYE, PING
+    case 5: {
         static const uint8_t sizes[] = {
             1, LINK_NONCE_BYTES, LINK_ANSWER_BYTES, LINK_ANSWER_BYTES, 0, 0};
         uint32_t kind = random.below(6);
@@ -69,8 +70,9 @@ inline std::vector<uint8_t> mischief(Random& random,
     return frame;
 }
 
-// Returns 20 bytes to append to packets: bytes of no frame, followed by apparent HELLOs of this
-// version, so that a receiver searches them for frames, at a cost, while the next one waits.
+// Returns 20 bytes that an attacker appends to packets. They are not a frame, but look like the
+// beginnings of HELLOs of this version, so that the receiver spends time on searching them while
+// the next frame waits.
 inline std::vector<uint8_t> lure(uint8_t version) {
     std::vector<uint8_t> bytes = {0xFF};
     while (bytes.size() < 20)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_test: tests two link layers over two modem models and the air between them: packets that
-// modems lose after acknowledging them, published weather conditions, and the example of a trace.
+// modem_test: tests two link layers over two modem models and the air between them. Cases are
+// packets that modems lose after they have acknowledged them, published weather conditions, and the
+// example of a trace.
 
 #include "modem_pair.h"
 #include <gtest/gtest.h>
@@ -12,8 +13,8 @@ constexpr uint64_t ms = 1'000'000;
 
 class End : public ModemEnd {
 public:
-    // `apiEnds`: number of ends in API mode: none, the first, or both. `baud`: BD of the second
-    // end.
+    // `apiEnds` is the number of ends in API mode: 0, 1 (the first end) or 2. `baud` is the
+    // parameter BD of the second end.
     End(RfChannel& air, unsigned address, uint64_t seed, bool hasKey, unsigned apiEnds,
         bool encrypts = false, unsigned baud = 7)
         : ModemEnd(air, optionsOf(address, encrypts, address < apiEnds, baud), seed) {
@@ -38,7 +39,7 @@ private:
 
 class LinkOverModems : public ::testing::TestWithParam<std::pair<bool, unsigned>> {
 protected:
-    // Sends messages each way, and expects each of them once, in order.
+    // Sends messages in both directions, and expects each of them exactly once, in order.
     void expectAll(unsigned count, unsigned seconds, const std::function<void()>& meanwhile = {}) {
         std::vector<std::vector<U8>> messages;
         for (unsigned i = 0; i < count; ++i)
@@ -68,15 +69,15 @@ protected:
     End &a_ = pair_.a, &b_ = pair_.b;
 };
 
-// The hosts hang for up to 200 ms now and then. Their modems then acknowledge packets that no
-// longer fit, and drop them.
+// The hosts hang for up to 200 ms now and then. During this time their modems acknowledge packets
+// for which they have no room, and drop them.
 TEST_P(LinkOverModems, WhatAModemAcknowledgesAndThenDropsIsSentAgain) {
     Random random(testSeed());
     uint64_t drawn = pair_.now, wakesAt[2] = {0, 0};
     expectAll(60, 120, [&] {
         for (; drawn < pair_.now; drawn += ms / 4)
             for (uint64_t& at : wakesAt)
-                if (random.chance(0.002)) // on average eight times a second
+                if (random.chance(0.002)) // eight times a second on average
                     at = drawn + random.below(200) * ms;
         a_.line.hangs = pair_.now < wakesAt[0];
         b_.line.hangs = pair_.now < wakesAt[1];
@@ -85,7 +86,7 @@ TEST_P(LinkOverModems, WhatAModemAcknowledgesAndThenDropsIsSentAgain) {
     EXPECT_GT(b_.modem.counters().packetsDropped, 2u);
 }
 
-// Returns whether a packet consists of complete frames and padding bytes.
+// Returns true if a packet consists only of complete frames and padding bytes.
 bool isWhole(const std::vector<uint8_t>& bytes) {
     size_t at = 0;
     while (at < bytes.size())
@@ -93,9 +94,9 @@ bool isWhole(const std::vector<uint8_t>& bytes) {
     return at == bytes.size();
 }
 
-// A modem that waits for the air holds packets back. It must not join a packet with a part of the
-// next packet: each later packet would then hold parts of two frames, and each loss would cost both
-// frames.
+// While a modem waits for the air, it stores packets. It must not combine a packet with a part of
+// the next packet: then each later packet would contain parts of two frames, and each lost packet
+// would cost both frames.
 TEST_P(LinkOverModems, PacketsHoldWholeFramesHoweverSlowTheModemIs) {
     unsigned packets = 0, whole = 0;
     air_.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
@@ -106,7 +107,8 @@ TEST_P(LinkOverModems, PacketsHoldWholeFramesHoweverSlowTheModemIs) {
         air_.weather = weather;
         expectAll(120, 300);
     }
-    // A transparent modem does not report its MAC's retries, which may hold a packet for 60 ms.
+    // A modem in transparent mode does not report the retries of its MAC, which may delay a packet
+    // by 60 ms.
     EXPECT_GE(whole, packets * 0.98) << whole << " of " << packets;
     EXPECT_GT(packets, 1000u);
 }
@@ -119,14 +121,14 @@ TEST_P(LinkOverModems, TheTraceOfTheExampleIsFlown) {
     EXPECT_GT(air_.counters().lost - lost, 100u);
 }
 
-// An idle link sends a PING after five seconds, which costs few bytes, and repeats it soon if there
-// is no reply. It never drops a living peer in an hour of any weather, or with 30 % loss.
+// An idle link sends a PING after five seconds, which takes few bytes; without a reply, it repeats
+// the PING soon. The session must last for an hour in any weather, and with 30 % loss.
 TEST_P(LinkOverModems, AnIdleSessionLastsInBadWeather) {
     a_.longestRestUs = b_.longestRestUs = 100'000;
     const U32 before = a_.statistics().bytesSent + b_.statistics().bytesSent;
     pair_.pass(3600 * 1000 * ms);
     EXPECT_LE((a_.statistics().bytesSent + b_.statistics().bytesSent - before) / 720,
-              GetParam().first ? 44u : 11u); // in five seconds
+              GetParam().first ? 44u : 11u); // bytes in five seconds
     auto weathers = RfWeather::published();
     weathers.emplace_back("loss", RfWeather()).second.loss = 0.3;
     for (auto& [what, weather] : weathers) {
@@ -137,8 +139,8 @@ TEST_P(LinkOverModems, AnIdleSessionLastsInBadWeather) {
     }
 }
 
-// A modem in API mode reports losses. A lost packet is sent again immediately and once, before the
-// receiver has reported anything; other packets are not sent again.
+// A modem in API mode reports lost packets. A lost packet is sent again once and immediately,
+// before the receiver has reported anything. Other packets are not sent again.
 TEST(LinkOverApi, WhatTheModemSaysIsLostAndNothingElseIsSentAgain) {
     ModemPair<End> pair(RfWeather(), testSeed(), 1, false, 1u);
     pair.air.weather.loss = 0.3;
@@ -155,7 +157,7 @@ TEST(LinkOverApi, WhatTheModemSaysIsLostAndNothingElseIsSentAgain) {
                 ++sent;
             return pair.b.received.size() == 10;
         },
-        20)); // s; with the lost packets, these take 13 s of air time
+        20)); // limit, s; with the lost packets, these messages take 13 s of air time
     EXPECT_GT(lost, 250u);
     EXPECT_NEAR(pair.a.statistics().fragmentsResent, lost, lost * 0.05);
 }
@@ -179,8 +181,9 @@ TEST(LinkOverApi, APeerThatVanishesInMidSessionTakesLittleOfTheAir) {
     }
 }
 
-// A reply waits for one packet of a stream, in addition to the packet on the air (here both lines
-// have 250,000 baud, like the vehicle's line). The stream loses at most a twentieth.
+// A reply waits for one packet of a stream, in addition to the packet on the air. (Here both lines
+// have 250,000 baud, like the line of the vehicle.) The stream must not become slower by more than
+// a twentieth.
 TEST(LinkOverApi, ACallDuringPicturesWaitsForOnePacketOfThem) {
     const std::vector<U8> picture(LINK_MAX_MESSAGE, 1), call(1, 2);
     double pictures[2] = {0, 0};
@@ -217,10 +220,10 @@ TEST(LinkOverApi, ACallDuringPicturesWaitsForOnePacketOfThem) {
             EXPECT_LT(times[times.size() / 2], 41);
         }
     }
-    EXPECT_GT(pictures[1], 0.8 * pictures[0]); // the calls also take a part of the bandwidth
+    EXPECT_GT(pictures[1], 0.8 * pictures[0]); // the calls themselves also take air time
 }
 
-// Two modems in API mode, and the RN that the links have set.
+// Tests with two modems in API mode, of the RN that the links set.
 class RandomWait : public ::testing::Test {
 protected:
     unsigned rn(End& end) { return end.modem.parameter("RN"); }
@@ -229,7 +232,7 @@ protected:
         while (Link_send(end.link(), 0, message.data(), size, 0) == LINK_OK && size > 1)
             continue;
     }
-    // For two seconds the first end sends long messages or short ones, and so does the second.
+    // Lets each end send messages for two seconds: long messages, short messages, or (size 0) none.
     void talk(ModemPair<End>& pair, U32 first, U32 second) {
         for (int i = 0; i < 10; ++i, pair.pass(200 * ms)) {
             if (first)
@@ -247,7 +250,7 @@ TEST_F(RandomWait, WhoTalksAloneDoesNotWaitAndTwoThatTalkDo) {
     talk(pair, 2000, 0);
     EXPECT_EQ(rn(pair.a), 0u);
     EXPECT_EQ(rn(pair.b), 2u);
-    talk(pair, 2000, 1); // the other side makes calls
+    talk(pair, 2000, 1); // the second end makes calls
     EXPECT_EQ(rn(pair.a), 2u);
     talk(pair, 2000, 2000);
     EXPECT_EQ(rn(pair.a), 2u);
@@ -265,7 +268,7 @@ TEST_F(RandomWait, WhoSendsLittleWaitsWherePacketsAreLost) {
     pair.air.weather.loss = 0.5;
     talk(pair, 1, 0);
     EXPECT_EQ(rn(pair.a), 2u);
-    talk(pair, 2000, 0); // a stream has a packet ready whenever the air is idle
+    talk(pair, 2000, 0); // in a stream, a packet is ready whenever the air is idle
     EXPECT_EQ(rn(pair.a), 0u);
     pair.air.weather.loss = 0;
     pair.pass(20'000 * ms);
@@ -273,7 +276,7 @@ TEST_F(RandomWait, WhoSendsLittleWaitsWherePacketsAreLost) {
     EXPECT_EQ(rn(pair.a), 0u);
 }
 
-// Failed tries indicate collisions; packets that are lost without failed tries do not.
+// Failed tries mean that there are collisions. Lost packets without failed tries do not.
 TEST_F(RandomWait, TwoStreamsDoNotWaitWherePacketsAreLostWithoutFailedTries) {
     ModemPair<End> pair(RfWeather(), testSeed(), 1, false, 2u);
     const auto stream = [&] {
@@ -285,7 +288,8 @@ TEST_F(RandomWait, TwoStreamsDoNotWaitWherePacketsAreLostWithoutFailedTries) {
     EXPECT_EQ(stream(), 0u);
     pair.air.weather = RfWeather();
     EXPECT_EQ(stream(), 2u);
-    pair.air.weather.distance = 400; // a third of the packets is lost, each after four tries
+    // a third of the packets is lost, each of them after four tries
+    pair.air.weather.distance = 400;
     EXPECT_EQ(stream(), 2u);
 }
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
-// recorded_test: today's link layer understands the packets of earlier releases.
+// recorded_test: checks that the current link layer understands the packets of earlier releases.
 //
-// recorded/link-VERSION-KIND.txt has the packets of a session between a ground (a) and a vehicle
-// (b): time of arrival in microseconds, sender, bytes. A side that runs today's code gets the
-// packets of the recorded peer, with the same random numbers and the same calls of its program. It
-// must deliver the peer's messages, and learn that its own messages arrived.
+// recorded/link-VERSION-KIND.txt contains the packets of a session between a ground station (a) and
+// a vehicle (b): time of arrival in microseconds, sender, bytes. One side runs the current code,
+// and gets the packets of the recorded peer, with the same random numbers and the same calls of its
+// program. It must deliver the peer's messages, and must be informed that its own messages arrived.
 //
-// A change that breaks this changes the wire format (docs/compatibility.md): raise LINK_VERSION,
-// and record its packets with RECORD=1 in the environment. A recording is never replaced, except
-// when only the order of random numbers or the times of sending have changed; then the old code
-// and the new one must be seen to talk to each other.
+// A change that makes this test fail changes the wire format (docs/compatibility.md): increase
+// LINK_VERSION, and record the packets of the new version with RECORD=1 in the environment. A
+// recording is replaced only if nothing but the order of random numbers or the times of sending has
+// changed; in this case, check that the old code and the new code can communicate.
 
 #include "ice_messages.h"
 #include "link_pair.h"
@@ -37,8 +37,9 @@ std::string fileOf(const std::string& kind) {
     return RECORDED "/link-" + std::to_string(LINK_VERSION) + "-" + kind + ".txt";
 }
 
-// Messages of a side. Ice's heads are compressed: requests of the ground and replies of the
-// vehicle, twice a value as result and once an exception. Other bytes are sent as they are.
+// Returns the messages of a side. They are requests of the ground and replies of the vehicle (two
+// with a value and one with an exception), whose Ice heads are compressed, and other bytes, which
+// are sent unchanged.
 std::vector<Bytes> messagesOf(char side) {
     std::vector<Bytes> messages;
     if (side == 'b')
@@ -62,7 +63,7 @@ std::vector<Bytes> messagesOf(char side) {
     return messages;
 }
 
-// A side with its program: the ground opens a channel, and both send a message each 200 ms.
+// A side with its program. The ground opens a channel, and both sides send a message every 200 ms.
 struct Program {
     Program(char called, const uint64_t& now, const Bytes& withKey)
         : name(called),
@@ -89,7 +90,7 @@ struct Program {
     U32 sent = 0;
 };
 
-// Moves the packets that have arrived by now to `to`, and records them.
+// Delivers the packets that have arrived at the time `now` to `to`, and records them.
 void deliver(Program& from, Program& to, uint64_t now, Packets& packets) {
     while (!from.side.air.empty() && from.side.air.front().arrives <= now) {
         packets.push_back({now, from.name, from.side.air.front().bytes});
@@ -109,7 +110,7 @@ void expectDelivered(const Program& program) {
         EXPECT_EQ(outcome, LINK_DELIVERED) << tag;
 }
 
-// Runs a session of the current code, and writes its packets.
+// Runs a session with the current code, and writes its packets to a file.
 void record(const std::string& kind, const Bytes& withKey) {
     uint64_t now = start;
     Packets packets;
@@ -147,7 +148,7 @@ Packets read(const std::string& name) {
     return packets;
 }
 
-// Runs one side with the current code and the recorded packets of the other side.
+// Runs one side with the current code, and gives it the recorded packets of the other side.
 void replay(char name, const std::string& kind, const Bytes& withKey) {
     const Packets packets = read(fileOf(kind));
     ASSERT_FALSE(packets.empty()) << "expected a recording in " << fileOf(kind)
@@ -164,7 +165,7 @@ void replay(char name, const std::string& kind, const Bytes& withKey) {
     expectDelivered(program);
 }
 
-// Replays one side; with RECORD in the environment, records the session first.
+// Replays a session for one side. If RECORD is in the environment, records the session first.
 void check(char name, bool isKeyed) {
     const std::string kind = isKeyed ? "keyed" : "clear";
     const Bytes withKey = isKeyed ? key : Bytes();

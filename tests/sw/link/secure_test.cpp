@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// secure_test: tests sessions with a key, and an attacker who does not have it: a third radio that
-// hears everything and can send any bytes.
+// secure_test: tests sessions with a key under attack. The attacker does not have the key, but has
+// a third radio, which hears everything and can send any bytes.
 
 #include "link_variants.h"
 #include "mischief.h"
@@ -16,14 +16,14 @@ namespace {
 // A ground station, a vehicle, and an attacker between them.
 class Attacked : public Variants {
 protected:
-    // Records all new packets of both sides, as the attacker hears them.
+    // Records all new packets of both sides, as an attacker could.
     void listen() {
         for (size_t side = 0; side < 2; ++side) {
             Side& from = side ? b : a;
             for (auto& packet : from.air)
                 if (packet.arrives > heardUntil_[side])
                     for (Bytes& frame : framesOf(packet.bytes)) {
-                        // The modem controller takes the length of a packet from its first byte.
+                        // The modem controller gets the length of a packet from its first byte.
                         EXPECT_EQ(frame.size(), LINK_LENGTH(frame) + LINK_OVERHEAD);
                         recorded_.push_back({side == 0, std::move(frame)});
                     }
@@ -35,7 +35,7 @@ protected:
         to.receive(bytes);
         ++hostile_;
     }
-    // Sends one hostile packet to a random side.
+    // Sends one hostile packet to one of the two sides, chosen at random.
     void hostile() {
         Side& to = random.below(2) ? a : b;
         attack(to, mischief(random, [this]() -> const Bytes& {
@@ -46,7 +46,8 @@ protected:
         if (!recorded_.empty() && random.chance(0.5))
             hostile();
     }
-    // Sends messages in both directions under attack. Returns whether all were delivered in time.
+    // Sends messages in both directions under attack. Returns true if all of them were delivered in
+    // time.
     bool attackedTraffic(size_t messages, uint64_t limitUs) {
         return traffic(messages, limitUs, [&] {
             listen();
@@ -63,7 +64,7 @@ protected:
     uint64_t hostile_ = 0;
 };
 
-// HOSTILE=10000000 sends that number of hostile packets.
+// HOSTILE=10000000 sets the number of hostile packets.
 TEST_P(Attacked, NothingHostileIsAcceptedAndNothingLegalLostOrDoubled) {
     const auto most = static_cast<uint64_t>(numberFromEnvironment("HOSTILE", 60'000) / 2);
     ASSERT_TRUE(connect());
@@ -89,7 +90,7 @@ TEST_P(Attacked, RecordingsOfEarlierSessionsAreWorthNothing) {
                 maybeHostile();
                 return false;
             },
-            12'000'000); // us; longer than the session of the other side lasts
+            12'000'000); // us; longer than the session of the other side can last
         EXPECT_EQ(a.received.size(), before[0]);
         EXPECT_EQ(b.received.size(), before[1]);
         ASSERT_TRUE(until([&] { return bothUp(); }, 30'000'000)) << "boot " << boot;
@@ -101,7 +102,8 @@ TEST_P(Attacked, RecordingsOfEarlierSessionsAreWorthNothing) {
     }
 }
 
-// Before each kind of frame arrives, copies arrive in which one bit is wrong, for each bit.
+// Before each frame arrives, copies of it arrive in which one bit is wrong, one copy for each bit.
+// All kinds of frames are tested.
 TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
     std::map<int, unsigned> kinds;
     auto flip = [&] {
@@ -111,7 +113,8 @@ TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
                     const int kind = kindOf(frame);
                     if (kinds[kind]++ > 2)
                         continue;
-                    auto rest = [&] { // drops the bytes that are kept of an incomplete frame
+                    // waits until the stored bytes of an incomplete frame have been dropped
+                    auto rest = [&] {
                         now += 26'000;
                         to->poll();
                     };
@@ -141,7 +144,7 @@ TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
             offer(b, sentB, 3);
             return flip();
         },
-        8'000'000); // us; in this time a PING is sent
+        8'000'000); // us; at least one PING is sent in this time
     b.stop();
     until([&] { return flip(); }, 100'000);
     for (int kind : {0, 1, 2, 3, 4, 5, 8})
@@ -160,7 +163,7 @@ TEST_P(Attacked, AFloodOfHellosCostsFewAnswersAndNoSession) {
                 hellos.push_back(heard.bytes);
     }
     ASSERT_GE(hellos.size(), 12u);
-    run(20'000'000); // both sides are in the last session
+    run(20'000'000); // after this time both sides have the last session
     ASSERT_TRUE(bothUp());
     a.events.clear(), b.events.clear();
     recorded_.clear();
@@ -185,8 +188,8 @@ TEST_P(Attacked, AFloodOfHellosCostsFewAnswersAndNoSession) {
 TEST_P(Attacked, WhoOnlyReplaysDoesNotKeepASessionAlive) {
     ASSERT_TRUE(connect());
     ASSERT_TRUE(traffic(10, 60'000'000));
-    until([&] { return listen(), false; }, 6'000'000); // the recorded frames include a PING
-    setWeather({1, 0, 0});                             // A has disappeared
+    until([&] { return listen(), false; }, 6'000'000); // long enough to record a PING
+    setWeather({1, 0, 0});                             // A disappears: its packets are lost
     ASSERT_TRUE(until(
         [&] {
             for (const Heard& heard : recorded_)
@@ -197,8 +200,8 @@ TEST_P(Attacked, WhoOnlyReplaysDoesNotKeepASessionAlive) {
         10'000'000));
 }
 
-// A's CONFIRM is delayed, A restarts: the old CONFIRM arrives too late for a session, whether A has
-// a new one by then or is absent.
+// A's CONFIRM is delayed, and A restarts. The old CONFIRM must not begin a session, whether A
+// already has a new session or is absent.
 TEST_P(Attacked, AConfirmThatWasHeldBackMakesNoSession) {
     for (bool isGone : {false, true}) {
         recorded_.clear();
@@ -209,7 +212,7 @@ TEST_P(Attacked, AConfirmThatWasHeldBackMakesNoSession) {
         listen();
         Bytes held = recorded_.back().bytes;
         ASSERT_EQ(kindOf(held), LINK_KIND_CONFIRM);
-        a.boot(); // no frame of A arrives
+        a.boot(); // from now on no frame of A arrives
         if (isGone) {
             run(LINK_NONCE_LIFE);
         } else {
@@ -223,9 +226,8 @@ TEST_P(Attacked, AConfirmThatWasHeldBackMakesNoSession) {
     }
 }
 
-// The attacker lets everything pass except the fragments of one message, and delivers these
-// fragments later. By then their sender has been informed of the loss, and the receiver does not
-// accept them.
+// The attacker holds back only the fragments of one message, and delivers them later. By then the
+// sender has been informed of the loss, and the receiver does not accept the fragments any more.
 TEST_P(Attacked, AMessageThatIsHeldBackIsReportedAndNeverTaken) {
     for (bool isFromA : {true, false}) {
         Side &from = isFromA ? a : b, &to = isFromA ? b : a;
@@ -259,8 +261,8 @@ TEST_P(Attacked, AMessageThatIsHeldBackIsReportedAndNeverTaken) {
     }
 }
 
-// Returns the number of recorded frames of a session, without those of the handshake, that the keys
-// decrypt.
+// Returns how many recorded frames of a session can be decrypted with these keys, not counting the
+// frames of the handshake.
 int opened(const std::vector<std::pair<bool, Bytes>>& frames, const Link_Keys& keys) {
     int count = 0;
     for (auto [isFromGround, frame] : frames) {
@@ -271,8 +273,8 @@ int opened(const std::vector<std::pair<bool, Bytes>>& frames, const Link_Keys& k
     return count;
 }
 
-// An attacker who has recorded a session and later learns the key can open only its handshake
-// frames. With the half of a pair that one side has wiped he could open all.
+// An attacker who has recorded a session and learns the key later can decrypt only the frames of
+// the handshake. He could decrypt all frames if one side had not erased its half of the key pair.
 TEST_P(Attacked, WhoLearnsTheKeyLaterOpensNoRecordedSession) {
     Link_KeyPair pair = {};
     a.start();
@@ -316,7 +318,7 @@ TEST_P(Attacked, WhoLearnsTheKeyLaterOpensNoRecordedSession) {
               Bytes(LINK_PUBLIC_BYTES, 0));
 }
 
-// Returns whether the memory of a side contains any 8 consecutive bytes of a secret.
+// Returns true if the memory of a side contains any 8 consecutive bytes of a secret.
 bool remains(Side& side, const U8* secret, size_t size) {
     const U8* memory = reinterpret_cast<const U8*>(side.link());
     for (size_t at = 0; at + 8 <= size; ++at)
@@ -346,7 +348,7 @@ TEST_P(Attacked, ASessionsKeysAndMessagesAreWipedAtItsEnd) {
         ASSERT_TRUE(remains(b, picture.data(), picture.size()));
         if (isStopped) {
             b.stop();
-        } else { // the peer vanishes
+        } else { // otherwise the peer vanishes without a BYE
             setWeather({1, 0, 0});
             run(30'000'000);
             setWeather({});
@@ -361,7 +363,8 @@ TEST_P(Attacked, ASessionsKeysAndMessagesAreWipedAtItsEnd) {
     }
 }
 
-// Recorded HELLOs, each with another nonce, make a side compute a pair once, and no key.
+// Recorded HELLOs, each with a different nonce, must make a side compute a key pair only once, and
+// no session key.
 TEST_P(Attacked, OldHellosMakeNobodyMultiplyPoints) {
     std::vector<Bytes> hellos;
     for (unsigned boot = 0; boot < 5; ++boot) {
@@ -375,7 +378,8 @@ TEST_P(Attacked, OldHellosMakeNobodyMultiplyPoints) {
     b.boot();
     setWeather({1, 0, 0}); // A does not receive the replies
     Link_KeyPair first = {};
-    for (int i = 0; i < 400; ++i, run(100'000)) { // longer than four lifetimes of a nonce
+    // this lasts longer than four lifetimes of a nonce
+    for (int i = 0; i < 400; ++i, run(100'000)) {
         attack(b, hellos[size_t(i) % hellos.size()]);
         if (i == 0)
             first = b.link()->session.handshake.pair;
@@ -385,8 +389,8 @@ TEST_P(Attacked, OldHellosMakeNobodyMultiplyPoints) {
     EXPECT_FALSE(b.isUp());
 }
 
-// An attack on new sessions: the attacker hears the traffic and adds a lure to each packet, or
-// sends it blindly.
+// Tests with an attack on new sessions: the attacker hears the traffic and adds misleading bytes to
+// each packet, or sends them without hearing.
 class Hindered : public Attacked {
 protected:
     void restart(bool bothCall) {
@@ -399,7 +403,7 @@ protected:
         if (bothCall)
             b.start();
     }
-    // Sends bytes to both sides after each packet, whether it arrives or is lost.
+    // Sends bytes to both sides right after each packet, whether the packet arrives or is lost.
     void addBehindAll(const Bytes& bytes) {
         for (Side* from : {&a, &b})
             if (uint64_t& heard = heardUntil_[from == &b]; from->bytesSent > heard) {
@@ -431,10 +435,10 @@ TEST_P(Hindered, WhoAddsBytesToPacketsOrSendsThemBlindlyPreventsNoSession) {
             }
 }
 
-// A side that restarts has a session within a second. It does not matter how often its peer, which
-// still believes in the previous session, receives HELLOs of that session and of an earlier one.
+// A side that restarts must have a session within a second, while its peer still has the previous
+// session. HELLOs of that session and of an earlier one may arrive at the peer at any rate.
 TEST_P(Hindered, OldHellosDelayARestartByLessThanASecond) {
-    for (bool isGround : {true, false}) // the side that restarts
+    for (bool isGround : {true, false}) // which side restarts
         for (uint64_t every : {100'000, 10'000, 2000}) {
             Side &side = isGround ? a : b, &other = isGround ? b : a;
             std::vector<Bytes> old;
@@ -468,8 +472,8 @@ TEST_P(Hindered, OldHellosDelayARestartByLessThanASecond) {
         }
 }
 
-// The ground reads its line in portions. Right before each frame that it should receive, the
-// attacker sends bytes in which a frame of the handshake seems to end with each portion.
+// The ground reads its serial line in portions. Right before each frame for the ground, the
+// attacker sends bytes in which each portion seems to end with a frame of the handshake.
 TEST_P(Hindered, FramesThatSeemToEndWithEachPortionOfTheLinePreventNoSession) {
     const auto hostile = [this](size_t count, size_t portion) {
         Bytes bytes(count, 0x70);
@@ -534,10 +538,10 @@ TEST_P(Hindered, FramesThatSeemToEndWithEachPortionOfTheLinePreventNoSession) {
 INSTANTIATE_TEST_SUITE_P(Vehicles, Attacked, ::testing::ValuesIn(keyed(2)));
 INSTANTIATE_TEST_SUITE_P(Vehicles, Hindered, ::testing::ValuesIn(keyed(2)));
 
-// Two parties that meet; both have the key.
+// Two parties that meet over the air; both have the key.
 struct Meeting {
     U32 sideA, sideB;
-    bool isOfSides; // the parties are a ground station and its vehicle
+    bool isOfSides; // true if the parties are a ground station and its vehicle
 };
 
 void PrintTo(const Meeting& m, std::ostream* out) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// weather_test: tests traffic in both directions over a bad radio, with reboots and garbage, for
-// all combinations of layers: no message is wrong, duplicated, out of order or unreported, and the
-// goodput is sufficient.
+// weather_test: tests traffic in both directions over a bad radio, with reboots and random bytes,
+// for all combinations of layers. No message may be wrong, duplicated, out of order or unreported,
+// and the goodput must be sufficient.
 
 #include "link_variants.h"
 
@@ -20,14 +20,14 @@ TEST_P(Met, NothingIsLostDoubledOrReorderedInBadWeather) {
     expectAllDelivered();
 }
 
-// The window of the peer is never exceeded; fragments beyond it would be sent twice.
+// The sender never exceeds the window of its peer; fragments beyond the window would be sent twice.
 TEST_P(Met, OnlyWhatIsLostIsSentAgain) {
     ASSERT_TRUE(connect());
     a.open(1);
     run(200'000);
     const Bytes call(1, 7), picture(1024, 7);
     for (U32 tag = 0; tag < 6; ++tag) {
-        ASSERT_EQ(a.send(1, call, tag), LINK_OK); // the reply contains the acknowledgement
+        ASSERT_EQ(a.send(1, call, tag), LINK_OK); // the reply also contains the acknowledgement
         ASSERT_TRUE(until([&] { return b.received.size() == 2 * tag + 1; }, 1'000'000));
         b.send(1, call, tag);
         ASSERT_TRUE(until([&] { return a.outcomes.count(tag) != 0; }, 1'000'000));
@@ -75,7 +75,7 @@ TEST_P(Seeds, RebootsAreNoticedAndMessagesInFlightReported) {
         const bool isA = random.below(2) != 0;
         Side& side = isA ? a : b;
         side.boot();
-        // Counts messages in transit as lost, as an application does.
+        // Counts the messages in transit as lost, as an application would.
         for (U32 i = 0; i < (isA ? sentA : sentB).size(); ++i)
             side.outcomes.emplace(i, LINK_UNKNOWN);
         side.start();
@@ -104,7 +104,8 @@ TEST_P(Seeds, GarbageOnTheLineDoesNotDisturbTheSession) {
     }
 }
 
-// A side that sends the beginning of a frame every 20 ms leaves no silence for a frame to follow.
+// If a side receives the beginning of a frame every 20 ms, there is never enough silence before a
+// frame.
 TEST_P(Seeds, BeginningsOfFramesBetweenPacketsDoNotStopIt) {
     ASSERT_TRUE(connect());
     uint64_t at = now;
@@ -124,7 +125,7 @@ INSTANTIATE_TEST_SUITE_P(Vehicles, Seeds, ::testing::ValuesIn(vehicles(4)));
 
 class Speed : public Variants {};
 
-// Enough messages for the sequence numbers to wrap hundreds of times.
+// This number of messages makes the sequence numbers wrap hundreds of times.
 TEST_P(Speed, TenThousandMessagesInBadWeather) {
     usualSize = longestSize = 40;
     ASSERT_TRUE(connect());
@@ -137,8 +138,8 @@ INSTANTIATE_TEST_SUITE_P(Vehicles, Speed, ::testing::ValuesIn(vehicles(1)));
 
 class InTheClear : public Variants {};
 
-// A wrong message has a valid CRC-16 once in 65,536 times. Here the polynomial is added to a
-// message, which gives such a message immediately.
+// One in 65,536 wrong messages has a valid CRC-16. Here such a message is made directly, by adding
+// the polynomial to a message.
 TEST_P(InTheClear, AWrongMessageWithARightChecksumIsReportedAndNotDelivered) {
     ASSERT_TRUE(connect());
     for (uint32_t size : {21u, 60u, 95u, 300u}) {
@@ -160,8 +161,8 @@ INSTANTIATE_TEST_SUITE_P(Vehicles, InTheClear,
                          ::testing::Values(Variant{"full", "full", false},
                                            Variant{"full", "minimal", false}));
 
-// Goodput of one direction as a share of the modem's 10,000 bytes/s (docs/link.md). The layer paces
-// itself by the modem's rate, although the radio of this test accepts everything.
+// Tests the goodput of one direction, as a fraction of the modem's 10,000 bytes/s (docs/link.md).
+// The layer sends at the rate of the modem, although the radio of this test would accept any rate.
 TEST(Goodput, MeetsItsTargets) {
     const double targets[][2] = {{0, 0.83}, {0.01, 0.81}, {0.1, 0.68}, {0.3, 0.42}};
     for (auto& [loss, target] : targets) {

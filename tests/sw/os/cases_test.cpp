@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// cases_test: runs the cases of os_cases.c on the host's port, and additional cases for that port.
+// cases_test: runs the cases of os_cases.c on the kernel's port for the host, and additional cases
+// for this port.
 
 #include "os_host.h"
 #include <gtest/gtest.h>

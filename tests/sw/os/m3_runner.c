@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * m3_runner: runs one case on a Cortex-M3; contains the vectors, the tick, the interrupt, and a
+ * m3_runner: runs one case on a Cortex-M3. It contains the vectors, the tick, the interrupt, and a
  * breakpoint at the end.
  */
 #include "boot.h"
@@ -19,7 +19,8 @@ void Reset_Handler(void);
 void SysTick_Handler(void);
 void Irq_Handler(void);
 
-unsigned selected_case __attribute__((section(".noinit"))); /* written by the test */
+/* number of the case; the test writes it */
+unsigned selected_case __attribute__((section(".noinit")));
 static unsigned ticksLeft;
 
 static void fault(void) {
@@ -32,7 +33,7 @@ void Boot_fail(Boot_Reason reason, U32 pc, U32 lr, U32 address) { /* own_kernel'
 }
 
 __attribute__((section(".vectors"), used)) static const Vector vectors[17] = {
-    stack_top, /* initial stack pointer, not a function */
+    stack_top, /* initial stack pointer; all other entries are functions */
     Reset_Handler, fault, fault, fault,          fault,           fault,      0, 0, 0, 0,
     fault,         fault, 0,     PendSV_Handler, SysTick_Handler, Irq_Handler};
 

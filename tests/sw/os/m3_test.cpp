@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// m3_test: runs the cases of os_cases.c with the Cortex-M3's port: the ARM binary on the model of
-// the processor.
+// m3_test: runs the cases of os_cases.c on the kernel's port for the Cortex-M3: the ARM binary runs
+// on the model of the processor.
 
 #include "plain_bus.h"
 #include <cstdlib>
@@ -15,7 +15,8 @@ namespace {
 
 class OsM3Cases : public ::testing::TestWithParam<unsigned> {};
 
-// UCOS2_CASES is the path of a build of the same program with the real uC/OS-II (docs/firmware.md).
+// Returns the path of the program. UCOS2_CASES selects a build of the same program with the real
+// uC/OS-II (docs/firmware.md).
 std::string program() {
     const char* other = std::getenv("UCOS2_CASES");
     return other ? other : CASES_ELF;
@@ -30,8 +31,8 @@ TEST_P(OsM3Cases, SaysWhatTheManualSays) {
     EXPECT_EQ(m3.text("os_said"), c.expected);
 }
 
-// An interrupt before any instruction wakes the higher task, so the switch may be anywhere in the
-// computation.
+// The interrupt wakes the task of higher priority before any instruction, so the task switch may
+// happen anywhere in the computation.
 TEST(OsM3, ASwitchAtAnyInstructionLosesNoRegister) {
     unsigned number = 0;
     while (std::string(os_cases[number].name) != "RegistersSurviveSwitches")
@@ -45,7 +46,8 @@ TEST(OsM3, ASwitchAtAnyInstructionLosesNoRegister) {
             if (++n == where)
                 m3.cpu.pendInterrupt(0);
             said = said || (where == 0 && n % 64 == 0 && !m3.text("os_said").empty());
-            instructions += where == 0 && !said; // counts until the computation has ended
+            // counts instructions until the computation has ended
+            instructions += where == 0 && !said;
         };
         m3.setVariable("selected_case", number);
         ASSERT_EQ(m3.run(1'000'000), 1)
@@ -61,6 +63,6 @@ INSTANTIATE_TEST_SUITE_P(All, OsM3Cases, ::testing::Range(0u, os_caseCount),
 
 } // namespace
 
-// The host only reads the table here.
+// On the host only the table of cases is used.
 extern "C" void Runner_interrupt(void) {}
 extern "C" void Runner_passTime(void) {}

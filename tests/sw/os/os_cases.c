@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_cases: the list of cases, and their output; the cases of creation, preemption, delays, the
- * scheduler's lock, stacks, registers and interrupts.
+ * os_cases: the list of all cases, the functions that record their output, and the cases about
+ * creation, preemption, delays, the scheduler's lock, stacks, registers and interrupts.
  */
 #include "os_cases.h"
 
@@ -40,7 +40,7 @@ void OsCase_sayNumber(unsigned value) {
     OsCase_say(digits + at);
 }
 
-/* `p`: body of the task, which may return. */
+/* `p` is the body of the task; the body may return. */
 static void runs(void* p) {
     (*(void (**)(void))p)();
     for (;;)
@@ -79,7 +79,7 @@ static OS_EVENT *sem2, *mutex, *queue;
 static void* slots[3];
 static INT8U err;
 
-/* ---- a post lets the task of higher priority continue at once ---- */
+/* ---- a post makes a waiting task of higher priority run at once ---- */
 
 static void postsSem(void) {
     OsCase_say("low-posts");
@@ -93,12 +93,12 @@ void OsCase_preempting(void) {
     (void)OsCase_task(OsCase_waitsForSem, 5);
 }
 
-/* ---- a task that creates one of higher priority is preempted by it ---- */
+/* ---- a task that creates a task of higher priority is preempted by it ---- */
 
 static void creates(void) {
     OsCase_say("creates");
     OsCase_sayNumber(OsCase_task(OsCase_created, 4));
-    OsCase_sayNumber(OsCase_task(OsCase_created, 4)); /* the priority is taken */
+    OsCase_sayNumber(OsCase_task(OsCase_created, 4)); /* another task already has this priority */
     OsCase_say("goes-on");
     OsCase_sayNumber(OsCase_task(OsCase_created, 20));
     OsCase_say("ends");
@@ -155,7 +155,7 @@ static void looksAtStacks(void) {
     OsCase_sayNumber(OSTaskStkChk(33, &data)); /* no task */
     OsCase_sayNumber(OSTaskStkChk(3, &data));  /* a mutex */
     OsCase_sayNumber(OSTaskStkChk(9, 0));
-    OsCase_sayNumber(OSTaskStkChk(12, &data)); /* created without the option */
+    OsCase_sayNumber(OSTaskStkChk(12, &data)); /* this task was created without the option */
     OsCase_sayNumber(OSTaskStkChk(OS_LOWEST_PRIO + 1, &data));
 }
 
@@ -217,7 +217,7 @@ void OsCase_masking(void) {
     (void)OsCase_task(disablesInterrupts, 6);
 }
 
-/* ---- a computation that needs all registers, and a task that may interrupt it anywhere ---- */
+/* ---- a computation that uses all registers, and a task that may interrupt it anywhere ---- */
 
 static unsigned scramble(unsigned a) {
     unsigned b = 3, c = 5, d = 7, e = 11, f = 13, g = 17, h = 19, j = 23, k = 29, l = 31, i;

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_cases: programs that use uC/OS-II's API, with the output that its manual implies
- * ("MicroC/OS-II, The Real-Time Kernel", chapter 16). They run on the host's port, on the
- * Cortex-M3's, and on request on the real uC/OS-II, with one expected text.
+ * os_cases: programs that use the API of uC/OS-II, each with the output that uC/OS-II's manual
+ * implies ("MicroC/OS-II, The Real-Time Kernel", chapter 16). They run on the kernel's port for the
+ * host, on its port for the Cortex-M3, and on request on the real uC/OS-II; the expected output is
+ * always the same.
  */
 #pragma once
 
@@ -10,39 +11,42 @@
 
 typedef struct OsCase {
     const char* name;
-    void (*prepare)(void); /* function that prepares the case, called between OSInit and OSStart */
-    void (*interrupt)(void); /* interrupt routine, called between OSIntEnter and OSIntExit; or 0 */
-    unsigned ticks;          /* length of the case, ticks */
-    const char* expected;    /* the expected output */
+    void (*prepare)(void); /* function that prepares the case; called between OSInit and OSStart */
+    /* interrupt routine of the case, called between OSIntEnter and OSIntExit; 0 if the case has
+     * none */
+    void (*interrupt)(void);
+    unsigned ticks;       /* duration of the case, ticks */
+    const char* expected; /* the expected output */
 } OsCase;
 
 extern const OsCase os_cases[];
 extern const unsigned os_caseCount;
 extern char os_said[512]; /* output of the last case */
 
-void OsCase_begin(void); /* before `prepare`: clears output and stacks */
-/* Makes an interrupt arrive now; implemented by the runner. */
+void OsCase_begin(void); /* clears output and stacks; called before `prepare` */
+/* Causes an interrupt now; implemented by the runner. */
 void Runner_interrupt(void);
-/* Serves an interrupt that has become possible (a real processor does so at once); implemented by
- * the runner. */
+/* Handles an interrupt that was blocked and is now allowed. A real processor handles it by itself.
+ * Implemented by the runner. */
 void Runner_passTime(void);
 
-/* Shared by the files of cases: tasks that print their steps. */
+/* Used in the files of cases: tasks that print their steps. */
 #define OS_CASE_WORDS 128 /* size of a task's stack */
 
 void OsCase_say(const char* word);
 void OsCase_sayNumber(unsigned value);
-/* Creates a task on a separate stack, with its priority as its number. Returns the result of
+/* Creates a task that has a separate stack, and its priority as its number. Returns the result of
  * OSTaskCreateExt. */
 INT8U OsCase_task(void (*body)(void), INT8U priority);
-INT8U OsCase_uncheckedTask(void (*body)(void), INT8U priority); /* without the stack's options */
+/* creates a task without the options for its stack */
+INT8U OsCase_uncheckedTask(void (*body)(void), INT8U priority);
 
-/* Tasks of several cases. */
+/* A semaphore and tasks that several cases use. */
 extern OS_EVENT* osCase_sem;
 void OsCase_waitsForSem(void);
 void OsCase_created(void);
 
-/* Functions that prepare a case, or serve as its interrupt routine. */
+/* The functions that prepare a case or are its interrupt routine. */
 /* clang-format off */
 #define OS_CASES(X) \
     X(choosing) X(computing) X(counting) X(creating) X(delaying) X(handingOver) X(inheriting) \

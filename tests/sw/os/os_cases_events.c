@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_cases_events: cases about semaphores, queues, mutexes and time-outs.
+ * os_cases_events: the cases about semaphores, queues, mutexes and time-outs.
  */
 #include "os_cases.h"
 
@@ -8,7 +8,7 @@ static OS_EVENT *sem, *sem2, *mutex, *mutex2, *queue;
 static void* slots[3];
 static INT8U err;
 
-/* ---- time-outs count ticks ---- */
+/* ---- a time-out is a number of ticks ---- */
 
 static void timesOut(void) {
     INT32U start;
@@ -40,7 +40,8 @@ void OsCase_timing(void) {
     (void)OsCase_task(holdsMutex, 8);
 }
 
-/* ---- semaphores count to 65535; of several tasks the highest gets the unit ---- */
+/* ---- semaphores count up to 65535; of several waiting tasks, the one of highest priority gets the
+ * unit ---- */
 
 static void countsSem(void) {
     OsCase_sayNumber(OSSemAccept(sem));
@@ -100,11 +101,12 @@ static void sayMessage(void* message) {
 static void usesQueue(void) {
     int i;
     for (i = 0; i < 4; ++i)
-        OsCase_sayNumber(OSQPost(queue, &messages[i])); /* the fourth message does not fit */
+        /* the queue has no room for the fourth message */
+        OsCase_sayNumber(OSQPost(queue, &messages[i]));
     for (i = 0; i < 3; ++i)
         sayMessage(OSQPend(queue, 0, &err));
-    OsCase_sayNumber(OSQPost(queue, &messages[3])); /* its place wraps around to the start of the
-                                                     * array */
+    /* the index of the next message wraps around to the start of the array */
+    OsCase_sayNumber(OSQPost(queue, &messages[3]));
     sayMessage(OSQPend(queue, 1, &err));
     sayMessage(OSQPend(queue, 1, &err));
     OsCase_sayNumber(err);
@@ -172,8 +174,8 @@ void OsCase_inheriting(void) {
     (void)OsCase_task(middle, 10);
 }
 
-/* The owner waits for another event while it inherits a priority; it must also be moved in the list
- * of that event. */
+/* While the owner of the mutex inherits a priority, it waits for another event; it must also be
+ * moved in the waiting list of that event. */
 static void ownerWaits(void) {
     OSMutexPend(mutex, 0, &err);
     OSSemPend(sem, 0, &err);
@@ -213,7 +215,8 @@ void OsCase_inheritingInAList(void) {
 static void mutexOwner(void) {
     OSMutexPend(mutex, 0, &err);
     OsCase_sayNumber(err);
-    OSMutexPend(mutex2, 0, &err); /* the mutex's ceiling is below this task's priority */
+    /* the ceiling priority of this mutex is lower than the priority of this task */
+    OSMutexPend(mutex2, 0, &err);
     OsCase_sayNumber(err);
     OsCase_sayNumber(OSMutexPost(mutex2));
 }
@@ -226,9 +229,9 @@ static void mutexStranger(void) {
     OsCase_sayNumber(err);
     OSMutexPend(sem, 0, &err);
     OsCase_sayNumber(err);
-    (void)OSMutexCreate(3, &err); /* the priority is taken by the mutex */
+    (void)OSMutexCreate(3, &err); /* the mutex already has this priority */
     OsCase_sayNumber(err);
-    (void)OSMutexCreate(6, &err); /* the priority is taken by this task */
+    (void)OSMutexCreate(6, &err); /* this task already has this priority */
     OsCase_sayNumber(err);
     (void)OSMutexCreate(OS_LOWEST_PRIO, &err);
     OsCase_sayNumber(err);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// endpoint_test: tests what IceC's radio endpoint reports about connections that open and close
-// while nobody polls it.
+// endpoint_test: tests the events that IceC's radio endpoint reports for connections that open and
+// close while no task polls the endpoint.
 
 #include "link_pair.h"
 #include <functional>
@@ -32,8 +32,8 @@ protected:
         Ice_initialize(&ic_);
         XBeeATEndpoint_init(&ic_, "xbee-at", &endpoint_, pair_.b.link(), 1, &port, this);
     }
-    // All messages of the endpoint have the same tag, and each side can get only one outcome for
-    // this tag.
+    // Runs the links. All messages of the endpoint have the same tag, but a side stores only one
+    // outcome per tag, so the outcomes are cleared.
     void run(U32 ms) {
         for (; ms; --ms) {
             pair_.b.outcomes.clear();
@@ -60,7 +60,7 @@ protected:
         return status;
     }
 
-    // Opens a connection of the vehicle.
+    // Opens a connection from the vehicle to the ground.
     void open() {
         ASSERT_TRUE(pair_.connect());
         ASSERT_EQ(connect(), ICE_OK);
@@ -75,7 +75,7 @@ protected:
     Ice_Communicator ic_;
     XBeeATEndpoint endpoint_;
     Ice_Byte buffer_[ICE_MESSAGE_MAX];
-    std::function<void()> atWait_; // called when a task waits the next time
+    std::function<void()> atWait_; // called when a task next waits
 };
 
 using Kinds = std::vector<std::pair<Ice_EventKind, int>>;
@@ -84,7 +84,7 @@ TEST_F(RadioEndpoint, OfConnectionsThatCameAndWentOnlyTheLastStateIsTold) {
     for (int channel = 0; channel < 3; ++channel)
         XBeeATEndpoint_onChannel(&endpoint_, channel, 1);
     EXPECT_EQ(events().size(), 3u);
-    // The ground restarts repeatedly, while the server's task is busy.
+    // The ground restarts repeatedly while the task of the server is busy.
     for (int times = 0; times < 10; ++times)
         for (int channel = 0; channel < 3; ++channel) {
             XBeeATEndpoint_onChannel(&endpoint_, channel, 0);
@@ -120,7 +120,8 @@ TEST_F(RadioEndpoint, TheEndOfTheLastOwnConnectionDoesNotEndTheNext) {
     open();
     pair_.a.close(3);
     pair_.run(500000);
-    XBeeATEndpoint_onChannel(&endpoint_, 3, 0); // the endpoint has not checked it yet
+    // the channel has closed, but the endpoint has not noticed this yet
+    XBeeATEndpoint_onChannel(&endpoint_, 3, 0);
     ASSERT_EQ(connect(), ICE_OK);
     EXPECT_EQ(events(), Kinds{});
 }
@@ -144,7 +145,7 @@ TEST_F(RadioEndpoint, AnswersThatTheLinkHasNoRoomForWaitForASlowLink) {
 
 TEST_F(RadioEndpoint, AConnectionThatTheLinkHasNoRoomForTooLongIsClosedOnBothSides) {
     open();
-    pair_.a.refuse = true; // the link is up, but makes no progress
+    pair_.a.refuse = true; // the link stays up, but its messages are not accepted
     const Bytes answer(7930, 7);
     Ice_Status status = ICE_OK;
     for (int n = 0; n < 10 && status == ICE_OK; ++n)
@@ -160,11 +161,12 @@ TEST_F(RadioEndpoint, AConnectionThatTheLinkHasNoRoomForTooLongIsClosedOnBothSid
     EXPECT_EQ(events(), Kinds{});
 }
 
-// A waiting message belongs to the program that had the channel when it arrived.
+// A message that waits for being sent belongs to the program that had the channel when the message
+// was passed to the endpoint.
 TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnItsChannel) {
     ASSERT_TRUE(pair_.connect());
     const Bytes answer(7930, 7);
-    auto again = [&] { // another program takes over the channel of the ground
+    auto again = [&] { // another program on the ground takes over the channel
         for (int isOpen : {0, 1})
             XBeeATEndpoint_onChannel(&endpoint_, 1, isOpen);
     };
@@ -172,11 +174,10 @@ TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnIts
     run(500);
     XBeeATEndpoint_onChannel(&endpoint_, 1, 1);
     EXPECT_EQ(events().size(), 1u);
-    pair_.a.refuse = true; // the queue fills
+    pair_.a.refuse = true; // the queue becomes full, because messages are not accepted
     while (pair_.b.send(1, answer, 0) == LINK_OK) {
     }
-    atWait_ = [&] { // while the next message waits, the other task detects the end of the
-                    // connection
+    atWait_ = [&] { // while the next message waits, another task detects the end of the connection
         again();
         EXPECT_EQ(events(), (Kinds{{ICE_EVENT_CLOSED, 1}, {ICE_EVENT_OPENED, 1}}));
         pair_.a.refuse = false;
@@ -184,7 +185,7 @@ TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnIts
     EXPECT_EQ(send(1, answer), ICE_CONNECTION_LOST);
     run(10000);
     EXPECT_EQ(send(1, answer), ICE_OK);
-    again(); // the endpoint has not checked it yet
+    again(); // the endpoint has not noticed this change yet
     EXPECT_EQ(send(1, answer), ICE_CONNECTION_LOST);
 }
 
@@ -207,12 +208,13 @@ TEST_F(RadioEndpoint, ASecondGroundHasConnectionsOfItsOwn) {
     pair_.run(500'000);
     EXPECT_EQ(other.a.received, (Messages{{3, call}}));
     EXPECT_EQ(pair_.a.received, Messages{});
-    XBeeATEndpoint_onChannel(&endpoint_, 7, 0); // as after the end of the peer's session
+    // the same event as at the end of the peer's session
+    XBeeATEndpoint_onChannel(&endpoint_, 7, 0);
     EXPECT_EQ(events(), (Kinds{{ICE_EVENT_CLOSED, 7}}));
     EXPECT_EQ(send(3, call), ICE_OK);
 }
 
-// Options are written as the ground's plugin writes them (test_ground_ice,
+// The options are written in the same way as by the ground's plugin (test_ground_ice,
 // EndpointsKeepTheirOptionsAsText...), as far as the UAV supports them.
 TEST_F(RadioEndpoint, AProxyToAPeerIsEqualToThatOfItsString) {
     Ice_ObjectAdapter adapter;

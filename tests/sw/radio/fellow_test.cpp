@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // fellow_test: tests vehicles that call each other's objects through IceC's radio endpoint, while
-// one of the vehicles serves two ground stations. Each vehicle and ground station has separate
-// links and a separate communicator; time is simulated.
+// one of them serves two ground stations. Each vehicle and each ground station has links and a
+// communicator of its own; time is simulated.
 
 #include "link_program.h"
 #include "random.h"
@@ -22,19 +22,19 @@ namespace {
 using Key = std::vector<U8>;
 struct Craft;
 
-// The vehicles and ground stations, and their common time, which advances while one of them waits.
+// All vehicles and ground stations, and the simulated time, which advances while one of them waits.
 struct Simulation {
     void step();
     void run(U32 times) {
         while (times--)
             step();
     }
-    U32 ms = 0xFFFFFC00u; // the links' time then wraps
+    U32 ms = 0xFFFFFC00u; // the time of the links wraps soon after the start
     std::vector<Craft*> crafts;
     std::function<void()> atStep = [] {};
 };
 
-// One of three links, and the bytes in transit to it.
+// One of three links, and the packets on their way to it.
 struct End : LinkProgram {
     bool transmit(const U8* frame, U32 size) override;
     U32 random() override;
@@ -42,16 +42,16 @@ struct End : LinkProgram {
     void onChannel(int channel, bool isOpen) override;
 
     Craft* craft = nullptr;
-    int first = 0; // number of the first of its connections
+    int first = 0; // number of the first connection that belongs to this link
     Link link;
     Link_Buffers buffers;
     End* peer = nullptr;
     bool isVehicles = false;
-    std::deque<std::pair<U32, Key>> coming; // time of arrival, packet
+    std::deque<std::pair<U32, Key>> coming; // packets, each with its time of arrival
     unsigned sent = 0;                      // packets
 };
 
-// A vehicle or a ground station: a communicator with three links, the last one as small as the
+// A vehicle or a ground station: a communicator with three links. The last link is as small as a
 // vehicle's link to another vehicle.
 struct Craft {
     Craft(Simulation& w, U16 address) : world(w), random(testSeed() + w.crafts.size()) {
@@ -85,7 +85,7 @@ struct Craft {
         Ice_ObjectAdapter_add(&adapter, &servant.object, "it");
         w.crafts.push_back(this);
     }
-    // Adds a link to the vehicle with this address.
+    // Adds a link to another vehicle, which has this address.
     void meets(Craft& other, U16 address, int place, bool isGround, const Key& key, U32 side) {
         End& end = ends[fellow];
         XBeeATEndpoint_addPeer(&endpoint, fellow, &end.link, address);
@@ -108,7 +108,7 @@ struct Craft {
         (void)Ice_ObjectPrx_begin(&prx, "op", 0);
         return Ice_ObjectPrx_end(&prx, Ice_ObjectPrx_invoke(&prx, &is));
     }
-    // Makes a call without waiting for the reply; the reply is counted.
+    // Makes a call without waiting for the reply. Replies are counted.
     void callAsync(const char* text) {
         Ice_ObjectPrx prx = proxy(text);
         isIdle = false;
@@ -136,7 +136,7 @@ struct Craft {
     }
     int wait(Ice_Int ms) {
         isBusy = true;
-        advance(); // the link offers a kept message again
+        advance(); // the link offers a message again that was not accepted before
         for (; ms > 0 && !isSignalled; --ms)
             world.step();
         isBusy = false;
@@ -185,7 +185,8 @@ void Simulation::step() {
     atStep();
 }
 
-// Vehicles 5 and 7 (5 acts as the ground station), and the two ground stations of 5.
+// The vehicles 5 and 7, of which 5 acts as the ground station of 7, and the two ground stations of
+// vehicle 5.
 struct Team : Simulation {
     explicit Team(const Key& key = {}, const Key& keyOf7 = {}) {
         five.meets(seven, 7, Craft::fellow, true, key, LINK_GROUND | 7);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// radio_test: the radio driver on the real RTL: FSMC pins, bridge, arbiter, DDR3, modem controller,
-// and the XBee model on its UART. The driver runs in a task of the firmware's kernel, and time is
-// simulated.
+// radio_test: tests the radio driver with the real RTL: FSMC pins, bridge, arbiter, DDR3, modem
+// controller, and the XBee model at the controller's UART. The driver runs in a task of the
+// firmware's kernel, and time is simulated.
 
 #include "../../support/link_end.h"
 #include "uav_machine.h"
@@ -18,7 +18,7 @@ extern "C" {
 
 namespace {
 
-constexpr int guardMs = 20; // ms; guard time of both modems, short to shorten the tests
+constexpr int guardMs = 20; // guard time of both modems, ms; short, to make the tests short
 
 XBee::Options quick(std::map<std::string, uint32_t> more, const std::string& key = "") {
     XBee::Options options;
@@ -29,7 +29,7 @@ XBee::Options quick(std::map<std::string, uint32_t> more, const std::string& key
     return options;
 }
 
-// A link end that stores its messages; `send` sends its frames and returns 0.
+// A link end that stores its messages. The function `send` sends its frames and returns 0.
 class MessageLink : public LinkEnd {
 public:
     explicit MessageLink(std::function<int(const U8*, U32)> send, uint32_t seed)
@@ -55,7 +55,7 @@ private:
 
 class Radio : public ::testing::Test {
 protected:
-    // `farKey`: AES key of the far modem; empty: no encryption.
+    // `farKey` is the AES key of the far modem; without a key, nothing is encrypted.
     explicit Radio(const std::string& farKey = "")
         : far_(farLine_, air_,
                quick({{"BD", 7}, {"MY", 0}, {"DL", 1}, {"EE", farKey.empty() ? 0 : 1}}, farKey)) {}
@@ -105,7 +105,7 @@ protected:
         irqOn_ = status == RADIO_OK;
         return status;
     }
-    // Hides these bits of a controller's register from the driver until FSMC_init.
+    // Hides bits of a controller's register from the driver, until FSMC_init is called.
     void hide(U32 word, U32 bits) {
         static const FSMC_Port* real;
         static FSMC_Port lying;
@@ -120,7 +120,7 @@ protected:
         ASSERT_EQ(FSMC_init(&lying, &soc_), FSMC_OK);
     }
     static U32 us() { return OSTimeGet() * (1000000U / OS_TICKS_PER_SEC); }
-    // Runs the near link with the driver until `done` returns true.
+    // Runs the near link over the driver until `done` returns true.
     template <class Done> bool talk(Done done, int limitMs) {
         for (int i = 0; i < limitMs; ++i) {
             Radio_receive(nearPeer_.onPacket, &nearPeer_);
@@ -137,7 +137,7 @@ protected:
         return talk([&] { return nearPeer_.isUp() && farPeer_.isUp(); }, limitMs);
     }
 
-    // Sends five messages with this byte each way at the same time.
+    // Sends five messages in each direction at the same time; all their bytes are `byte`.
     void exchange(uint8_t byte) {
         const std::vector<uint8_t> message(700, byte);
         ASSERT_TRUE(connect());
@@ -149,7 +149,8 @@ protected:
             ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 700, tag), LINK_OK);
         ASSERT_TRUE(
             talk([&] { return farPeer_.received.size() == 5 && nearPeer_.received.size() == 5; },
-                 20000)); // the far end's packets contain parts of two frames
+                 // a long limit, because the packets of the far end contain parts of two frames
+                 20000));
         talk([] { return false; }, 100);
         EXPECT_EQ(nearPeer_.received[4], message);
         EXPECT_EQ(farPeer_.received[4], message);
@@ -192,7 +193,7 @@ TEST_F(Radio, AModemThatIsOffIsReported) {
 TEST_F(Radio, ARefusedCommandIsReportedWithItsStep) {
     soc_.modem().refuseCommand("ID");
     run([&] { EXPECT_EQ(init(), RADIO_REFUSED); });
-    EXPECT_EQ(Radio_failedStep(), 6u); // ATID in the table of docs/modem.md
+    EXPECT_EQ(Radio_failedStep(), 6u); // number of ATID in the table of docs/modem.md
 }
 
 TEST_F(Radio, ASlotThatIsNoModemControllerIsReported) {
@@ -208,8 +209,8 @@ TEST_F(Radio, FramesLeaveInOrderAndUnchangedAndAFullRingSaysSo) {
     U32 copied = 0, full = 0, interrupts = 0;
     run([&] {
         ASSERT_EQ(init(), RADIO_OK);
-        farLine_.received.clear(); // the bytes of the search for the baud rate, as received by the
-                                   // modem
+        // discards bytes that the search for the baud rate has sent over the air
+        farLine_.received.clear();
         copied = Radio_counters()->bytesCopiedOut;
         full = Radio_counters()->ringFull;
         interrupts = Radio_counters()->interrupts;
@@ -229,14 +230,14 @@ TEST_F(Radio, FramesLeaveInOrderAndUnchangedAndAFullRingSaysSo) {
         interrupts = Radio_counters()->interrupts - interrupts;
     });
     EXPECT_EQ(farLine_.received, sent) << "seed " << testSeed();
-    EXPECT_EQ(copied, sent.size()); // one copy, into DDR3
+    EXPECT_EQ(copied, sent.size()); // each byte was copied only once, into DDR3
     EXPECT_GT(full, 0u);
     EXPECT_EQ(interrupts, 0u) << "a packet that was sent causes no interrupt";
 }
 
 TEST_F(Radio, ALinkRunsOverItBothWays) {
     air_.weather.perfect =
-        true; // a modem that keeps up with its line: no packet contains parts of two frames
+        true; // a modem that is as fast as its line, so no packet contains parts of two frames
     run([&] {
         ASSERT_EQ(init(), RADIO_OK);
         const U32 before = Radio_counters()->bytesCopiedIn;
@@ -257,12 +258,12 @@ TEST_F(Radio, ATaskThatSleepsLosesNoMessage) {
             std::vector<uint8_t> message(300, static_cast<uint8_t>(i));
             ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 300, i), LINK_OK);
         }
-        OSTimeDly(OS_TICKS_PER_SEC); // more packets arrive than fit into the ring
+        OSTimeDly(OS_TICKS_PER_SEC); // more packets arrive during this time than the ring can hold
         ASSERT_TRUE(talk([&] { return nearPeer_.received.size() == 30; }, 20000));
         for (size_t i = 0; i < 30; ++i)
             EXPECT_EQ(nearPeer_.received[i], std::vector<uint8_t>(300, static_cast<uint8_t>(i)));
-        // RTS stopped the modem before the ring was full. (The modem itself then drops RF packets,
-        // and a packet may contain the end of one frame and the beginning of the next.)
+        // RTS stopped the modem before the ring was full. (The modem itself then drops packets from
+        // the air, and a packet may contain the end of one frame and the beginning of the next.)
         EXPECT_EQ(Radio_counters()->hardwareOverruns, 0u);
     });
 }
@@ -277,7 +278,7 @@ protected:
         return init(
             0, 0, nullptr, [](int isDelivered) { answers_ += isDelivered ? '+' : '-'; }, baud);
     }
-    // Sends a packet, and waits until this number of packets has answers.
+    // Sends a packet, and waits until there are answers for this number of packets.
     void sendOne(size_t answers) {
         const U8 frame[3] = {'a', 'b', 'c'};
         ASSERT_EQ(Radio_transmit(nullptr, frame, 3), 0);
@@ -306,26 +307,28 @@ TEST_F(ApiRadio, EachPacketIsAnsweredForAndAnAnswerThatIsLostCountsAsALoss) {
     run([&] {
         ASSERT_EQ(initApi(), RADIO_OK);
         const U32 delivered = Radio_counters()->delivered, lost = Radio_counters()->lost;
-        for (size_t i = 1; i <= 300; ++i) // enough packets for their numbers to wrap around twice
+        // enough packets for the packet numbers to wrap around twice
+        for (size_t i = 1; i <= 300; ++i)
             sendOne(i);
         EXPECT_EQ(answers_, std::string(300, '+'));
         const U8 frame[3] = {'a', 'b', 'c'};
         ASSERT_EQ(Radio_transmit(nullptr, frame, 3), 0);
         OSTimeDly(OS_TICKS_PER_SEC / 20);
-        FSMC_write(MAP_SLOT_MODEM, MODEM_RX_RELEASE, 1); // as if the line had damaged it
+        // discards the modem's frame, as if the line had damaged it
+        FSMC_write(MAP_SLOT_MODEM, MODEM_RX_RELEASE, 1);
         sendOne(302);
         far_.power(false, soc_.now());
         sendOne(303);
         EXPECT_EQ(answers_.substr(300), "-+-");
         soc_.modem().power(false, soc_.now());
         sendOne(304);
-        OSTimeDly(3 * OS_TICKS_PER_SEC); // after a time without an answer, packets count as lost
+        OSTimeDly(3 * OS_TICKS_PER_SEC); // packets without an answer count as lost after a time
         Radio_receive([](void*, const U8*, U32) {}, nullptr);
         EXPECT_EQ(answers_.substr(303), "-");
         sendOne(305);
         soc_.modem().power(true, soc_.now());
-        ASSERT_EQ(initApi(), RADIO_OK); // packets that have no result yet get none after a new
-                                        // set-up
+        // after a new set-up, packets that had no result yet never get one
+        ASSERT_EQ(initApi(), RADIO_OK);
         far_.power(true, soc_.now());
         OSTimeDly(OS_TICKS_PER_SEC / 10);
         sendOne(1);
@@ -414,7 +417,7 @@ protected:
 };
 
 TEST_F(EncryptedRadio, WithTheSameKeyMessagesArriveAndNoFrameIsSplit) {
-    air_.weather.perfect = true; // a modem that keeps up with its line
+    air_.weather.perfect = true; // a modem that is as fast as its line
     size_t longest = 0, packets = 0;
     air_.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
         longest = std::max(longest, packet.bytes.size());

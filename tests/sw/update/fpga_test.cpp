@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// fpga_test: tests the update of the bitstream in the FPGA's flash: the power is cut at every erase
-// and every written page, and there is always a bitstream that configures the FPGA.
+// fpga_test: tests the update of the bitstream in the FPGA's flash. The power is cut at every erase
+// and at every written page, and there must always be a bitstream that configures the FPGA.
 
 #include "keys.h"
 #include "spartan6_boot.h"
@@ -21,7 +21,7 @@ constexpr uint32_t product = 0x46504731, chunk = 4096;
 const uint32_t golden = Slots_at(&slots_fpga, 0) + SLOTS_IMAGE_AT,
                multiBoot = Slots_at(&slots_fpga, 1) + SLOTS_IMAGE_AT;
 
-// Returns the bitstream of a version, with its header and without its sync word.
+// Returns the bitstream with this version, with its header and without its sync word.
 const Image& bitstream(uint32_t version, uint32_t slot = 1) {
     static std::map<std::pair<uint32_t, uint32_t>, Image> images;
     auto at = images.find({version, slot});
@@ -37,7 +37,7 @@ const Image& bitstream(uint32_t version, uint32_t slot = 1) {
     return at->second;
 }
 
-// The FPGA's flash, the FPGA, and the processor that both are wired to.
+// The FPGA's flash, the FPGA, and the processor that is connected to both.
 class Fpga : public ::testing::Test, public Updated {
 public:
     Fpga() : Updated(chunk) {
@@ -46,7 +46,8 @@ public:
     }
     ~Fpga() override { flash_ = nullptr; }
 
-    // The state left by the factory: a golden bitstream, and the header that looks for a newer one.
+    // Fills the flash as the factory does: a golden bitstream, and the header that makes the FPGA
+    // look for a newer bitstream.
     void fill(uint64_t seed) {
         flash = SpiFlash([] { return now_; }, seed);
         flash_ = &flash;
@@ -68,7 +69,7 @@ public:
         }
         std::copy(header.begin(), header.end(), at(0));
     }
-    // Switches the power on, or restarts the processor; returns the version of the bitstream that
+    // Switches the power on, or restarts the processor. Returns the version of the bitstream that
     // configures the FPGA.
     uint32_t boot() override {
         if (Slots_settleFpga(&port, 0))
@@ -81,7 +82,8 @@ public:
     }
     uint32_t powerOn() override {
         flash.powerOff();
-        fpga.configure(flash.memory); // before the processor has done anything
+        // the FPGA configures itself before the processor does anything
+        fpga.configure(flash.memory);
         EXPECT_TRUE(fpga.running.has_value()) << (fpga.isStuck ? "stuck" : "nothing configures");
         return boot();
     }
@@ -112,7 +114,7 @@ TEST_F(Fpga, ABitstreamThatIsNotConfirmedIsTriedOnce) {
     expectTriedOnce();
 }
 
-// The bitstream is signed, but invalid: the FPGA hangs, and the next start of the processor reverts
+// This bitstream is signed but invalid. The FPGA hangs, and the next start of the processor reverts
 // to the previous bitstream.
 TEST_F(Fpga, ABitstreamThatHangsTheFpgaIsTakenBack) {
     powerOn();
@@ -139,7 +141,7 @@ TEST_F(Fpga, ABitstreamThatTheFpgaRefusesIsNamedAndDoesNotCountAsRunning) {
     updateTo(3);
 }
 
-// The other rules are the same as for firmware (update_test.cpp).
+// All other rules are the same as for firmware (update_test.cpp).
 TEST_F(Fpga, NothingGoesOverTheGoldenBitstream) {
     updateTo(5);
     const Bytes before = flash.memory;
@@ -150,7 +152,7 @@ TEST_F(Fpga, NothingGoesOverTheGoldenBitstream) {
 TEST_F(Fpga, AVersionThatWasConfirmedIsRememberedWhenItIsErased) {
     updateTo(5);
     EXPECT_EQ(begin(imageOf(6)), RECEIVER_OK);
-    EXPECT_EQ(powerOn(), 1u); // version 5 is erased, 6 has not arrived
+    EXPECT_EQ(powerOn(), 1u); // version 5 has been erased, and version 6 has not arrived yet
     EXPECT_EQ(begin(imageOf(4)), RECEIVER_OLD);
     updateTo(6);
 }
@@ -166,14 +168,15 @@ TEST_F(Fpga, ADamagedBitstreamNeverGetsItsSyncWord) {
 }
 
 TEST_F(Fpga, OnlyWhatIsSignedAndWholeIsLoaded) {
-    EXPECT_TRUE(Slots_isLoadable(&port, product)); // the golden bitstream is loadable
+    EXPECT_TRUE(Slots_isLoadable(&port, product)); // the golden bitstream may be loaded
     updateTo(2);
     EXPECT_TRUE(Slots_isLoadable(&port, product));
     lists[1] = {second.list(2, second, ours), {}, SLOTS_TRUE};
-    EXPECT_FALSE(Slots_isLoadable(&port, product)); // its key was withdrawn
+    // the key that signed version 2 has been withdrawn
+    EXPECT_FALSE(Slots_isLoadable(&port, product));
     EXPECT_TRUE(Slots_settleFpga(&port, 1));
-    EXPECT_TRUE(Slots_isLoadable(&port, product)); // the golden bitstream is loadable, by the keys
-                                                   // of the first list
+    // the golden bitstream may be loaded, because keys of the first list still count for it
+    EXPECT_TRUE(Slots_isLoadable(&port, product));
     flash.memory[golden + 5000] ^= 1;
     EXPECT_FALSE(Slots_isLoadable(&port, product));
     flash.memory[golden + 5000] ^= 1;
@@ -181,7 +184,7 @@ TEST_F(Fpga, OnlyWhatIsSignedAndWholeIsLoaded) {
     EXPECT_FALSE(Slots_isLoadable(&port, product));
 }
 
-// An update that replaces an older bitstream.
+// Cuts the power during an update that replaces an older bitstream.
 TEST_F(Fpga, WhereverThePowerIsCutABitstreamConfiguresIt) {
     updateTo(2);
     const uint64_t before = flash.operations();
@@ -196,7 +199,7 @@ TEST_F(Fpga, WhereverThePowerIsCutABitstreamConfiguresIt) {
             updateTo(2);
             return *this;
         },
-        [](Fpga& cut) { return cut.powerOn() == 1; }); // the golden bitstream runs
+        [](Fpga& cut) { return cut.powerOn() == 1; }); // returns true if the golden bitstream runs
 }
 
 } // namespace

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_update: libFuzzer target of the boot loader's choice of a slot, and of the receiver of
-// images. Headers, states and log in flash are any bytes, calls are in any order. Nothing is read
-// or written outside the flash, nothing but states in the running slot, and the chosen slot
-// contains an image that is complete, signed and for this vehicle.
+// fuzz_update: fuzzes the boot loader's choice of a slot, and the receiver of images, with
+// libFuzzer. Headers, states and log in flash contain any bytes, and calls come in any order.
+// Nothing may be read or written outside the flash. In the running slot, only states may be
+// written. The chosen slot must contain an image that is complete, signed and for this vehicle.
 //
-// The first byte's lowest bit: slot 0 is golden, as the FPGA's. Then a byte names the step (mod 8),
-// the next its argument n:
+// If the lowest bit of the first byte is 1, slot 0 is golden, as for the FPGA. Then each step has
+// two bytes, its kind (mod 8) and its argument n:
 //   0 the first n bytes of the input are written into slots or log, at offset 64 n
 //   1 an image of version n exists    2 an update to version n begins, or (n > 127) new keys
 //   3 a piece of 4 n bytes arrives (n, if n is odd)    4 the update is finished    5 the image is
 //   confirmed 6 the receiver works    7 the power was cut
-// The header of 1 and 2 is good, except for n / 8 % 4 bytes: for each, the next two bytes of the
-// input give place and value. It is signed after that if n / 32 is even.
+// The header of steps 1 and 2 is correct except for n / 8 % 4 bytes: for each of these, the next
+// two bytes of the input are its position and its value. The header is signed after this change if
+// n / 32 is even.
 
 #include <algorithm>
 #include <cstddef>
@@ -31,16 +32,16 @@ using Bytes = std::vector<uint8_t>;
 
 constexpr U32 product = 7, imageBytes = 0x200;
 constexpr U32 syncWord = 0x665599AA;
-constexpr uint8_t key = 1, filling = 0x5A; // index of the key that signs received images, and the
-                                           // byte of which these images consist
+// key: index of the key that signs received images; filling: value of all bytes of these images
+constexpr uint8_t key = 1, filling = 0x5A;
 
 void expect(bool condition) {
     if (!condition)
         std::abort();
 }
 
-// Replaces the digest, and the signature together with the first byte of a key, so that an input
-// can contain valid ones.
+// Replacements for the digest and for the signature, which depend on the first byte of a key; they
+// are so simple that an input can contain valid ones.
 uint64_t sumOf(const uint8_t* bytes, size_t count) {
     uint64_t sum = 0xCBF29CE484222325;
     for (size_t i = 0; i < count; ++i)
@@ -150,7 +151,7 @@ private:
         }
     }
     void boot() {
-        runs_ = SLOTS_NONE; // the loader writes the states of both slots
+        runs_ = SLOTS_NONE; // no slot runs, because the loader may write the states of both slots
         U32 slot = 0;
         if (layout_.hasGolden) {
             Slots_settleFpga(&port_, flash_[0] & 1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// keys: a pair of keys that signs images, and the ground station's part of an update of firmware or
-// of a bitstream.
+// keys: a key pair that signs images, and the part of the ground station in an update of firmware
+// or of a bitstream.
 
 #pragma once
 
@@ -29,7 +29,7 @@ struct Keys {
         crypto_sign_detached(header.signature, nullptr, reinterpret_cast<const uint8_t*>(&header),
                              SLOTS_SIGNED_BYTES, secret.data());
     }
-    // Returns a list of keys with this key and a second key.
+    // Returns a list of signing keys that contains this key and a second key.
     Slots_Header list(uint32_t version, const Keys& second, const Keys& signer) const {
         Slots_Header list{SLOTS_MAGIC, SLOTS_KEYS, version, 0, 0, {board[0], board[1]}, 0, {}, {}};
         std::copy(open.begin(), open.end(), list.digest);
@@ -67,12 +67,12 @@ struct Image {
 
 struct PowerCut {};
 
-// A vehicle with a receiver, version 1 confirmed, and the actions of the ground station.
+// A vehicle with a receiver and a confirmed version 1, and the actions of the ground station.
 class Updated {
 public:
     explicit Updated(uint32_t chunk) : chunk_(chunk) {}
     virtual ~Updated() = default;
-    // Restarts the processor, or switches the power on; returns the running version.
+    // Restarts the processor, or switches the power on. Returns the version that runs.
     virtual uint32_t boot() = 0;
     virtual uint32_t powerOn() { return boot(); }
     virtual uint64_t operations() const = 0;
@@ -97,8 +97,8 @@ public:
         EXPECT_EQ(begin(image), RECEIVER_OK);
         EXPECT_EQ(send(image), RECEIVER_OK);
     }
-    // Does the ground station's part of an update until this version is confirmed, whichever
-    // version is running.
+    // Updates the vehicle as the ground station does, until this version is confirmed; any version
+    // may be running before.
     void updateTo(uint32_t version, const Keys& signer = ours) {
         for (uint32_t runs = powerOn(); runs != version && !::testing::Test::HasFailure();
              runs = boot())
@@ -106,7 +106,8 @@ public:
         ASSERT_EQ(Receiver_confirm(&receiver), RECEIVER_OK);
     }
     void expectTriedAndConfirmed() {
-        for (uint32_t version : {2u, 3u}) { // the second update goes back into the first slot
+        // the second update is written into the first slot again
+        for (uint32_t version : {2u, 3u}) {
             updateTo(version);
             EXPECT_EQ(powerOn(), version);
             EXPECT_EQ(receiver.isOnTrial, 0);
@@ -117,14 +118,14 @@ public:
         receive(imageOf(2));
         EXPECT_EQ(boot(), 2u);
         EXPECT_EQ(receiver.isOnTrial, 1);
-        EXPECT_EQ(begin(imageOf(3)), RECEIVER_ON_TRIAL); // it would erase the previous image, which
-                                                         // may still be needed
+        // refused, because the update would erase the previous image, which may still be needed
+        EXPECT_EQ(begin(imageOf(3)), RECEIVER_ON_TRIAL);
         EXPECT_EQ(boot(), 1u);
         EXPECT_EQ(receiver.reason, RECEIVER_WENT_BACK);
         EXPECT_EQ(powerOn(), 1u);
     }
     Receiver receiver{};
-    uint64_t cutAt = 0; // number of the flash operation at which the power is cut
+    uint64_t cutAt = 0; // number of the flash operation at which the power is cut; 0 means never
 
 protected:
     Receiver_Reason outcome(Receiver_Reason reason) {
@@ -144,16 +145,17 @@ private:
     const uint32_t chunk_;
 };
 
-// Cuts the power at each of `all` operations of an update of the vehicles that `fresh` makes, and
-// then at a later operation, drawn at random. Repeats this from the first operation until there
-// were `tries` attempts. `wentBack`: returns whether the last cut led to the previous version.
+// Updates vehicles that `fresh` makes, `tries` in total. In each update the power is cut at one of
+// the first `all` operations (a different one in each try), and then at later operations that are
+// drawn at random. `wentBack` returns true if the last cut led to the previous version.
 template <class Fresh, class WentBack>
 void cutAtEach(uint32_t version, uint64_t all, uint64_t tries, Fresh fresh, WentBack wentBack) {
     uint64_t cuts = 0, back = 0;
     Random random(testSeed());
     for (uint64_t i = 0; i < tries; ++i) {
-        const uint64_t first = 1 + (i < all ? i : i % 5); // erase operations, after which the
-                                                          // content is arbitrary
+        // after the first `all` tries, cuts one of the first erase operations again, because the
+        // erased content is random
+        const uint64_t first = 1 + (i < all ? i : i % 5);
         auto&& vehicle = fresh(testSeed() * 1000 + i);
         vehicle.cutAt = vehicle.operations() + first;
         for (;;) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// start_test: runs the ARM binaries on the model of the STM32, from flash as a programmer fills it.
-// The boot loader starts the firmware, and the firmware starts the bitstream that the FPGA loads:
-// it observes the addresses that the FPGA reads from its SPI flash.
+// start_test: runs the ARM binaries on the model of the STM32, from a flash as a programmer writes
+// it. The boot loader starts the firmware, and the firmware makes the FPGA load a bitstream. The
+// test sees which addresses the FPGA reads from its SPI flash.
 
 #include "stm32f2.h"
 #include <algorithm>
@@ -25,7 +25,7 @@ namespace {
 using Bytes = std::vector<uint8_t>;
 constexpr uint32_t flashBase = 0x08000000;
 
-// Folder of one test for pack_update, because tests run in parallel.
+// A folder for pack_update that belongs to one test, because tests run in parallel.
 struct VehicleFolder {
     VehicleFolder() { std::filesystem::create_directories(path); }
     ~VehicleFolder() { std::filesystem::remove_all(path); }
@@ -68,7 +68,7 @@ protected:
 
 class Loader : public StartingVehicle {
 protected:
-    // Writes a complete update into the second slot.
+    // Writes a complete update to the second slot.
     void receive(int version, const char* key = "key", const char* more = "") {
         ASSERT_EQ(folder.pack("image " FIRMWARE "uav.elf " + std::to_string(version) + " " + key +
                               " update" + more),
@@ -84,7 +84,7 @@ protected:
         const uint32_t isTrue = SLOTS_TRUE;
         chip.cpu().writeMemory(at + SLOTS_READY, &isTrue, 4);
     }
-    // Switches the power on. Returns the slot of the firmware that starts; -1 if none starts.
+    // Switches the power on. Returns the slot of the firmware that starts, or -1 if none starts.
     int boot() {
         chip.powerOn();
         const uint64_t begun = chip.cpu().cycles();
@@ -120,7 +120,7 @@ TEST_F(Loader, StartsTheFirmwareOfANewVehicle) {
     EXPECT_EQ(boot(), 0);
     EXPECT_EQ(vectorTable(), flashBase + Slots_at(&slots_firmware, 0) + SLOTS_IMAGE_AT);
     EXPECT_EQ(chip.cpu().reg(CortexM3::Sp), chip.cpu().word(vectorTable()));
-    EXPECT_LT(cycles, 60'000'000u); // cycles in half a second
+    EXPECT_LT(cycles, 60'000'000u); // number of cycles in half a second
     RecordProperty("cycles", static_cast<int>(cycles));
 }
 
@@ -132,7 +132,7 @@ TEST_F(Loader, TriesANewOneOnceAndGoesBack) {
     EXPECT_EQ(boot(), 0);
 }
 
-// If the second key has signed the firmware, one more signature has to be checked.
+// If the second key has signed the firmware, one signature more must be checked.
 TEST_F(Loader, StartsOneOfEitherKeyUntilItIsWithdrawn) {
     ASSERT_EQ(folder.pack("public spare spare.pub"), 0) << folder.said();
     fill(" --second spare.pub");
@@ -147,8 +147,8 @@ TEST_F(Loader, StartsOneOfEitherKeyUntilItIsWithdrawn) {
     ASSERT_EQ(folder.pack("keys 2 spare spare.pub list"), 0) << folder.said();
     const uint32_t at = flashBase + SLOTS_KEYS_AT + sizeof(Slots_Keys);
     chip.cpu().loadFlash(at, folder.read("list"));
-    receive(9, "key");    // replaces the confirmed firmware
-    EXPECT_EQ(boot(), 1); // the list is not valid yet
+    receive(9, "key");    // overwrites the confirmed firmware
+    EXPECT_EQ(boot(), 1); // the list does not count yet, because it is not complete
     receive(9, "key");
     chip.cpu().writeMemory(at + offsetof(Slots_Keys, isComplete), &isTrue, 4);
     EXPECT_EQ(boot(), -1);
@@ -234,7 +234,7 @@ protected:
             return now() + 1'000'000;
         });
     }
-    // Writes to the FPGA's flash what a complete update would write.
+    // Writes to the FPGA's flash all data that a complete update would write.
     void receive(const Bytes& bits, const std::string& more = "") {
         folder.save("new.bin", bits);
         ASSERT_EQ(folder.pack("bitstream new.bin 2 key update" + more), 0) << folder.said();
@@ -256,8 +256,8 @@ protected:
         std::memcpy(&*at(slot + SLOTS_TRIED), &isTrue, 4);
         std::memcpy(&*at(slot + SLOTS_CONFIRMED), &isTrue, 4);
     }
-    // Switches the power on. Returns the slot of the running bitstream, as seen by the firmware and
-    // the FPGA.
+    // Switches the power on. Returns the slot of the bitstream that runs, which must be the same
+    // for the firmware and for the FPGA.
     uint32_t start() {
         chip.powerOn();
         limit = chip.cpu().cycles() + 3'000'000'000;
@@ -282,7 +282,7 @@ TEST_F(FpgaStart, ANewBitstreamIsTriedAndOneNotConfirmedGoes) {
     EXPECT_FALSE(is(SLOTS_REFUSED));
 }
 
-// Someone else has written to the flash. The FPGA would accept the data, whose CRC is valid.
+// An attacker has written to the flash. The FPGA would accept the data, because the CRC is valid.
 TEST_F(FpgaStart, ABitstreamThatIsNotSignedNeverRuns) {
     receive(standInBitstream(2, frameWords));
     confirm();
@@ -338,7 +338,8 @@ TEST_F(FpgaStart, ABitstreamThatHangsTheFpgaGoesAtOnce) {
     EXPECT_TRUE(is(SLOTS_REFUSED));
 }
 
-// It would take four tries, 16 s, to detect that the FPGA hangs; but this FPGA reads no more.
+// Without DONE, the firmware would need four tries, 16 s, to find out whether the FPGA hangs; but
+// it sees that this FPGA no longer reads its flash.
 TEST_F(FpgaStart, ABoardWithoutDoneStartsSoonAndItsFpgaRuns) {
     chip.fpga.isDoneWired = false;
     chip.powerOn();
@@ -348,17 +349,18 @@ TEST_F(FpgaStart, ABoardWithoutDoneStartsSoonAndItsFpgaRuns) {
     EXPECT_LT(now(), 1'500'000'000u);
 }
 
-// ---- pack_update refuses invalid input before signing ----
+// ---- pack_update rejects invalid input before it signs anything ----
 
 class Packing : public ::testing::Test {
 protected:
-    // Expects that these arguments are refused with this reason, and that nothing is written.
+    // Checks that pack_update rejects these arguments with this reason and writes nothing.
     void refuses(const std::string& words, const std::string& why) {
         EXPECT_NE(folder.pack(words + " out"), 0) << words;
         EXPECT_NE(folder.said().find(why), std::string::npos) << words << ": " << folder.said();
         EXPECT_TRUE(folder.read("out").empty()) << words;
     }
-    // Returns a bitstream as a .bit file by BitGen: a header with the length, and the bitstream.
+    // Returns a bitstream in the format of BitGen's .bit files: a header with the length, then the
+    // bitstream.
     static Bytes bitFile(const Bytes& bits) {
         Bytes file = {0, 9, 0x0F, 0xF0, 0x0F, 0xF0, 0x0F, 0xF0, 0x0F, 0xF0, 0, 0, 1};
         for (const char field : {'a', 'b', 'c', 'd'})
@@ -388,7 +390,7 @@ TEST_F(Packing, ABitstreamThatIsCutOrHasMoreThanItsEndIsNotSigned) {
         folder.save("more", file(more));
         refuses("bitstream more 5 key", "1001 bytes after the end of the bitstream");
     }
-    Bytes cut = bitFile(whole); // the header still has the length of the whole bitstream
+    Bytes cut = bitFile(whole); // the header still contains the length of the whole bitstream
     cut.resize(cut.size() - 4);
     folder.save("short", cut);
     refuses("bitstream short 5 key", "as its header states");

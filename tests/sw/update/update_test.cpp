@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// update_test: tests slots and receiver with the model of the STM32F2's flash: the power is cut at
-// every erase and every written word, and there is always an image that boots.
+// update_test: tests slots and receiver with the model of the STM32F2's flash. The power is cut at
+// every erase and at every written word, and there must always be an image that can boot.
 
 #include "keys.h"
 #include "stm32_flash.h"
@@ -25,11 +25,11 @@ Image makeImage(uint32_t version, uint32_t slot, uint32_t size = imageBytes,
     return {slots_firmware, product, version, slot, bytes, signer};
 }
 
-// The flash and its power supply, and the firmware that boots from the flash.
+// The flash with its power supply, and the firmware that boots from it.
 class FlashedVehicle : public Updated {
 public:
-    // State left by a programmer, at its first start: slot 0 has a confirmed image, slot 1 other
-    // data.
+    // Fills the flash as a programmer does before the first start: slot 0 has a confirmed image,
+    // slot 1 has other data.
     explicit FlashedVehicle(uint32_t version = 1, uint64_t seed = 1)
         : Updated(chunk), flash_(
                               memory.data(), [this] { return now_; }, seed),
@@ -60,7 +60,7 @@ public:
         const uint32_t value = SLOTS_TRUE;
         std::memcpy(&memory[Slots_at(&slots_firmware, slot) + state], &value, 4);
     }
-    // Switches the power on; returns the version that runs.
+    // Switches the power on. Returns the version that runs.
     uint32_t boot() override {
         flash_.reset();
         const uint32_t slot = Slots_choose(&port, product, 1);
@@ -78,7 +78,7 @@ public:
     Image imageOf(uint32_t version, const Keys& signer = ours) override {
         return makeImage(version, receiver.slot, imageBytes, signer);
     }
-    // Sends a list of keys; returns the reason of a refusal.
+    // Sends a list of keys. Returns the reason if it is refused.
     Receiver_Reason take(const Slots_Header& list) {
         return outcome(Receiver_begin(&receiver, &list));
     }
@@ -166,8 +166,8 @@ TEST(Update, WhatIsNotForThisVehicleLeavesItUntouched) {
     ++unsignedOne.header.version;
     others.sign(otherKey.header);
     EXPECT_EQ(vehicle.begin(foreign), RECEIVER_FOREIGN);
-    EXPECT_EQ(vehicle.begin(makeImage(6, 0)), RECEIVER_FOREIGN); // the image is linked for the
-                                                                 // other slot
+    // this image is linked for the other slot
+    EXPECT_EQ(vehicle.begin(makeImage(6, 0)), RECEIVER_FOREIGN);
     EXPECT_EQ(vehicle.begin(makeImage(5, 1)), RECEIVER_OLD);
     EXPECT_EQ(vehicle.begin(makeImage(4, 1)), RECEIVER_OLD);
     EXPECT_EQ(vehicle.begin(unsignedOne), RECEIVER_UNSIGNED);
@@ -195,7 +195,8 @@ TEST(Update, ItsCounterpartMustRunAndBeConfirmed) {
     EXPECT_EQ(vehicle.begin(image), RECEIVER_OK);
 }
 
-// The newest image is damaged, and the power is cut at each operation that replaces it.
+// The newest image is damaged, and the power is cut at each operation of the update that replaces
+// it.
 TEST(Update, NoLossOfPowerLowersTheConfirmedVersion) {
     for (uint64_t cut = 1; cut < 12; ++cut) {
         FlashedVehicle vehicle(5);
@@ -230,14 +231,15 @@ TEST(Update, WithoutAKeyNothingIsTaken) {
     EXPECT_EQ(vehicle.begin(makeImage(2, 1)), RECEIVER_UNSIGNED);
 }
 
-// The first key is lost. The second one signs an image, and a list that replaces the lost key by a
-// third.
+// The first key is lost. The second key signs an image, and a list that contains a third key
+// instead of the lost key.
 TEST(Update, TheSecondKeySignsImagesAndTheNextList) {
     FlashedVehicle vehicle;
     vehicle.updateTo(2, second);
     EXPECT_EQ(vehicle.take(second.list(2, third, second)), RECEIVER_OK);
     EXPECT_EQ(vehicle.boot(), 2u);
-    EXPECT_EQ(vehicle.begin(makeImage(3, 0)), RECEIVER_UNSIGNED); // the first key was withdrawn
+    // the key that signed this image, the first one, was withdrawn
+    EXPECT_EQ(vehicle.begin(makeImage(3, 0)), RECEIVER_UNSIGNED);
     vehicle.updateTo(3, third);
     EXPECT_EQ(vehicle.take(third.list(3, others, third)), RECEIVER_OK);
     EXPECT_EQ(vehicle.boot(), 3u);
@@ -258,7 +260,7 @@ TEST(Update, AListIsSignedByTheOneBeforeAndCountsUpByOne) {
     EXPECT_EQ(vehicle.take(ours.list(4, third, ours)), RECEIVER_NEEDS_OTHER);
     EXPECT_EQ(vehicle.take(foreign), RECEIVER_FOREIGN);
     EXPECT_EQ(vehicle.take(changed), RECEIVER_UNSIGNED);
-    // signed with keys of the previous list
+    // this list is signed with keys of the list before
     EXPECT_EQ(vehicle.take(ours.list(3, second, second)), RECEIVER_UNSIGNED);
     EXPECT_EQ(vehicle.take(others.list(3, others, others)), RECEIVER_UNSIGNED);
     EXPECT_EQ(vehicle.memory, before);
@@ -268,13 +270,16 @@ TEST(Update, AListIsSignedByTheOneBeforeAndCountsUpByOne) {
 TEST(Update, NoListStopsWhatRuns) {
     FlashedVehicle vehicle;
     const Slots_Header list = second.list(2, third, second);
-    EXPECT_EQ(vehicle.take(list), RECEIVER_NEEDS_OTHER); // the firmware is signed with our key
+    // needs another list, because the current firmware is signed with a key that this list does not
+    // contain
+    EXPECT_EQ(vehicle.take(list), RECEIVER_NEEDS_OTHER);
     vehicle.receive(makeImage(2, 1, imageBytes, second));
     EXPECT_EQ(vehicle.take(list), RECEIVER_BUSY);
     EXPECT_EQ(vehicle.boot(), 2u);
     EXPECT_EQ(vehicle.take(list), RECEIVER_ON_TRIAL);
     EXPECT_EQ(Receiver_confirm(&vehicle.receiver), RECEIVER_OK);
-    FlashedVehicle other; // its bitstream is signed with our key
+    // this vehicle's bitstream is signed with a key that the list does not contain
+    FlashedVehicle other;
     vehicle.receiver.counterpart = &other.receiver;
     EXPECT_EQ(vehicle.take(list), RECEIVER_NEEDS_OTHER);
     other.receiver.isOnTrial = 1;
@@ -284,7 +289,8 @@ TEST(Update, NoListStopsWhatRuns) {
     EXPECT_EQ(vehicle.boot(), 2u);
 }
 
-// Cuts the power at each word while a list is written, and at a random word of the next try.
+// Cuts the power at each word while a list is being written, and at a random word of the next
+// attempt.
 TEST(Update, WhereverThePowerIsCutAListCountsOrTheOneBefore) {
     constexpr unsigned words = sizeof(Slots_Header) / 4 + 1;
     Random random(testSeed());
@@ -322,7 +328,7 @@ TEST(Update, ADamagedOrCutImageIsNotStarted) {
     image.bytes[700] ^= 4;
     EXPECT_EQ(vehicle.send(image), RECEIVER_DAMAGED);
     EXPECT_EQ(vehicle.boot(), 1u);
-    vehicle.updateTo(2); // and the update can be sent again
+    vehicle.updateTo(2); // after that, the update can be sent again
     EXPECT_EQ(vehicle.boot(), 2u);
 }
 
@@ -366,8 +372,9 @@ TEST(Update, AnOlderImageThatWasNeverTriedIsNotStarted) {
     EXPECT_EQ(vehicle.boot(), 6u);
 }
 
-// The header of an image in the format that vehicles in the field read. A change of these bytes
-// changes the format (docs/compatibility.md): it needs another SLOTS_MAGIC, and a second recording.
+// The header of an image in the format that vehicles in use can read. If these bytes change, the
+// format has changed (docs/compatibility.md): a new SLOTS_MAGIC and a second recording are then
+// needed.
 constexpr char recordedHeader[] =
     "050ce51c31564155020000004000000000020800070000000300000000000000ee4320ebaf3fdb4f"
     "2c832b137200c08e235e0fa7bbd0eb1740c7063ba8a0d151da77e003398e1714a955d475b05e3e95"
@@ -400,7 +407,7 @@ TEST(Update, WhereverThePowerIsCutThereIsAnImageThatBoots) {
     whole.updateTo(2);
     const uint64_t all = whole.operations();
     ASSERT_GT(all, imageBytes / 4);
-    // Some of these cuts happen during the trial of the new image.
+    // Some of these cuts happen while the new image is on trial.
     cutAtEach(
         2, all, all, [](uint64_t seed) { return FlashedVehicle(1, seed); },
         [](FlashedVehicle& vehicle) { return vehicle.receiver.running == 1; });

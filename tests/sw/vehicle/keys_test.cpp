@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// keys_test: tests a change of keys in the vehicle's key slots: the power is cut at every written
-// word, and the ground station stops at every step.
+// keys_test: tests the change of a key in the vehicle's key slots. The power is cut at every word
+// that is written, and the ground station stops after every step.
 
 #include "link_pair.h"
 #include <array>
@@ -22,7 +22,7 @@ constexpr Key oldKey = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16},
               foreignKey = {9};
 constexpr U32 address = 0x1234;
 
-// A vehicle (b) with its key slots, and a ground station (a) with a key file.
+// A vehicle (b) with key slots, and a ground station (a) with a key file.
 class KeyedVehicle : public LinkPair {
 public:
     explicit KeyedVehicle(uint64_t seed) : LinkPair(seed) {
@@ -37,14 +37,15 @@ public:
         keys = UAV_giveKeys(0, b.link());
         b.start();
     }
-    // Starts the ground's program with this key file; returns whether a session was established.
+    // Starts the ground's program with this key file. Returns true if a session was established in
+    // time.
     bool meets(const std::vector<Key>& file, uint64_t patienceUs = 20'000'000) {
         a.boot();
         for (size_t slot = 0; slot < file.size(); ++slot)
             Link_setKey(a.link(), static_cast<int>(slot), file[slot].data(), LINK_GROUND | address);
         a.start();
         const U32 sessions = Link_statistics(b.link())->sessions;
-        auto isOver = [&] { // the vehicle is in the new session as well
+        auto isOver = [&] { // the vehicle must also be in the new session
             UAV_confirmKey(0, b.link());
             return isDead || (bothUp() && Link_statistics(b.link())->sessions != sessions);
         };
@@ -52,8 +53,8 @@ public:
         UAV_confirmKey(0, b.link());
         return isMet && !isDead;
     }
-    // Changes the key as sw/ground/clients/change_key.py does, or only its first steps. Returns the
-    // resulting content of the ground station's key file.
+    // Changes the key in the same way as sw/ground/clients/change_key.py, or does only the first
+    // `steps` of the change. Returns the new content of the ground station's key file.
     std::vector<Key> change(int steps = 3) {
         const std::vector<Key> before = {oldKey}, both = {newKey, oldKey}, after = {newKey};
         if (steps < 1)
@@ -96,7 +97,7 @@ TEST(Keys, AVehicleHasAKeyOrIsOpenOrNeither) {
     UAV_provide(address, nullptr);
     EXPECT_EQ(UAV_countKeys(0), 0);
     EXPECT_TRUE(UAV_isOpen());
-    vehicle.words = {}; // the battery was empty
+    vehicle.words = {}; // all words are lost because the battery was empty
     EXPECT_EQ(UAV_countKeys(0), 0);
     EXPECT_FALSE(UAV_isOpen());
 }
@@ -121,7 +122,7 @@ TEST(Keys, ASlotThatWasSpoiltIsEmpty) {
     EXPECT_EQ(UAV_countKeys(0), 1);
 }
 
-// A member of the group could send any sequence number.
+// A member of the group could send any sequence number, even one that is too high.
 TEST(Keys, AHighNumberDoesNotSilenceCallsToAll) {
     KeyedVehicle vehicle(1);
     const auto opens = [](const Key& key, U32 number) {
@@ -275,11 +276,11 @@ TEST(Keys, PowerThatFailsAtAnyWordLeavesAKeyThatWorks) {
         ASSERT_GE(vehicle.keys, 1) << "after " << cut << " words";
         ASSERT_TRUE(vehicle.meets(file)) << "after " << cut << " words";
         vehicle.bootVehicle();
-        if (vehicle.hasKey(newKey)) { // the old key is removed, as in a complete change
+        if (vehicle.hasKey(newKey)) { // removes the old key, as a complete change does
             ASSERT_TRUE(vehicle.meets({newKey})) << "after " << cut << " words";
             EXPECT_EQ(UAV_countKeys(0), 1) << "after " << cut << " words";
         }
-        // The change can be repeated.
+        // The change must be possible again.
         ASSERT_TRUE(vehicle.meets({newKey, oldKey})) << "after " << cut << " words";
         ASSERT_TRUE(UAV_setNextKey(0, vehicle.b.link(), newKey.data()));
         ASSERT_TRUE(vehicle.meets({newKey})) << "after " << cut << " words";

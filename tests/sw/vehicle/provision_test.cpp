@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// provision_test: the ground's program sets a key in the firmware's ARM binary, over the
-// processor's serial port, here a pseudo-terminal.
+// provision_test: tests that the ground's program can set a key in the firmware's ARM binary over
+// the processor's serial port, which is a pseudo-terminal here.
 
 #include "stm32f2.h"
 #include <algorithm>
@@ -27,14 +27,14 @@ protected:
             return uint64_t(0);
         });
     }
-    // Runs until the firmware has sent a line, or for this number of cycles; returns the line.
+    // Runs until the firmware has sent a line, or for this number of cycles. Returns the line.
     std::string run(uint64_t cycles = 10'000'000) {
         said.clear();
         limit = chip.cpu().cycles() + cycles;
         chip.run();
         return said;
     }
-    // Starts the firmware with a break on the line, which then ends.
+    // Starts the firmware while there is a break on the line, and then ends the break.
     std::string start() {
         chip.isSerialBreak = true;
         chip.powerOn();
@@ -46,13 +46,13 @@ protected:
         chip.serialIn.insert(chip.serialIn.end(), line.begin(), line.end());
         return run();
     }
-    // Does the same with firmware that starts while a break is on the line.
+    // Starts the firmware during a break, and sends it a line.
     std::string startAndAnswer(const std::string& line) {
         start();
         return answerTo(line + "\n");
     }
-    // Checks the words in which the firmware stores a key (uav_keys.h), empty for an open vehicle,
-    // and its address.
+    // Checks the words in which the firmware stores its key (uav_keys.h) and its address. The key
+    // is empty for a vehicle that accepts links without a key.
     bool has(const std::vector<uint8_t>& key, uint32_t address = 0x2A) {
         std::array<uint32_t, 4> words = {};
         for (size_t i = 0; i < key.size(); ++i)
@@ -159,7 +159,7 @@ TEST_F(Provision, NobodyIsListenedToWithoutABreak) {
     EXPECT_FALSE(has(key));
 }
 
-// The model waits for the program: nothing depends on its speed.
+// The model waits for the program, so the result does not depend on the program's speed.
 TEST_F(Provision, TheGroundsProgramGivesIt) {
     const std::string file = FOLDER + std::to_string(getpid()) + ".key";
     std::ofstream(file) << "# demo\n0x0001 " << std::string(32, 'a') << "\n0x002A " << digits
@@ -180,18 +180,19 @@ TEST_F(Provision, TheGroundsProgramGivesIt) {
     const int port = posix_openpt(O_RDWR | O_NOCTTY);
     ASSERT_TRUE(port >= 0 && grantpt(port) == 0 && unlockpt(port) == 0);
     const std::string name = ptsname(port);
-    const int held = open(name.c_str(), O_RDWR | O_NOCTTY); // keep it open; otherwise a write
-                                                            // before this would be lost
+    // stays open, because otherwise a write before the program opens the port would be lost
+    const int held = open(name.c_str(), O_RDWR | O_NOCTTY);
     const pid_t child = fork();
     if (child == 0) {
         execl("/usr/bin/python3", "python3", PROVIDE_KEY, "--port", name.c_str(), "--key",
               file.c_str(), "--address", "0x002a", nullptr);
         _exit(127);
     }
-    usleep(1'000'000); // no prompt: the program holds a break on the line
+    // the firmware sends no prompt, because the program holds a break on the line
+    usleep(1'000'000);
     std::string line;
-    // The vehicle asks more often than every 0.5 s, which is the time for which the program listens
-    // between two breaks.
+    // The vehicle sends its prompt more often than every 0.5 s, which is the time for which the
+    // program listens between two breaks.
     for (int tries = 0; tries < 300 && line.find('\n') == std::string::npos; ++tries) {
         const std::string asked = start();
         ASSERT_EQ(write(port, asked.data(), asked.size()), ssize_t(asked.size()));

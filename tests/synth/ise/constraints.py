@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""constraints: finds paths and pads of the chip without a constraint.
+"""constraints: finds paths and pads of the chip that have no constraint.
 
-Usage: constraints.py SOURCE GENERATED WORK, three folders. chip.v is flattened, with MIG's
-core as a cell. Every path from a pad or clock to a clock, a pad or an asynchronous reset needs a
-PERIOD, an OFFSET, a FROM:TO, a MAXDELAY or a TIG. Every pad, except the pads of MIG, needs a
-standard and a place. Then each statement is removed in turn; it is reported as superfluous if
-nothing is missing without it. Exit status 1 if anything is reported, or if merge_ucf.py renames the
-constraints of MIG differently.
+Usage: constraints.py SOURCE GENERATED WORK, three folders. chip.v is flattened, with MIG's core as
+a cell. Every path from a pad or clock to a clock, a pad or an asynchronous reset needs a PERIOD, an
+OFFSET, a FROM:TO, a MAXDELAY or a TIG. Every pad, except the pads of MIG, needs a standard and a
+place. Then each statement is removed in turn, and is reported as superfluous if the rest still
+covers all paths and pads. The exit status is 1 if anything is reported, or if merge_ucf.py renames
+the constraints of MIG in another way than expected.
 """
 
 import json
@@ -33,7 +33,7 @@ def pad_name(port, index, width):
 
 
 def netlist():
-    """Returns the flattened chip from Yosys' JSON."""
+    """Returns the flattened chip from the JSON that Yosys writes."""
     WORK.mkdir(parents=True, exist_ok=True)
     folders = [GENERATED, SOURCE / "bus", SOURCE / "hdl"]
     folders += [f for room in ("hdl", "ip") for f in (SOURCE / room).iterdir() if f.is_dir()]
@@ -49,23 +49,25 @@ def netlist():
 
 
 def renamed():
-    """Returns the lines that merge_ucf.py reports as renamed in a board's constraints."""
+    """Returns the lines in which merge_ucf.py reports renamed constraints of a board."""
     return subprocess.run(
         [sys.executable, "-m", "icesoc.synth.merge_ucf", HERE / "mig.ucf", *FILES], check=True,
         text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE).stderr
 
 
 class Paths:
-    """The chip's paths, pairs (start, end) in `pairs`, and its pads without MIG's in `pads`.
+    """The paths of the chip, as pairs (start, end) in `pairs`, and its pads without those of MIG in
+    `pads`.
 
     A start or an end is ("pad", name) or ("clock", names of the net). A start may also be ("ram",
-    names of its clock), and an end ("reset", the clock of the reset register)."""
+    names of its clock), and an end may be ("reset", the clock of the register that is reset)."""
 
     def __init__(self, module):
         self.names, self.pads = {}, []
-        # The start that drives a net, or the nets (or starts) that its logic reads
+        # for each net: the start that drives it, or the nets (or starts) that its logic reads
         self.source, self.comb = {}, {}
-        self.sinks, self.origins = [], {}  # (end, net); by net: its starts, as far as known
+        # sinks: pairs (end, net); origins: for each net, its starts as far as they are known
+        self.sinks, self.origins = [], {}
         self.add_ports(module["ports"])
         for name, net in module["netnames"].items():
             if len(net["bits"]) == 1:
@@ -112,7 +114,7 @@ class Paths:
         elif kind == "$tribuf" or "CLK" not in nets:
             needs = [bit for p in ins for bit in nets[p]]
             for bit in [bit for p in nets if p not in ins for bit in nets[p]]:
-                if self.source.get(bit, "?")[0] == "pad":  # a bidirectional pad
+                if self.source.get(bit, "?")[0] == "pad":  # the pad is bidirectional
                     self.sinks += [(self.source[bit], need) for need in needs]
                 else:
                     self.comb[bit] = needs

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// mig: the ports of MIG's core (UG388, one 64-bit port in bank 3), so that lint sees the complete
-// wrapper.
+// mig: declares the ports of MIG's core (UG388, one 64-bit port in bank 3), so that the complete
+// wrapper can be linted.
 /* verilator lint_off UNDRIVEN */
 /* verilator lint_off UNUSEDSIGNAL */
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * cases_faults: accesses and instructions that fail, escalation, lock-up, the MPU.
+ * cases_faults: cases about accesses and instructions that fail, escalation, lock-up and the MPU.
  */
 #include "cpu_cases.h"
 
@@ -9,7 +9,8 @@
 #define ACTLR_DISDEFWBUF 2UL
 #define CFSR_IMPRECISERR (1UL << 10)
 
-/* Returns after the failing instruction; the fault of a store arrives later by itself. */
+/* Makes the program continue after the instruction that failed. (The fault of a buffered store
+ * arrives later anyway.) */
 static void skip(void) {
     U16 first = *(U16*)Case_frame[6];
     value[0] = SCB_CFSR;
@@ -28,8 +29,8 @@ void Case_busFault(void) {
     Case_say('.');
 }
 
-/* A store that faults: the fault arrives after other instructions have been executed; DSB waits for
- * it. */
+/* Makes a store that fails. Its fault arrives after some other instructions have been executed; DSB
+ * waits for it. */
 static void storeAndGoOn(void) {
     SCB_SHCSR = SCB_SHCSR_FAULTS;
     SCB_BFAR = 0;
@@ -61,7 +62,8 @@ void Case_unbuffered(void) {
     Case_say('.');
 }
 
-/* While PRIMASK is set the fault of a store waits; the fault of a load would be a hard fault. */
+/* While PRIMASK is set, the fault of a store must wait. The fault of a load would become a hard
+ * fault. */
 void Case_storeMasked(void) {
     SCB_SHCSR = SCB_SHCSR_FAULTS;
     Case_action[5] = skip;
@@ -73,8 +75,8 @@ void Case_storeMasked(void) {
     Case_say('2');
 }
 
-/* Handlers of interrupts 4 and 5. A store clears the interrupt line; the first handler has no
- * barrier after the store, the second one has. */
+/* Handlers of interrupts 4 and 5, which clear the interrupt line by a store. In the first handler
+ * no barrier follows the store, in the second one a barrier follows. */
 void __attribute__((naked)) Case_ack(void) {
     __asm__ volatile("mov r0, #0x60000000\n\t"
                      "str r0, [r0, #16]\n\t"
@@ -91,7 +93,8 @@ void __attribute__((naked)) Case_ackWait(void) {
 void Case_lateAck(void) {
     Case_priority(4, 0);
     Case_priority(5, 0);
-    REG(0x60000000UL) = 4; /* the test raises the interrupt line whose number is written here */
+    /* the test raises the interrupt line with the number that is written here */
+    REG(0x60000000UL) = 4;
     __asm__ volatile("dsb\n\tisb");
     REG(0x60000000UL) = 5;
     __asm__ volatile("dsb\n\tisb");
@@ -102,8 +105,9 @@ void Case_noMemory(void) {
     Case_action[5] = skip;
     REG(0x10000000UL) = 1;
     Case_say('.');
-    *(volatile U32*)((U32)selected & ~3UL) = 1; /* writes to the code of this case; flash is not
-                                                 * written in this way, so the store fails */
+    /* writes to the code of this case; the store fails, because flash cannot be written by a
+     * store */
+    *(volatile U32*)((U32)selected & ~3UL) = 1;
     Case_say('.');
 }
 
@@ -160,7 +164,8 @@ void Case_guard(void) {
     Case_say('.');
 }
 
-/* Handlers of hard faults and of NMI run without the MPU, so an NMI may put its frame there. */
+/* Handlers of hard faults and of NMI run without the MPU, so the frame of an NMI may be put
+ * here. */
 static U32 readOnly[64] __attribute__((aligned(256)));
 
 static void interruptOnReadOnly(void) {

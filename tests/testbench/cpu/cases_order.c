@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * cases_order: tests the order and the time of exceptions: priorities, masks, PendSV, SVC, SysTick,
- * WFI; stacks, alignment, cycle counts, the reset request, and work that is interrupted anywhere.
+ * cases_order: cases about the order and the time of exceptions: priorities, masks, PendSV, SVC,
+ * SysTick, WFI. Also cases about stacks, alignment, cycle counts, the reset request, and a
+ * computation that is interrupted anywhere.
  */
 #include "cpu_cases.h"
 
@@ -40,7 +41,9 @@ void Case_lowestNumberFirst(void) {
     Case_pend(0);
 }
 
-void Case_subPriority(void) { /* PRIGROUP 6: bit 7 preempts, bits 6..4 only order */
+/* PRIGROUP 6: bit 7 is the group priority, which can preempt; bits 6..4 are the subpriority, which
+ * only sets the order */
+void Case_subPriority(void) {
     SCB_AIRCR = 0x05FA0000UL | 6UL << 8;
     Case_priority(0, 0x70);
     Case_priority(1, 0x50);
@@ -55,8 +58,8 @@ static void primask(void) {
     __asm__ volatile("cpsid i");
     Case_pend(0);
     Case_say('1');
-    /* The handler sees the value that r0 has when interrupts are enabled; it runs before the next
-     * instruction. */
+    /* The handler must run right after the instruction that enables interrupts, so it sees the
+     * value that r0 has there. */
     __asm__ volatile("mov r0, #5\n\tcpsie i\n\tmov r0, #6\n\tmov r0, #7" ::: "r0");
     Case_say('2');
 }
@@ -130,7 +133,7 @@ void Case_systick(void) {
     value[1] = tickAt[3] - tickAt[2];
 }
 
-void Case_sleepMasked(void) { /* WFI wakes, although PRIMASK blocks the interrupt */
+void Case_sleepMasked(void) { /* WFI ends although PRIMASK blocks the interrupt */
     SYST_RVR = 99;
     SYST_CVR = 0;
     __asm__ volatile("cpsid i");
@@ -167,8 +170,9 @@ void Case_process(void) {
     value[3] = value[7]; /* EXC_RETURN */
 }
 
-void Case_alignment(void) { /* If the stack pointer is only a multiple of 4, it is aligned on entry
-                             * and restored on return. */
+/* If the stack pointer is not a multiple of 8, it is aligned at exception entry and restored at the
+ * return. */
+void Case_alignment(void) {
     U32 before, after;
     Case_priority(0, 0x80);
     Case_action[16] = noteStacks;
@@ -208,8 +212,8 @@ void Case_resetRequest(void) {
     Case_say('r');
 }
 
-/* A computation with loops, IT blocks, multiple loads, calls and products: interrupted anywhere, it
- * gives the same result. */
+/* A computation with loops, IT blocks, multiple loads, calls and products. It must give the same
+ * result wherever it is interrupted. */
 static U32 mix(U32 a, U32 b) {
     return (a ^ b) * 2654435761UL + (a >> 7 | b << 25);
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * cases_rules: cases about what the architecture forbids or restricts: exclusive accesses,
- * alignment, memory that must not be executed, bits that do not exist, and parts that the model
+ * cases_rules: cases about things that the architecture forbids or restricts: exclusive accesses,
+ * alignment, memory that must not be executed, bits that do not exist, and features that the model
  * does not have.
  */
 #include "cpu_cases.h"
@@ -69,21 +69,21 @@ void Case_executeNever(void) {
     Case_action[4] = toCaller;
     word[0] = word[8] = word[16] = word[64] = BX_LR_TWICE;
     MPU_RBAR = (U32)word | 0x10UL;
-    MPU_RASR = 1UL << 28 | 3UL << 24 | 4UL << 1 | 1UL; /* 32 bytes, execute never */
+    MPU_RASR = 1UL << 28 | 3UL << 24 | 4UL << 1 | 1UL; /* region of 32 bytes, execute never */
     MPU_CTRL = MPU_CTRL_ON;
     call((U32)word);
     call((U32)&word[8]);
     Case_say('1');
     MPU_RBAR = (U32)word | 0x11UL;
-    MPU_RASR = 3UL << 24 | 8UL << 1 | 1UL; /* the region with the higher number decides */
+    MPU_RASR = 3UL << 24 | 8UL << 1 | 1UL; /* a region with a higher number, which has priority */
     call((U32)word);
     Case_say('2');
-    MPU_RASR = 1UL << 28 | 2UL << 8 | 3UL << 24 | 8UL << 1 | 1UL; /* 512 bytes, except for bytes
-                                                                   * 64..127 */
+    /* region of 512 bytes, without the subregion of bytes 64..127 */
+    MPU_RASR = 1UL << 28 | 2UL << 8 | 3UL << 24 | 8UL << 1 | 1UL;
     call((U32)&word[64]);
     call((U32)&word[16]);
     MPU_CTRL = 0;
-    call(0x40000000UL); /* devices are never executed */
+    call(0x40000000UL); /* device memory can never be executed */
     Case_say('.');
 }
 
@@ -102,7 +102,7 @@ void Case_basepriBits(void) {
 void Case_cycleCounter(void) {
     U32 start = DWT_CYCCNT;
     value[0] = DWT_CTRL;
-    DWT_CTRL = 1; /* without TRCENA the register cannot be written */
+    DWT_CTRL = 1; /* the write is ignored, because TRCENA is not set */
     __asm__ volatile("nop\n\tnop");
     value[1] = DWT_CYCCNT - start;
     DEMCR = 1UL << 24;
@@ -119,17 +119,17 @@ void Case_cycleCounter(void) {
 void Case_tickRules(void) {
     SYST_RVR = 0;
     SYST_CVR = 0;
-    SYST_CSR = 7; /* without a reload value the counter stays at zero */
+    SYST_CSR = 7; /* the counter stays at zero, because there is no reload value */
     __asm__ volatile("nop\n\tnop\n\tnop");
     SYST_RVR = 999;
     value[0] = SYST_CVR > 900UL;
     SYST_CSR = 1; /* the eighth */
     value[1] = SYST_CVR > 900UL;
     SYST_CVR = 5;
-    value[2] = SYST_CVR; /* any write clears the counter, until the next tick */
+    value[2] = SYST_CVR; /* after any write the counter is zero, until the next tick */
     SYST_CSR = 0;
     value[3] = SYST_CVR;
-    SYST_CALIB = 1; /* the register is read only */
+    SYST_CALIB = 1; /* the write is ignored, because the register is read-only */
     Case_say('.');
 }
 
@@ -140,7 +140,8 @@ static void masked(void) {
     value[1] = SCB_ICSR >> 22 & 1UL;
     value[2] = SCB_ICSR >> 12 & 0x1FFUL;
     __asm__ volatile("msr basepri, %0" : : "r"(0x40));
-    value[3] = SCB_ICSR >> 12 & 0x1FFUL; /* masked by BASEPRI, not by PRIMASK */
+    /* 0, because BASEPRI masks the interrupt; PRIMASK would have no effect here */
+    value[3] = SCB_ICSR >> 12 & 0x1FFUL;
     __asm__ volatile("msr basepri, %0" : : "r"(0));
     NVIC_ICPR(0) = 2;
     __asm__ volatile("cpsie i");
@@ -161,7 +162,7 @@ void Case_bitBand(void) {
     value[0] = bits[0];
     value[1] = alias[3];
     value[2] = alias[32 + 7];
-    alias[32 + 7] = 2; /* only bit 0 of the value counts */
+    alias[32 + 7] = 2; /* only bit 0 of the written value counts */
     value[3] = bits[1];
 }
 
@@ -175,7 +176,7 @@ static void dropThumb(void) {
     Case_frame[7] &= ~(1UL << 24);
 }
 
-void Case_stackedState(void) { /* an exception returns to ARM state */
+void Case_stackedState(void) { /* Returns from an exception to ARM state, which is an error. */
     SCB_SHCSR = SCB_SHCSR_FAULTS;
     Case_action[16] = dropThumb;
     Case_action[6] = setThumb;
@@ -186,7 +187,7 @@ void Case_stackedState(void) { /* an exception returns to ARM state */
     Case_say('.');
 }
 
-/* Features that the model does not have. */
+/* Uses features that the model does not have. */
 void Case_unprivileged(void) {
     __asm__ volatile("msr control, %0\n\tisb" : : "r"(1));
     Case_say('!');

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * cpu_cases: start-up code and handlers of all exceptions. The test selects a case by its symbol.
+ * cpu_cases: start-up code, and the handlers of all exceptions. The test selects a case by its
+ * symbol.
  */
 #include "cpu_cases.h"
 #include "program_memory.h"
@@ -8,13 +9,14 @@
 void Handler(void);
 void Handler_run(U32* frame, U32 number, U32 excReturn);
 
-volatile Action selected __attribute__((section(".noinit"))); /* the case; written by the test */
+/* the case to run; the test writes it */
+volatile Action selected __attribute__((section(".noinit")));
 volatile U32 boots __attribute__((section(".noinit")));
 char said[128];
 U32 value[8]; /* results of a case */
 static U32 at;
-Action Case_action[16 + 4]; /* action of each exception, called by its handler */
-U32* Case_frame;            /* frame of the current exception */
+Action Case_action[16 + 4]; /* function that each exception's handler calls */
+U32* Case_frame;            /* stack frame of the current exception */
 
 void Case_say(char c) {
     said[at++] = c;
@@ -63,7 +65,7 @@ void Case_pend(U32 irq) {
 __attribute__((section(".vectors"), used)) static const Vector vectors[] = {
     stack_top, Reset_Handler, Handler, Handler, Handler, Handler, Handler, 0, 0, 0, 0, Handler,
     Handler, 0, Handler, Handler, Handler, Handler, Handler, Handler, Case_ack, Case_ackWait,
-    /* Addresses of the cases, because the linker would drop functions that nothing refers to. */
+    /* Addresses of all cases, because the linker would remove functions to which nothing refers. */
     CASES(NAMED)};
 
 void Reset_Handler(void) {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * cpu_cases: programs for the CPU model's tests. Each reports by letters: interrupt n prints a
- * small letter at its entry and a capital at its end ('a' is interrupt 0). Other handlers have
- * different letters.
+ * cpu_cases: programs for the tests of the CPU model. Each program reports its steps as letters:
+ * interrupt n prints a small letter when it begins and a capital letter when it ends ('a' is
+ * interrupt 0). Other handlers print other letters.
  */
 #pragma once
 
@@ -10,11 +10,12 @@
 
 typedef void (*Action)(void);
 
-extern volatile Action selected; /* the case; written by the test */
-extern volatile U32 boots;       /* number of starts; survives a reset */
-extern U32 value[8];             /* results of a case; [7] is EXC_RETURN of the last exception */
-extern Action Case_action[20];   /* action of each exception, called by its handler */
-extern U32* Case_frame;          /* frame of the current exception */
+extern volatile Action selected; /* the case to run; the test writes it */
+extern volatile U32 boots;       /* number of starts, which survives a reset */
+/* results of a case; [7] is the value EXC_RETURN of the last exception */
+extern U32 value[8];
+extern Action Case_action[20]; /* function that each exception's handler calls */
+extern U32* Case_frame;        /* stack frame of the current exception */
 
 void Case_say(char c);
 void Case_priority(U32 irq, U32 value8); /* Sets the priority of an interrupt, and enables it. */
@@ -24,9 +25,9 @@ void Reset_Handler(void);
 void Case_ack(void);
 void Case_ackWait(void);
 U32 Work_asm(U32 rounds);
-void Case_countCycles(void); /* starts DWT's cycle counter */
+void Case_countCycles(void); /* starts the cycle counter of DWT */
 
-/* System registers that the header of the board does not define. */
+/* System registers that the board's header does not define. */
 #define DEMCR REG(0xE000EDFCUL)
 #define DEMCR_TRCENA (1UL << 24)
 #define DWT_CTRL REG(0xE0001000UL)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// cpu_test: compares the CPU model with the ARMv7-M Architecture Reference Manual and the Cortex-M3
-// TRM.
+// cpu_test: checks that the CPU model behaves as the ARMv7-M Architecture Reference Manual and the
+// Cortex-M3 TRM demand.
 
 #include "plain_bus.h"
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 class Cpu : public ::testing::Test {
 protected:
     static void select(PlainCpu& m, const std::string& name) {
-        m.setVariable("selected", m.image.symbol(name) | 1); // bit 0: Thumb state
+        m.setVariable("selected", m.image.symbol(name) | 1); // bit 0 selects Thumb state
     }
     // Runs a case and returns its output.
     std::string run(const std::string& name) {
@@ -25,7 +25,7 @@ protected:
     PlainCpu m3{CASES_ELF};
 };
 
-// name of a case, its output, and its results as {n, value[n]}
+// a case: its name, its output, and its results as {n, value[n]}
 struct Case {
     const char *name, *symbol, *said;
     std::map<unsigned, uint32_t> values = {};
@@ -41,14 +41,14 @@ TEST_P(Manual, IsFollowed) {
 }
 
 constexpr uint32_t unaligned = 1 << 24;
-constexpr uint32_t preciseBus = 1 << 9, addressValid = 1 << 15, impreciseBus = 1 << 10; // bits of
-                                                                                        // CFSR
+// bits of the register CFSR
+constexpr uint32_t preciseBus = 1 << 9, addressValid = 1 << 15, impreciseBus = 1 << 10;
 const Case cases[] = {
     {"AnInterruptOfHigherPriorityPreempts", "Case_nesting", "abBA"},
     {"OneOfTheSamePriorityWaits", "Case_samePriority", "aAbB"},
     {"OfEqualOnesTheLowestNumberComesFirst", "Case_lowestNumberFirst", "aAbBcC"},
     {"SubPrioritiesOrderAndDoNotPreempt", "Case_subPriority", "aAcCbB"},
-    // value of R0 when the handler ran: no instruction after CPSIE has been executed
+    // value of R0 in the handler: no instruction after CPSIE has been executed yet
     {"PrimaskHoldsBackAndUnmaskingIsExact", "Case_primaskExact", "1aA2", {{0, 5}}},
     {"BasepriHoldsBackItsPriorityAndBelow", "Case_basepri", "1bB2aA3"},
     {"FaultmaskHoldsBackAll", "Case_faultmask", "1aA2"},
@@ -59,8 +59,8 @@ const Case cases[] = {
      "Case_busFault",
      "u.",
      {{0, preciseBus | addressValid}, {1, 0x60000010}}},
-    // TRM r2p1, 3.5: the fault of a store arrives later, and has no address. Value 4 is the number
-    // of instructions executed between the store and the DSB.
+    // TRM r2p1, 3.5: the fault of a store arrives late and without an address. value[4] is the
+    // number of instructions that were executed between the store and the DSB.
     {"TheFaultOfAStoreIsImpreciseAndABarrierWaitsForIt",
      "Case_storeFault",
      "u.",
@@ -69,7 +69,8 @@ const Case cases[] = {
      "Case_unbuffered",
      "u.",
      {{0, preciseBus | addressValid}, {1, 0x60000010}, {4, 0}}},
-    {"TheFaultOfAStoreWaitsWhileItIsMasked", "Case_storeMasked", "1u2", {{2, 0}}}, // no hard fault
+    // no hard fault was taken
+    {"TheFaultOfAStoreWaitsWhileItIsMasked", "Case_storeMasked", "1u2", {{2, 0}}},
     {"WhereThereIsNoMemoryOrItIsFlashAWriteIsABusFault",
      "Case_noMemory",
      "u.u.",
@@ -84,12 +85,13 @@ const Case cases[] = {
      {{5, 0}}},
     {"AnUndefinedInstructionIsAUsageFault", "Case_undefinedInstruction", "f.", {{0, 1 << 16}}},
     {"AJumpOutOfThumbStateIsAUsageFault", "Case_armState", "f.", {{0, 1 << 17}}}, // INVSTATE
-    // The frame is at PSP; the handler uses the other stack; CONTROL.SPSEL is restored afterwards.
+    // The stack frame is at PSP, the handler uses the other stack, and CONTROL.SPSEL is restored
+    // afterwards.
     {"AnInterruptedProcessHasItsFrameOnItsOwnStack",
      "Case_process",
      "aA",
      {{0, 0}, {1, 1}, {2, 2}, {3, 0xFFFFFFFD}}},
-    // A3.4, B1.5.8: entry and return of an exception close the monitor.
+    // A3.4, B1.5.8: the entry and the return of an exception close the exclusive monitor.
     {"AnExceptionEndsAnExclusiveAccess", "Case_exclusive", "aA", {{0, 0}, {1, 1}, {2, 1}}},
     {"MultipleAndExclusiveAccessesMustBeAligned",
      "Case_unaligned",
@@ -100,7 +102,8 @@ const Case cases[] = {
       {3, unaligned},
       {4, unaligned},
       {5, unaligned}}},
-    // The region with the highest number decides; subregions and the default map also apply.
+    // The region with the highest number decides. Subregions and the default memory map are also
+    // tested.
     {"MemoryThatIsNotExecutedFaults",
      "Case_executeNever",
      "m12mm.",
@@ -127,7 +130,7 @@ const Case cases[] = {
 
 INSTANTIATE_TEST_SUITE_P(Cpu, Manual, ::testing::ValuesIn(cases));
 
-// A program that uses a feature that is not modelled is stopped with a message.
+// A program that uses a feature which is not modelled is stopped with this message.
 struct Refusal {
     const char *symbol, *message;
     friend void PrintTo(const Refusal& r, std::ostream* out) { *out << r.symbol; }
@@ -197,16 +200,17 @@ TEST_F(Cpu, TheMpuForbidsWritingToAGuardAndNothingBesides) {
     EXPECT_EQ(value(3), m3.image.symbol("guarded") + 32);
 }
 
-// TRM, table 3-1; a taken branch costs 1 + 2 here.
+// TRM, table 3-1; a branch that is taken takes 1 + 2 cycles here.
 TEST_F(Cpu, InstructionsTakeTheCyclesOfTheManual) {
     run("Case_cycles");
     uint32_t nothing = value(0);
     EXPECT_EQ(value(1) - nothing, 10u); // 10 NOP
     EXPECT_EQ(value(2) - nothing, 4u);  // 2 LDR
-    EXPECT_EQ(value(3) - nothing, 10u); // PUSH and POP of four registers
+    EXPECT_EQ(value(3) - nothing, 10u); // PUSH and POP of four registers take 10 cycles
     EXPECT_EQ(value(4) - nothing, 3u);  // B
-    EXPECT_EQ(value(5) - nothing, 4u);  // MOV, CBZ taken
-    EXPECT_EQ(value(6) - nothing, 6u);  // MOV, CMP, IT, two skipped, one executed
+    EXPECT_EQ(value(5) - nothing, 4u);  // MOV, and a CBZ that is taken
+    // MOV, CMP, IT, two skipped instructions, one executed instruction
+    EXPECT_EQ(value(6) - nothing, 6u);
 }
 
 TEST_F(Cpu, AResetRequestStartsAgainAndKeepsMemory) {
@@ -217,7 +221,7 @@ TEST_F(Cpu, AResetRequestStartsAgainAndKeepsMemory) {
     EXPECT_EQ(m3.variable("boots"), 2u);
 }
 
-// This test is the strongest: two nested interrupts occur before each single instruction of a
+// This is the strongest test: two nested interrupts arrive before each single instruction of a
 // computation.
 TEST_F(Cpu, AnInterruptAtAnyInstructionDoesNotChangeAResult) {
     run("Case_work");
@@ -252,7 +256,7 @@ TEST_F(Cpu, InterruptEntryTakesTwelveCyclesAndTailChainingSix) {
     EXPECT_EQ(run("Case_samePriority"), "aAbB");
     ASSERT_EQ(entered.size(), 2u);
     EXPECT_EQ(first - entered[0], 12u);
-    EXPECT_EQ(entered[1], left[0]); // the first instruction follows 6 cycles later
+    EXPECT_EQ(entered[1], left[0]); // the first instruction is executed 6 cycles later
 }
 
 TEST_F(Cpu, MaskedTimeIsMeasured) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// memory_models_test: tests the user port of the MCB model (order, flags, and refused commands),
-// and compares the times of the memory device with sums of data-sheet figures that were calculated
-// by hand.
+// memory_models_test: tests the user port of the MCB model (order, flags, and commands that it
+// refuses). Compares the times of the memory device with sums of data-sheet figures that were
+// calculated by hand.
 
 #include "ddr3_timing.h"
 #include "mcb_model.h"
@@ -86,7 +86,8 @@ TEST_F(Mcb, ReadLatencyIsTheSumOfItsParts) {
         << "a row hit: CL 6 + burst 4 = 10 memory clocks, 3 clocks";
 }
 
-// AR36413, 2: the write waits for the end of the read data, 2 cycles, and 1 at the pins.
+// AR36413, 2: the write waits until the read data has ended, and then for 2 cycles and 1 cycle at
+// the pins.
 TEST_F(Mcb, AWriteWaitsForTheDataOfTheReadBefore) {
     auto clocksUntilEmpty = [&](bool behindRead) {
         push(1);
@@ -99,15 +100,15 @@ TEST_F(Mcb, AWriteWaitsForTheDataOfTheReadBefore) {
         cycle(100);
         return clocks;
     };
-    (void)clocksUntilEmpty(true); // opens the row
-    // Memory clocks since the first command of the read: the last of its four bursts has its
-    // command at 12, and its data ends at 12 + 6 + 4, so the write starts at 25. Without the read,
-    // the write would start at 4, one clock of the design later.
+    (void)clocksUntilEmpty(true); // this access only opens the row
+    // Times in memory clocks since the first command of the read. The last of the four bursts has
+    // its command at 12, and its data ends at 12 + 6 + 4, so the write starts at 25. Without the
+    // read, the write would start at 4, one clock of the design later.
     EXPECT_EQ(clocksUntilEmpty(true), clocksUntilEmpty(false) + (25 - 4) / 4);
 }
 
-// AR36413, 3: there is only one command at a time; an activate waits for the data of the read
-// before.
+// AR36413, 3: commands are executed one at a time; an activate waits for the data of the previous
+// read.
 TEST_F(Mcb, AnActivateWaitsForTheDataOfTheReadBefore) {
     constexpr uint32_t bank = 2048;
     command(read, 0, 2);
@@ -115,8 +116,8 @@ TEST_F(Mcb, AnActivateWaitsForTheDataOfTheReadBefore) {
     waitForWord();
     pop();
     pop();
-    // CL 6 and burst 4 of the first read end with its words; then tRCD 6, CL 6, burst 4 of the
-    // second read
+    // the words of the first read arrive after CL 6 and burst 4; the second read then needs tRCD 6,
+    // CL 6 and burst 4
     EXPECT_EQ(waitForWord() + 2, 16u / 4);
 }
 
@@ -140,7 +141,7 @@ TEST_F(Mcb, PrechargingInstructionsCloseTheRow) {
 }
 
 TEST_F(Mcb, TwoWordsAClockBehindTheFifosOneAtThePort) {
-    // 64 requested words are in the FIFO before 40 clocks have passed since the first
+    // all 64 words of this read are in the FIFO within 40 clocks of the first word
     command(read, 0, 64);
     waitForWord();
     unsigned clocks = 0;
@@ -184,7 +185,8 @@ TEST_F(Mcb, Refusals) {
     refuses([&] { pop(); }, "read of an empty FIFO");
     EXPECT_TRUE(memory_.pins.rdError);
     push(1);
-    command(write, 0, 1); // takes the word of the previous command from the FIFO
+    // this write uses the word in the FIFO that belongs to the previous command
+    command(write, 0, 1);
     refuses([&] { command(write, 0, 1); }, "before its data");
 }
 
@@ -202,7 +204,8 @@ TEST(McbStart, NoCommandBeforeCalibration) {
     EXPECT_THROW(memory.cycle(), McbError);
 }
 
-constexpr uint32_t bankStep = 2048, rowStep = 8 * 2048; // x16: a page is 2 KiB, eight banks
+// x16 memory: a page has 2 KiB, and there are eight banks
+constexpr uint32_t bankStep = 2048, rowStep = 8 * 2048;
 
 TEST(Ddr3Timing, TheFirstReadOpensItsRow) {
     Ddr3Timing device(mt41j64m16);
@@ -220,15 +223,15 @@ TEST(Ddr3Timing, BurstsInAnOpenRowFollowEachOtherByTccd) {
 
 TEST(Ddr3Timing, AnotherRowOfTheBankWaitsForPrechargeAndActivate) {
     Ddr3Timing device(mt41j64m16);
-    uint64_t first = device.access(100, true, 0); // activated at 100
-    // tRAS is longer than tRCD + tRTP: 100 + 15, then tRP 6, tRCD 6
+    uint64_t first = device.access(100, true, 0); // the row is activated at clock 100
+    // the precharge waits for tRAS, which is longer than tRCD + tRTP: 100 + 15, then tRP 6, tRCD 6
     EXPECT_EQ(device.access(first + 1, true, rowStep), 100u + 15 + 6 + 6);
 }
 
 TEST(Ddr3Timing, AWriteHoldsItsRowForWriteRecovery) {
     Ddr3Timing device(mt41j64m16);
     uint64_t cas = device.access(100, false, 0);
-    // CWL 5, burst 4, tWR 6; tRP 6, tRCD 6
+    // the write needs CWL 5, burst 4, tWR 6; the next access needs tRP 6, tRCD 6
     EXPECT_EQ(device.access(cas + 1, false, rowStep), cas + 5 + 4 + 6 + 6 + 6);
 }
 
@@ -256,10 +259,10 @@ TEST(Ddr3Timing, ActivatesOfBanksAreSpacedByTrrdAndTfaw) {
 TEST(Ddr3Timing, RefreshComesEveryTrefiAndTakesTrfc) {
     Ddr3Timing device(mt41j64m16);
     device.access(100, true, 0);
-    // due at 3120: precharge all (tRP 6), refresh (tRFC 44), activate, tRCD 6
+    // a refresh is due at 3120: precharge all (tRP 6), refresh (tRFC 44), activate, tRCD 6
     EXPECT_EQ(device.access(3120, true, 0), 3120u + 6 + 44 + 6);
     EXPECT_EQ(device.refreshes, 1u);
-    device.access(4'000'000, true, 0); // 10 ms: 1282 intervals of 7.8 us
+    device.access(4'000'000, true, 0); // after 10 ms, which are 1282 intervals of 7.8 us
     EXPECT_EQ(device.refreshes, 1282u);
 }
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_gdb: libFuzzer target of the GDB stub. Nothing may crash or hang, whatever a debugger sends.
+// fuzz_gdb: fuzzes the GDB stub with libFuzzer. Nothing may crash or hang, whatever a debugger
+// sends.
 //
-// Each line of an input is a packet, to which frame and checksum are added; a line that begins with
-// ! is sent unchanged. The processor does not run: "continue" stops at once.
+// Each line of an input is a packet, to which the frame and the checksum are added. A line that
+// begins with ! is sent unchanged. The processor does not run: "continue" stops at once.
 
 #include "gdb_stub.h"
 #include <arpa/inet.h>
@@ -42,7 +43,8 @@ int connected(uint16_t port) {
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     to.sin_port = htons(port);
     const int fd = socket(AF_INET, SOCK_STREAM, 0);
-    // With 500 connections per second, a long run may use up the machine's ports for some time.
+    // A long run makes 500 connections per second, and may use up the machine's ports for some
+    // time; then connecting is repeated.
     while (connect(fd, reinterpret_cast<sockaddr*>(&to), sizeof to) != 0) {
         if (errno != EADDRNOTAVAIL) {
             perror("fuzz_gdb: cannot connect to the stub");
@@ -55,7 +57,7 @@ int connected(uint16_t port) {
 
 } // namespace
 
-// Unicorn 2.1 leaks 32 bytes.
+// Unicorn 2.1 leaks 32 bytes, which must not be reported.
 extern "C" const char* __lsan_default_suppressions() {
     return "leak:libunicorn\n";
 }
@@ -83,7 +85,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     shutdown(fd, SHUT_WR);
     bool isNew = true;
     stub.serve(target, [&] { return std::exchange(isNew, false); });
-    const linger reset{1, 0}; // closes without leaving the port in use
+    const linger reset{1, 0}; // closes the connection by a reset, so that the port is free at once
     setsockopt(fd, SOL_SOCKET, SO_LINGER, &reset, sizeof reset);
     close(fd);
     return 0;

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""gdb_test: tests the debugger's port of the simulator.
+"""gdb_test: tests the port of the simulator to which a debugger connects.
 
-    debug      Debian's GDB on firmware and RTL: breakpoints, steps, registers, memory, the FPGA
+    debug      Debian's GDB controls firmware and RTL: breakpoints, steps, registers, memory, the
+               FPGA
     reverse    GDB runs the recording of a secure flight backwards
     strangers  a peer that is not a debugger is disconnected; a peer that leaves or sends garbage
                makes room for the next one
@@ -18,7 +19,7 @@ import subprocess
 import sys
 import time
 
-PATIENCE = 60  # time-out of a hang, s
+PATIENCE = 60  # time after which a program is considered to hang, s
 sim, elf, out, case = sys.argv[1:]
 FLIGHT = [sim, "--image", "/usr/share/xplanet/images/earth.jpg", "--size", "96x64", "--cpu", "m3",
           "--firmware", elf, "--speed", "max"]
@@ -26,7 +27,7 @@ FLIGHT = [sim, "--image", "/usr/share/xplanet/images/earth.jpg", "--size", "96x6
 
 @contextlib.contextmanager
 def simulator(*command):
-    """Starts a simulator that waits for a debugger; yields the process and the port."""
+    """Starts a simulator that waits for a debugger. Yields the process and the port."""
     with subprocess.Popen([*command, "--gdb", "0"], stdout=subprocess.PIPE,
                           stderr=subprocess.STDOUT, text=True) as process:
         try:
@@ -43,7 +44,7 @@ def simulator(*command):
 
 
 def gdb(port, commands):
-    """Returns the output of GDB for these commands, one per line."""
+    """Runs GDB with these commands, one per line. Returns its output."""
     script = pathlib.Path(out, "commands")
     script.write_text("set confirm off\nset width 0\nset remotetimeout unlimited\n"
                       f"target remote 127.0.0.1:{port}\n{commands}kill\n")
@@ -88,7 +89,7 @@ info symbol $pc
     for wanted in ("^Reset_Handler in section .text", "^Breakpoint 1, UAV_start",
                    r"^UAV_start \+ [24] in section .text", "^Breakpoint 2, .*SysTick_Handler",
                    "^#0 .*SysTick_Handler", "= 15$",
-                   "^0x64000000:.*0x5359",      # the system slot's ID
+                   "^0x64000000:.*0x5359",      # the register ID of the system slot
                    "^0xe000ed00:.*0x412fc230",  # a Cortex-M3
                    "= 77$", "= 0x1234$", "s simulated, .* instructions"):
         assert re.search(wanted, said, re.M), f"expected: {wanted}"
@@ -100,7 +101,7 @@ def reverse():
     key.chmod(0o600)
     subprocess.run([*FLIGHT, "--duration", "0.3", "--key", key, "--out", f"{out}/flight",
                     "--quiet"], check=True)
-    # From a given place, continuing must always lead to the same next place.
+    # From a given place, "continue" must always lead to the same place.
     steps = (("reverse-stepi", "AT_BEGIN"), ("break UAV_start\ncontinue", "START"),
              ("delete\nstepi 20", "AHEAD"), ("reverse-stepi 20", "BACK"), ("stepi 20", "AGAIN"),
              ("continue", "END"),
@@ -119,12 +120,12 @@ def reverse():
                         ("START", "START_AGAIN")):
         assert at[name] == at[again], (name, at[name], again, at[again])
     assert at["TICK2"][0] < at["TICK1"][0] < at["END"][0], "ticks, the later one first"
-    # The message of GDB 13, and the message of GDB 16.
+    # The messages of GDB 13 and of GDB 16.
     ends = re.findall("No more reverse-execution history|Reached end of recorded history", said)
     assert len(ends) == 2, "begin and end are not reported"
     assert not re.search("= 77$", said, re.M), "later data are visible earlier"
-    copies = ["pgrep", "-f", "--", f"--out {out} --gdb"]  # the frozen copies end a moment after the
-                                                          # simulator
+    # the frozen copies end a moment after the simulator
+    copies = ["pgrep", "-f", "--", f"--out {out} --gdb"]
     until = time.monotonic() + PATIENCE
     while subprocess.run(copies, stdout=subprocess.DEVNULL).returncode == 0:
         assert time.monotonic() < until, "a copy of the simulator was left behind"
@@ -145,7 +146,7 @@ def strangers():
 
 def check(port):
     def talk(*parts):
-        """Sends bytes, and returns the answer; b"" if the connection was ended."""
+        """Sends bytes. Returns the answer, or b"" if the connection was closed."""
         with socket.create_connection(("127.0.0.1", port), PATIENCE) as s:
             answer = b""
             try:
@@ -178,7 +179,7 @@ def check(port):
     leave(go)
     leave(packet(b"?") + b"$c")
     leave(go, packet(b"g") * 100)
-    leave(go, b"k" * 100000)  # sends garbage while the processor runs
+    leave(go, b"k" * 100000)  # garbage arrives while the processor runs
     leave(packet(b"?") + packet(b"s") * 50)
     leave(packet(b"D"))
     with socket.create_connection(("127.0.0.1", port), PATIENCE) as s:

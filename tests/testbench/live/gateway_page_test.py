@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""gateway_page_test: tests the page of a gateway, whose calls do not pass the page's server: which
-pages may call, and by which certificate.
+"""gateway_page_test: tests the page of a gateway. The calls of this page do not pass through the
+page's server. The test checks which pages may call, and with which certificate.
 
 Usage: gateway_page_test.py origins|certificate work-folder build-folder
 """
@@ -46,7 +46,7 @@ class Cases(Script):
         self.work = fresh(sys.argv[2])
 
     def start(self, words, wanted):
-        """Starts a program and returns the line of its output that has a text."""
+        """Starts a program. Returns the line of its output that contains the text `wanted`."""
         process = subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
                                    stderr=subprocess.STDOUT, text=True)
 
@@ -63,7 +63,7 @@ class Cases(Script):
         return self.fail(f"{words[0]} has ended: {said}")
 
     def gateway(self, *words, wanted):
-        """Starts a gateway whose modem does not answer, and returns a line of its output."""
+        """Starts a gateway with a modem that does not answer. Returns a line of its output."""
         master, slave = pty.openpty()
         self.addCleanup(os.close, master)
         self.addCleanup(os.close, slave)
@@ -71,7 +71,7 @@ class Cases(Script):
                            "--wait", "1", *words], wanted)
 
     def answer(self, port, headers):
-        """Returns the answer to a call over a WebSocket with these headers."""
+        """Makes a call over a WebSocket with these headers. Returns the answer."""
         with socket.create_connection(("127.0.0.1", port), timeout=60) as connection:
             connection.sendall((
                 f"GET / HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nUpgrade: websocket\r\n"
@@ -90,7 +90,7 @@ class Cases(Script):
         return said.decode(errors="replace")
 
     def test_origins(self):
-        """Calls of web pages are refused, except those of the gateway's page and of --origin."""
+        """The gateway rejects calls from web pages, except from its own page and from --origin."""
         page, calls = free_port(), free_port()
         self.gateway("--page", f"127.0.0.1:{page}", "--origin", "https://example.org", "--listen",
                      f"tcp -h 127.0.0.1:ws -h 127.0.0.1 -p {calls}", wanted="The vehicle: http")
@@ -117,7 +117,7 @@ class Cases(Script):
             self.assertIn("for the radio", self.answer(calls, headers), headers)
 
     def certificates(self):
-        """Makes certificates, and a profile of the browser with the pilot's certificate."""
+        """Makes certificates, and a browser profile that contains the pilot's certificate."""
         for name in "gateway", "pilot":
             self.ask(TREE / "icesoc", "key", self.work / f"{name}.pem", "--certificate")
         database = f"sql:{self.work}/home/.pki/nssdb"
@@ -137,7 +137,7 @@ class Cases(Script):
         return f"--ignore-certificate-errors-spki-list={public}"
 
     def form(self, browser, name):
-        """Sends a form, and returns the text that appears."""
+        """Sends a form. Returns the text that then appears."""
         browser.until("document.querySelectorAll('#cards details').length > 0")
         return browser.run(f"""(async () => {{
             const card = [...document.querySelectorAll('#cards details')]
@@ -158,7 +158,7 @@ class Cases(Script):
         }})()""")
 
     def test_certificate(self):
-        """The browser's certificate decides what the page may call."""
+        """The certificate in the browser decides which calls the page may make."""
         trust = self.certificates()
         page, calls = free_port(), free_port()
         write("rights.json", '[{"who": "CN=pilot", "identities": ["uav"], "operations": '
@@ -171,8 +171,9 @@ class Cases(Script):
         context.check_hostname = False
         with urllib.request.urlopen(f"https://127.0.0.1:{page}", context=context) as served:
             self.assertIn("; Secure", served.headers["Set-Cookie"])
-        try:  # without a certificate, the gateway sends an alert, or closes before the test reads
-              # it
+        # without a certificate, the gateway sends an alert or closes the connection before the test
+        # reads the alert
+        try:
             with context.wrap_socket(socket.create_connection(("127.0.0.1", calls))) as connection:
                 connection.sendall(b"GET / HTTP/1.1\r\n\r\n")
                 answer = connection.recv(1)
@@ -184,13 +185,13 @@ class Cases(Script):
             self.assertIn("'CN=pilot' has no right to call setFlightState of 'uav'",
                           self.form(browser, "uav.setFlightState"))
             self.assertNotIn("has no right", self.form(browser, "uav.isAlive"))
-        with Browser(trust) as browser:  # without a certificate
+        with Browser(trust) as browser:  # a browser that has no certificate
             browser.open(f"https://127.0.0.1:{page}/")
             self.assertNotRegex(self.form(browser, "uav.setFlightState"), "done|no right")
         self.server_with_tls(trust, security)
 
     def server_with_tls(self, trust, security):
-        """Makes a complete call: a server of stock Ice takes the place of the gateway."""
+        """Makes a complete call; a server of stock Ice takes the place of the gateway."""
         port, page = self.start(
             ["/usr/bin/python3", TREE / "tests/cli/call_server.py",
              "--Ice.Plugin.IceSSL=IceSSL:createIceSSL", "--Trial.Endpoints=wss -h 127.0.0.1",

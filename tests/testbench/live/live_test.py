@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""live_test: tests the page of a mission in headless Chromium, or its errors.
+"""live_test: tests the page of a mission in headless Chromium, or the errors of the page's server.
 
 Usage: live_test.py mission|late|errors work-folder build-folder
 """
@@ -31,7 +31,7 @@ class Cases(Script):
 
     @contextlib.contextmanager
     def serving(self, *words, until, **environment):
-        """Starts a process that serves its page; yields its port."""
+        """Starts a process that serves its page. Yields the port."""
         with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               env={**os.environ, **environment}) as self.process:
             try:
@@ -42,7 +42,7 @@ class Cases(Script):
         self.ended = self.process.returncode
 
     def hear(self, text):
-        """Reads the output of the process up to a text, and returns it."""
+        """Reads the output of the process until it contains a text. Returns the output."""
         said = ""
         for line in self.process.stdout:
             said += line
@@ -51,15 +51,16 @@ class Cases(Script):
         self.fail(f"the process has ended: {said}")
 
     def test_mission(self):
-        """The page is opened with the flight, and the vehicle stays until the page is closed."""
+        """The page opens together with the flight, and the vehicle keeps running until the page is
+        closed."""
         write("browser", f"#!/bin/sh\necho \"$1\" >{self.work}/opened\n")
         flight = ("run", "--built", "--build", BUILD, "--size", "96x64", "--guard", "20", "--cpu",
                   "m3", "--out", self.work, "--show", "yes")
         with self.serving(TREE / "icesoc", *flight, until="http://",
                           BROWSER=f"{self.work}/browser %s") as port:
             address = f"http://127.0.0.1:{port}/"
-            # The browser resolves no names: resources of other hosts would be missing, and
-            # reported.
+            # The browser cannot resolve names, so that a resource on another host would be missing
+            # and reported.
             with Browser("--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
                          width=1280, height=1500) as browser:
                 browser.open(address)
@@ -80,19 +81,22 @@ class Cases(Script):
             "the mission is over", '<p id="flight">size 96x64, cpu m3, guard 20</p>',
             r"hwengine1.getResult\(\)", r"Station.vehicleState\(uptimeMs",
             '<td>THRESHOLD</td><td class="n">0x00000018</td>',
-            ">WIDTH 96</span>.*>HEIGHT 64</span>",  # fields of the vision core's FRAME_SIZE
-            # An event of the vision core, which the firmware has cleared by writing 1:
+            # the fields of the vision core's register FRAME_SIZE
+            ">WIDTH 96</span>.*>HEIGHT 64</span>",
+            # the firmware has cleared this event of the vision core by writing 1
             ">DONE cleared</span>",
             'y="[0-9]*">UAV_radioTask</text>',
             "the result equals the C[+][+] reference, bit by bit", "corners, the strongest",
             '<text x="0" y="[0-9]*">vision</text>',
             r"<title>hwengine1.getResult\(\): until [0-9.]* s</title>",
             'id="phase" role="status" class="good">the mission is over, [0-9]+ corners, the result')
-        self.lacks(">0.00 s</text>")  # the view opens at the calls, not at the modems' set-up
+        # the view begins with the calls, not with the set-up of the modems
+        self.lacks(">0.00 s</text>")
         drawn = re.findall('data-features="([0-9]*)"', self.said)
         found = [len(call["features"]) for call in self.lines("calls") if "features" in call]
         self.assertEqual(drawn, [str(found[-1])])
-        # The flight as JSON Lines contains all packets, and the end of the core's work as an event.
+        # The JSON Lines of the flight contain all packets, and an event for the end of the core's
+        # work.
         events, whole = self.lines("events"), self.lines("flight")[-1]["end"]
         packets = [event for event in events if "packet" in event]
         self.assertEqual((len(packets), sum(event["lost"] for event in packets)),
@@ -101,7 +105,8 @@ class Cases(Script):
         self.assertTrue(any(e.get("slot", 0) >= 2 and e["events"] for e in events))
         self.assertGreater(sum(sum(e.get("accesses", {}).values()) for e in events), 100)
         for file in (*PAGE.glob("*.html"), *PAGE.glob("*.css")):
-            self.lacks("(https?:)?//[a-z]", file)  # the page names no other host
+            # the page does not contain the name of another host
+            self.lacks("(https?:)?//[a-z]", file)
         self.narrow(state)
 
     def test_late(self):
@@ -127,7 +132,7 @@ class Cases(Script):
             self.assertEqual(self.process.wait(), 0)
 
     def calls(self):
-        """After the mission the vehicle is called from the shell."""
+        """After the mission, the vehicle can be called from the shell."""
         call = TREE / "icesoc", "call", "--json", "--flight", self.work, "--build", BUILD
         self.ask(*call, "hwengine1.setParameterA", "300", status=2)
         self.has("value: expected 0 to 255, got 300")
@@ -145,7 +150,7 @@ class Cases(Script):
         self.ask(*call, "update.getStatus", status=5)
 
     def calls_of_the_page(self, browser):
-        """The page calls the vision core, and draws the corners that come back."""
+        """The page can call the vision core, and draws the corners in the reply."""
         if not (BUILD / "page/ice.js").stat().st_size:
             return print("without a call of the page: Ice for JavaScript could not be fetched")
         browser.run("document.getElementById('objects').open = true")
@@ -169,7 +174,7 @@ class Cases(Script):
         browser.until("document.getElementById('found').innerText"
                       f".startsWith('{found} corners')")
         self.assertLess(int(found), 121)
-        # The registers of the core are next to its operations, and registers that change are
+        # The registers of the core are shown next to its operations, and registers that change are
         # marked.
         beside = "document.querySelector('#cards [data-block=vision]')"
         browser.until(f"/THRESHOLD\\s+0x0000003c/.test({beside}.innerText)")
@@ -180,7 +185,7 @@ class Cases(Script):
         browser.until(f"{beside}.querySelector('.changed')?.innerText.includes('0x0000003d')")
 
     def narrow(self, state):
-        """At a width of 420 pixels nothing is cut or needs a scroll bar."""
+        """At a width of 420 pixels, nothing is cut off, and no scroll bar is needed."""
         for file in (*PAGE.iterdir(), *(TREE / "tools/icesoc/web").glob("common.*")):
             write(file.name, file.read_text())
         common = '<script src="common.js">'
@@ -199,8 +204,8 @@ setTimeout(() => top.document.body.append("cut: " + [...document.querySelectorAl
         return [json.loads(line) for line in Path(f"{name}.jsonl").read_text().splitlines()]
 
     def contrasts(self):
-        """Bars, marks and texts of the pages have enough contrast with the light and the dark
-        background."""
+        """The contrast of the pages' bars, marks and texts with the light and with the dark
+        background is sufficient."""
         def light(colour):
             digits = colour[1:] if len(colour) == 7 else "".join(2 * d for d in colour[1:])
             parts = [int(digits[i:i + 2], 16) / 255 for i in (0, 2, 4)]
@@ -229,14 +234,14 @@ setTimeout(() => top.document.body.append("cut: " + [...document.querySelectorAl
             self.ask(TREE / "icesoc", "run", "--built", "--build", BUILD, "--size", "96x64",
                      "--out", "unflown", "--port", str(port), status=1)
             self.has("is the port taken")
-            self.assertFalse(Path("unflown/status").exists())  # the simulator does not fly without
-                                                               # its page
+            # without its page, the simulator does not fly
+            self.assertFalse(Path("unflown/status").exists())
             self.requests(port)
         self.assertEqual(self.ended, 0)
 
     def requests(self, port):
-        """No flight has run in this folder yet: the page still answers, and only on the loopback
-        interface."""
+        """If no flight has run in this folder yet, the page answers nevertheless, and only on the
+        loopback interface."""
         base, ours = f"http://127.0.0.1:{port}/", f"127.0.0.1:{port}"
 
         def state():
@@ -257,13 +262,14 @@ setTimeout(() => top.document.body.append("cut: " + [...document.querySelectorAl
 
         empty = state()
         self.assertEqual((empty["calls"], empty["slots"], bool(empty["frame"])), ([], [], False))
-        # Sends other names of this address and malformed rows, and connects clients that are slow,
-        # endless or silent.
+        # Sends other names of this address and malformed lines, and connects clients that are slow,
+        # never end a request, or are silent.
         self.assertEqual(status({}), 200)
         self.assertEqual(status({"Host": f"evil.example:{port}"}), 403)
         self.assertEqual(status({"Host": ours, "HOST": "evil.example"}), 403)
         ranges = ",".join(f"0-{i}" for i in range(400, 800))
-        self.assertEqual(status({"Range": f"bytes={ranges}"}), 200)  # the answer is the whole file
+        # the answer contains the whole file
+        self.assertEqual(status({"Range": f"bytes={ranges}"}), 200)
         self.assertIn(b"400 ", talk(b"EHLO\r\n\r\n"))
         self.assertIn(b" 501 ", talk(f"POST /state HTTP/1.1\r\nHost: {ours}\r\n\r\n".encode()))
         with connect() as endless, self.assertRaises(ConnectionError):

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""objects_test: tests the objects of a flight's page in Chromium, with a server of stock Ice in
-place of a vehicle; also who may call, and who may not.
+"""objects_test: tests how a flight's page shows and calls objects, in Chromium, with a server of
+stock Ice in place of a vehicle. Also tests which pages may call.
 
 Usage: objects_test.py page|strangers work-folder build-folder
 """
@@ -24,7 +24,7 @@ from icesoc.util.browser import Browser
 
 BUILD = Path(sys.argv[3]).resolve()
 TRIAL = TREE / "tests/cli/call.ice"
-MANY = 200  # number of operations of an object
+MANY = 200  # number of operations of the object with many operations
 
 
 class Cases(Script):
@@ -64,7 +64,7 @@ class Cases(Script):
         self.page.stdout.close()
 
     def call(self, browser, operation, fields):
-        """Fills in a form, presses its button, and returns the text that appears."""
+        """Fills in a form and presses its button. Returns the text that then appears."""
         browser.run(f"""(() => {{
             window.form = [...document.querySelectorAll('#cards form')].find(each =>
                 each.querySelector('h4').innerText.split(' ')[0] === '{operation}');
@@ -129,7 +129,7 @@ class Cases(Script):
         self.other_vehicle()
 
     def other_vehicle(self):
-        """The page serves a gateway in the same way, without a flight."""
+        """The same page works with a gateway, without a flight."""
         os.remove("live.json")
         with subprocess.Popen([TREE / "icesoc", "call", "--page", "--gateway", self.gateway,
                                "--build", self.work / "build"], stdout=subprocess.PIPE,
@@ -142,14 +142,15 @@ class Cases(Script):
             process.terminate()
 
     def table(self, browser):
-        """A sequence is a table: rows are added, pasted, filled in and removed."""
+        """A sequence is shown as a table, in which rows can be added, pasted, filled in and
+        removed."""
         browser.run("""(() => {
             window.form = document.getElementById('try.count.words').closest('form');
             document.getElementById('try.count.words').value = '[]';
             document.getElementById('try.count.words').dispatchEvent(new Event('input'));
             [...form.querySelectorAll('button')].find(b => b.innerText === 'Add a row').click();
         })()""")
-        browser.press(*"one")  # the new row has the focus
+        browser.press(*"one")  # the focus is in the new row
         browser.press("Tab")
         browser.press(*"2")
         self.assertEqual(browser.run("document.getElementById('try.count.words').value"),
@@ -172,7 +173,7 @@ class Cases(Script):
         self.assertLess(took, 5000)
 
     def pictures(self, browser):
-        """A picture from a file goes to the server, and its answer is drawn."""
+        """A picture from a file is sent to the server, and the picture in the reply is drawn."""
         write("black.pgm", "P2 4 2 255\n0 0 0 0 0 0 0 0\n")
         Image.open("black.pgm").save("black.png")
         browser.choose("[id='try.negative.frame'] > [type=file]", self.work / "black.png")
@@ -186,8 +187,8 @@ class Cases(Script):
         })()"""), [4, 2, 255, 255, 255, 255])
 
     def copies(self, browser):
-        """The texts to copy are the calls that the form makes; the Python program runs
-        unchanged."""
+        """The page offers texts to copy that make the same call as the form. The Python program
+        among them runs unchanged."""
         texts = browser.run("""(() => {
             const object = station.objects.find(o => o.identity === 'try');
             const operation = station.slice.operations(object.interface)
@@ -201,7 +202,7 @@ class Cases(Script):
         self.has("^23$")
 
     def keyboard(self, browser):
-        """A form can be used without a pointer, and each of its fields has a name."""
+        """A form can be used with the keyboard alone, and each of its fields has a name."""
         browser.run("document.getElementById('try.add.threshold').value = '16'; "
                     "document.getElementById('try.add.left').value = '40'; "
                     "document.getElementById('try.add.left').focus()")
@@ -214,7 +215,7 @@ class Cases(Script):
         self.assertEqual(nameless, [])
 
     def sizes(self, browser):
-        """Nothing is cut in a narrow window; many operations open quickly."""
+        """In a narrow window nothing is cut off. An object with many operations opens quickly."""
         for width, dark in (400, False), (400, True), (1400, True), (1400, False):
             browser.resize(width, 1000, dark)
             self.assertEqual(browser.run(
@@ -233,7 +234,8 @@ class Cases(Script):
         self.assertLess(took, 5000)
 
     def test_strangers(self):
-        """Pages of other origins, other names of this host, and wrong tokens are refused."""
+        """Requests from pages of other origins, with other names of this host, or with a wrong
+        token are rejected."""
         token = re.search('data-token="([0-9a-f]{32})"',
                           urllib.request.urlopen(self.address).read().decode())[1]
         host = f"127.0.0.1:{self.port}"
@@ -261,7 +263,7 @@ class Cases(Script):
 
     @contextlib.contextmanager
     def other_page(self, token):
-        """Serves a page of another origin that even knows the token."""
+        """Serves a page of another origin, which even has the token."""
         text = f"""<body><script>
             const socket = new Promise(done => {{
                 const s = new WebSocket("ws://127.0.0.1:{self.port}/ice?token={token}",
@@ -299,7 +301,8 @@ class Cases(Script):
             server.shutdown()
 
     def nonsense(self, host, token):
-        """A WebSocket that breaks the protocol is closed, and the page still answers."""
+        """A WebSocket that violates the protocol is closed, and the page's server still answers
+        afterwards."""
         for data in (b"\x82\x05hello", b"\x82\xff" + b"\xff" * 12, b"\xf2\x80\0\0\0\0", b"\0" * 99):
             with socket.create_connection(("127.0.0.1", self.port), timeout=60) as connection:
                 connection.sendall((

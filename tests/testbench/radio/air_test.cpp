@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// air_test: tests the properties of the air: one direction at a time, processing time of the modem,
-// retries by RR, fading, interference, recorded traces. Sources of the figures: docs/simulation.md.
+// air_test: tests the properties of the air: that it is half duplex, the processing time of the
+// modems, retries by RR, fading, interference and recorded traces. Sources of the figures:
+// docs/simulation.md.
 
 #include "two_modems.h"
 #include <cstdio>
@@ -13,13 +14,13 @@ namespace {
 class TrueAir : public TwoModems {
 protected:
     TrueAir() { perfect = false; }
-    // Keeps a modem's input buffer full, as CTS allows.
+    // Keeps the input buffer of a modem as full as CTS allows.
     static void fill(HostLine& line, uint64_t now) {
         if (line.cts())
             line.send(Bytes(10, 'x'), now);
     }
-    // Returns the bits per second at both hosts together, while `a` sends without a pause, and `b`
-    // also if `both`.
+    // Returns the number of bits per second that arrive at both hosts together, while `a` sends
+    // without a pause and, if `both` is true, `b` does too.
     double throughput(bool both) {
         const uint64_t begin = now, seconds = 4;
         lineA.received.clear();
@@ -79,7 +80,7 @@ TEST_F(Retries, WithRRTheTriesAreMadeAgainAfter200To248Milliseconds) {
     air.weather.tryLoss = 1;
     auto tries = [this] { return air.counters().airNs / RfChannel::airTimeNs(1); };
     send("x");
-    run(200 * ms); // the first four tries take 13 of these ms
+    run(200 * ms); // the first four tries take 13 ms of this time
     EXPECT_EQ(tries(), 4u);
     run(100 * ms);
     EXPECT_EQ(tries(), 8u);
@@ -119,7 +120,7 @@ TEST_F(TrueAir, A64BitSourceComesInFrames80) {
     EXPECT_EQ(static_cast<uint8_t>(frame[12]), 40) << "-dBm";
 }
 
-// A microwave oven, on for half of each 20 ms.
+// Simulates a microwave oven, which is on for half of every 20 ms.
 TEST_F(TrueAir, AnInterferersShareOfTheTimeIsLost) {
     power({{"BD", 7}, {"RN", 2}}, {{"BD", 7}});
     double without = throughput(false);
@@ -131,7 +132,8 @@ TEST_F(TrueAir, AnInterferersShareOfTheTimeIsLost) {
 
 TEST_F(TrueAir, StrengthFallsWithDistanceAndTriesFade) {
     power({{"RO", 0}});
-    air.weather.distance = 100; // 80 dB: 12 dB above the sensitivity
+    // loss of 80 dB, which is 12 dB above the sensitivity of the receiver
+    air.weather.distance = 100;
     for (int i = 0; i < 200; ++i) {
         send("x", 50 * ms);
     }
@@ -161,7 +163,7 @@ protected:
     }
 
 private:
-    // Several of these tests may run at the same time.
+    // The name contains the process id, because several of these tests may run at the same time.
     const std::string path_ = ::testing::TempDir() + "trace." + std::to_string(getpid()) + ".csv";
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// attacker: a foreign modem on the air. It receives and stores every packet, and can send any
-// packet in the name of any modem.
+// attacker: models an attacker's modem on the air. It receives and stores every packet, and can
+// send any packet in the name of any modem.
 
 #pragma once
 
@@ -15,19 +15,19 @@ class Attacker {
 public:
     using Bytes = std::vector<uint8_t>;
 
-    // Starts listening; it must be the channel's only listener.
+    // Starts to listen; the channel may have no other listener.
     Attacker(RfChannel& air, uint64_t seed)
         : air_(air), random_(seed), modem_(line_, air, modemOfNobody()) {
         air.onPacket([this](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
             toHinder_ += hinders_ && packet.bytes != lure_;
             // The attacker also hears its own packets, because the air does not distinguish them
-            // from the link's.
+            // from those of the link.
             if (heard_.size() < 100'000)
                 heard_.push_back(packet);
         });
     }
 
-    // Sends bytes in the name of `from`, in packets that are cut to the longest size.
+    // Sends bytes in the name of `from`, in packets of at most the longest size.
     void send(uint16_t from, uint16_t to, Bytes bytes, uint64_t now) {
         RfPacket packet;
         packet.from = from;
@@ -41,8 +41,8 @@ public:
         voices_.push_back(std::make_unique<Voice>(air_));
         voices_.back()->mac.send(std::move(packet), now);
     }
-    // Does one thing that is possible without a key, drawn at random. It sends in the name of the
-    // sender or the receiver of a packet, or of another modem.
+    // Does one thing, drawn at random, that is possible without a key. It sends in the name of the
+    // sender or the receiver of a packet, or in the name of another modem.
     void doMischief(uint64_t now) {
         if (heard_.empty())
             return;
@@ -54,7 +54,7 @@ public:
         const auto any = [this]() -> const Bytes& { return recalled().bytes; };
         send(as.from, as.to, mischief(random_, any), now);
     }
-    // Starts or stops sending a lure, bytes that look like a frame, after each packet.
+    // Starts or stops to send bytes that look like the beginning of a frame after each packet.
     void hinder(bool isOn) { hinders_ = isOn; }
     void advance(uint64_t now) {
         modem_.advance(now);
@@ -69,10 +69,11 @@ public:
     size_t heard() const { return heard_.size(); }
 
 private:
-    static constexpr size_t mostBytes = 100; // longest packet, bytes
+    static constexpr size_t mostBytes = 100; // size of the longest packet, bytes
     static constexpr uint16_t uav = 1, ground = 0;
 
-    // The MAC of one packet: the attacker does not wait for its previous packet.
+    // The MAC of one packet. Each packet has a MAC of its own, because the attacker does not wait
+    // for the end of its previous packet.
     struct Voice : Mac::Modem {
         explicit Voice(RfChannel& air) : mac(air, *this) {}
         bool hears(const RfPacket&) const override { return false; }
@@ -89,7 +90,7 @@ private:
         options.set = {{"MY", 0x0BAD}, {"DL", uav}};
         return options;
     }
-    // Returns one of the newest packets in half of the cases, otherwise any packet.
+    // Returns a stored packet: in half of the cases one of the newest, otherwise any.
     const RfPacket& recalled() {
         const auto count = static_cast<uint32_t>(heard_.size());
         const uint32_t span = random_.below(2) ? count : std::min(count, 20u);
@@ -100,9 +101,10 @@ private:
     Random random_;
     HostLine line_;
     XBee modem_;
-    std::list<std::unique_ptr<Voice>> voices_; // packets in flight
+    std::list<std::unique_ptr<Voice>> voices_; // packets that are being sent
     std::vector<RfPacket> heard_;
     uint64_t sent_ = 0;
     bool hinders_ = false;
-    unsigned toHinder_ = 0; // number of received packets after which no lure was sent yet
+    // number of received packets after which the misleading bytes have not been sent yet
+    unsigned toHinder_ = 0;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// command_test: tests command mode and every command of the XBee model, and its API frames, with
-// and without escapes. The bytes follow the manual's examples.
+// command_test: tests the command mode and every command of the XBee model, and its API frames with
+// and without escapes. The bytes are those of the examples in the manual.
 
 #include "two_modems.h"
 
@@ -15,14 +15,14 @@ protected:
     }
 };
 
-// A sequence: the bytes sent to `a`, each with the milliseconds until the next bytes, and the
-// result.
+// A sequence: the bytes that are sent to `a`, each with the milliseconds until the next bytes are
+// sent, and the expected result.
 struct Sequence {
     const char* name;
     std::map<std::string, uint32_t> set;
     std::vector<std::pair<const char*, uint64_t>> sent;
     bool isCommandMode;
-    const char *answers, *atB; // output to the hosts of `a` and `b`
+    const char *answers, *atB; // output to the host of `a` and to the host of `b`
     friend void PrintTo(const Sequence& s, std::ostream* out) { *out << s.name; }
 };
 const Sequence sequences[] = {
@@ -40,7 +40,7 @@ const Sequence sequences[] = {
     {"OfFewerCharacters", {}, {{"", 11}, {"++", 30}}, false, "", "++"},
     {"OfAnotherCharacterThanCC", {{"CC", '-'}}, {{"", 11}, {"+++", 11}}, false, "", "+++"},
     {"OfCC", {{"CC", '-'}}, {{"", 11}, {"---", 11}}, true, "OK\r", ""},
-    // RO 0xFF: the modem would send nothing by itself for 265 ms
+    // RO 0xFF: without the end of the sequence, the modem would send nothing for 265 ms
     {"ThatDoesNotCome", {{"RO", 0xFF}}, {{"", 11}, {"before", 11}}, false, "", ""},
     {"BehindData", {{"RO", 0xFF}}, {{"", 11}, {"before", 11}, {"+++", 20}}, true, "OK\r", "before"},
     {"ThenCN", {}, {{"", 11}, {"+++", 11}, {"ATCN\r", 1}, {"data", 20}}, false, "OK\rOK\r", "data"},
@@ -50,7 +50,7 @@ const Sequence sequences[] = {
      true,
      "OK\r1\r",
      ""},
-    {"BeyondCTByAWrongCommand", // a wrong command does not restart the time
+    {"BeyondCTByAWrongCommand", // a wrong command does not restart the time-out
      {{"CT", 5}},
      {{"", 11}, {"+++", 411}, {"ATMY\r", 401}, {"ATXX\r", 106}},
      false,
@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(CommandMode, Sequences, ::testing::ValuesIn(sequences))
 using CommandMode = TwoModems;
 TEST_F(CommandMode, OkWaitsUntilReceivedDataHasDrained) {
     power();
-    lineA.paused = true; // the host's line is slow
+    lineA.paused = true; // the line to the host is slow
     lineB.send(Bytes(100, 'r'), now);
     run(20 * ms);
     run(11 * ms);
@@ -230,7 +230,8 @@ TEST_P(Api, TransmitRequestsAreSentAndTheirStatusReported) {
     } cases[] = {
         {{0x01, 0x52, 0, 2, 0, 'h', 0x7E, 0x11, 'i'}, "h\x7E\x11i", framed({0x89, 0x52, 0})},
         {{0x01, 0x07, 0x99, 0x99, 0, 'x'}, "", framed({0x89, 0x07, 1})}, // no receiver
-        {{0x01, 0x00, 0, 2, 0, 'x'}, "x", {}},                           // requests no status
+        // this frame requests no status
+        {{0x01, 0x00, 0, 2, 0, 'x'}, "x", {}},
         {{0x00, 0x01, 0, 0x13, 0xA2, 0, 0, 0, 0, 0x0B, 0, 'x'}, "x", framed({0x89, 0x01, 0})}};
     for (const auto& c : cases) {
         api(c.sent, 100 * ms);
@@ -273,7 +274,7 @@ TEST_P(Api, ABroadcastIsMarked) {
 }
 
 TEST_P(Api, CommandsAreAnsweredWithAStatus) {
-    // The manual's example.
+    // An example in the manual.
     EXPECT_EQ(command({0x08, 0x52, 'D', 'L'}), framed({0x88, 0x52, 'D', 'L', 0, 0, 0, 0, 2}));
     EXPECT_EQ(command({0x08, 0x4D, 'D', 'L', 0x50, 0x00}), framed({0x88, 0x4D, 'D', 'L', 0}));
     EXPECT_EQ(a->parameter("DL"), 0x5000u);

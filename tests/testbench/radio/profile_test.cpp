@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// profile_test: tests the differences between the modems that the model imitates: rates, ranges of
-// parameters, flow control, and sizes of packets.
+// profile_test: tests the differences between the modems that the model can imitate: rates, ranges
+// of parameters, flow control, and sizes of packets.
 
 #include "two_modems.h"
 
@@ -11,12 +11,13 @@ namespace {
 
 struct Modem {
     const char* name;
-    const char *bd7, *bd8, *bdA;      // answers of the modem to these values of BD
+    const char *bd7, *bd8, *bdA;      // answers of the modem to these values of the parameter BD
     const char *rate250000, *rate300; // answers of the modem to these rates
     const char *rn4, *c8;             // answers of the modem to ATRN4 and ATC8
     double baud7;                     // rate of BD 7
-    size_t ctsOff;                    // number of bytes in the buffer when CTS is deasserted
-    size_t packet, encrypted;         // most data in a packet
+    size_t ctsOff;                    // number of bytes in the buffer at which CTS is deasserted
+    // largest number of data bytes in a packet, without and with encryption
+    size_t packet, encrypted;
     friend void PrintTo(const Modem& modem, std::ostream* out) { *out << modem.name; }
 };
 const Modem modems[] = {
@@ -49,8 +50,9 @@ TEST_P(Profiles, HaveTheirOwnRangesOfParameters) {
 
 TEST_P(Profiles, DeassertCTSAtTheirThreshold) {
     perfect = false;
-    power({{"BD", 0x3D090}, {"RR", 6}}, {{"MY", 9}}); // the modem tries for a long time to send a
-                                                      // packet without a receiver
+    // with this setting, the modem tries for a long time to send a packet to a receiver that does
+    // not exist
+    power({{"BD", 0x3D090}, {"RR", 6}}, {{"MY", 9}});
     send(std::string(GetParam().packet, 'x'), 10 * ms);
     ASSERT_EQ(a->counters().packetsSent, 1u);
     size_t held = 0;

@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# program: tests icesoc-xbee as its user sees it, with stty and the shell as the serial programs:
-# help, wrong options, command mode, data in both directions, statistics, a clean end by Ctrl-C.
+# program: tests icesoc-xbee like a user: stty and the shell take the place of the programs that use
+# the serial ports. Tests help, wrong options, command mode, data in both directions, statistics,
+# and a clean end by Ctrl-C.
 # Usage: program.sh icesoc-xbee
 set -eu
 program=$1
@@ -25,7 +26,7 @@ done
 
 "$program" --a GT=14 --a BD=7 --b BD=7 --link-a "$work/a" --link-b "$work/b" -v >"$work/out" 2>&1 &
 pid=$!
-for _ in $(seq 500); do # waits until it exists
+for _ in $(seq 500); do # waits until the link exists
     [ -e "$work/b" ] && break
     sleep 0.02
 done
@@ -33,9 +34,9 @@ stty -F "$work/a" 115200 raw -echo
 stty -F "$work/b" 115200 raw -echo
 exec 3<>"$work/a" 4<>"$work/b"
 sleep 0.2
-# bash's built-in read would change the terminal's settings. The limit only prevents a broken
-# program from hanging.
-expect() { # file-descriptor text what
+# Uses head, because bash's built-in `read` would change the settings of the terminal. The limit
+# only prevents a broken program from hanging.
+expect() { # arguments: file descriptor, text, description
     answer=$(timeout 60 head -c ${#2} <&"$1" | tr '\r' '~') || true
     [ "$answer" = "${2//$'\r'/'~'}" ] || fail "$3: '$answer'"
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// radio_test: tests the modem's radio side and the air: addresses, time, tries, encryption,
+// radio_test: tests the radio side of the modem, and the air: addresses, times, tries, encryption,
 // weather.
 
 #include "two_modems.h"
@@ -12,7 +12,7 @@ using Addresses = TwoModems;
 using Mac = TwoModems;
 class Encryption : public TwoModems {
 protected:
-    // Encrypts one block with the key 000102..0F.
+    // Encrypts one block with AES and the key 000102..0F.
     static Bytes aes(const Bytes& block) {
         Bytes key, out(32);
         for (uint8_t i = 0; i < 16; ++i)
@@ -65,7 +65,7 @@ TEST_F(Mac, APacketIsWithItsReceiverAtTheEndOfItsFrame) {
     EXPECT_EQ(across("", 2'000), "x") << "128 + 192 + 20 x 32 us";
 }
 
-// All tries of the MAC together sense the channel 20 times; without retries (MM 1) 5 times.
+// The tries of a packet sense the channel 20 times in total; without retries (MM 1) 5 times.
 TEST_F(Mac, AChannelThatIsNeverClearIsTriedFourTimes) {
     for (uint32_t mm : {0u, 1u, 2u}) {
         power({{"RO", 0}, {"MM", mm}, {"AP", 1}});
@@ -106,7 +106,7 @@ TEST_F(Mac, AResetEndsTheTries) {
     EXPECT_EQ(across("y", 30 * ms), "y");
 }
 
-// number of tries without any acknowledgement, by RR and MM: RR needs the maker's header
+// number of tries without an acknowledgement, for each RR and MM; RR needs the maker's header
 struct Tries {
     uint32_t rr, mm;
     unsigned tries;
@@ -179,8 +179,8 @@ TEST_F(Encryption, WhereEEDiffersNothingComesOutAndTheSenderIsAcknowledged) {
     }
 }
 
-// The packet on the air is checked by AES on single blocks: 802.15.4-2003, 7.6.2 (flags, sender,
-// frame counter, key sequence counter, block number).
+// The packet on the air must be equal to one that is encrypted here block by block with AES, as
+// 802.15.4-2003, 7.6.2 defines (flags, sender, frame counter, key sequence counter, block number).
 TEST_F(Encryption, OnTheAirItIsAesInCounterModeOf802154) {
     power({{"EE", 1}}, {{"EE", 1}});
     enter();
@@ -199,8 +199,8 @@ TEST_F(Encryption, OnTheAirItIsAesInCounterModeOf802154) {
         EXPECT_EQ(onAir[5 + i] ^ aes(block)[i % 16], static_cast<uint8_t>(plain[i]))
             << "byte " << i;
     }
-    // FIPS-197, appendix C.1: the same key gives the same block, so the digits of the key are in
-    // the right order.
+    // FIPS-197, appendix C.1: this key must give this block, so the digits of the key are in the
+    // correct order.
     EXPECT_EQ(aes({0x00, 0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77, 0x88, 0x99, 0xAA, 0xBB, 0xCC,
                    0xDD, 0xEE, 0xFF}),
               (Bytes{0x69, 0xC4, 0xE0, 0xD8, 0x6A, 0x7B, 0x04, 0x30, 0xD8, 0xCD, 0xB7, 0x80, 0x70,
@@ -306,7 +306,7 @@ TEST_F(Air, CarrierSenseWaitsForTheOther) {
     power({{"RO", 0}, {"RN", 3}});
     air.weather.perfect = false;
     lineB.send(Bytes(30, 'y'), now);
-    run(3 * charNs() + ms); // the packet is certainly on the air
+    run(3 * charNs() + ms); // after this time the packet is on the air
     send("x", 50 * ms);
     EXPECT_EQ(air.counters().collisions, 0u);
     EXPECT_EQ(heard(), std::string(30, 'y'));
@@ -317,7 +317,7 @@ TEST_F(Air, AChannelThatIsNeverClearIsCountedInEC) {
     power({{"RO", 0}}, {{"RO", 0}});
     air.weather.perfect = false;
     air.weather.delayNs = 0;
-    // Other modems on the channel send without a pause.
+    // Other modems send on the channel without a pause.
     HostLine third;
     XBee::Options options;
     options.set = {{"MY", 3}, {"DL", 9}, {"MM", 1}, {"RO", 0}};

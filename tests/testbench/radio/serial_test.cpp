@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// serial_test: tests the modem's serial side: baud rate and its tolerance, packetizing, buffers,
-// flow control, reset.
+// serial_test: tests the serial side of the modem: baud rate and its tolerance, packetizing,
+// buffers, flow control, reset.
 
 #include "two_modems.h"
 
@@ -16,7 +16,7 @@ TEST_F(Packetizing, APacketLeavesAfterROOfSilenceOrAtOnceWithRO0OrAHundredBytes)
         Settings set;
         size_t bytes;
         uint64_t ns, sent;
-    } cases[] = {{{}, 3, 3 * charNs() - 1000, 0}, // RO 3 at 9600 baud: 3.125 ms
+    } cases[] = {{{}, 3, 3 * charNs() - 1000, 0}, // RO 3 at 9600 baud is 3.125 ms
                  {{}, 3, 3 * charNs() + 1000, 1},
                  {{{"RO", 0}}, 1, 0, 1},
                  {{{"RO", 0xFF}}, 99, 0, 0},
@@ -58,16 +58,18 @@ TEST_F(Buffers, OnePacketIsInFlightAtATime) {
 TEST_F(Buffers, CTSGoesOffWith17BytesLeftAndComesBackWith34Free) {
     power({{"BD", 7}});
     air.weather.delayNs = 100 * ms;
-    send(std::string(100, 'x')); // these bytes are in flight, so the buffer is empty
-    send(std::string(184, 'y')); // 18 bytes are free
+    send(std::string(100, 'x')); // these bytes are on the air, so the buffer is empty
+    send(std::string(184, 'y')); // 18 bytes of the buffer are free now
     EXPECT_TRUE(lineA.cts());
     send("y");
     EXPECT_FALSE(lineA.cts());
-    // The first packet has arrived, the next 100 bytes have left the buffer, and 85 bytes remain.
+    // The first packet has arrived. The next 100 bytes have left the buffer, so 85 bytes remain in
+    // it.
     run(110 * ms);
     EXPECT_TRUE(lineA.cts());
 
-    // The other limit: with 169 bytes in the buffer 33 bytes are free, with 168 bytes 34.
+    // The other limit: CTS is off with 169 bytes in the buffer (33 bytes free), and on with 168
+    // bytes (34 bytes free).
     power({{"BD", 7}, {"EE", 1}});
     air.weather.delayNs = 100 * ms;
     send(std::string(95, 'x'));
@@ -110,7 +112,8 @@ TEST_F(Buffers, TheOutputBufferHolds202BytesAndWhatComesThenIsAcknowledgedAndLos
     EXPECT_EQ(heardB(), std::string(100, 'x') + std::string(100, 'y'));
 }
 
-// A host whose UART is simulated bit by bit, so that its rate may differ from the modem's.
+// Tests with a host whose UART is simulated bit by bit, so that its rate may differ from the
+// modem's.
 class Wire : public ::testing::Test {
 protected:
     void connect(std::map<std::string, uint32_t> settings) {
@@ -154,8 +157,8 @@ protected:
     std::unique_ptr<XBee> modem_;
     bool level_ = true;
     std::vector<uint64_t> edges_;
-    std::string sent_; // last packet sent
-    RfPacket crowd_;   // packet that another modem sends continuously, unless it is empty
+    std::string sent_; // the packet that was sent last
+    RfPacket crowd_;   // packet that another modem sends continuously; none is sent if it is empty
 };
 
 class BaudTolerance : public Wire, public ::testing::WithParamInterface<double> {};
@@ -186,7 +189,8 @@ TEST_F(Wire, RepliesHaveTheModemsRateAndBDChangesAfterTheOK) {
     send("ATBD7\rATCN\r", 57600); // both "OK" answers are sent at the old rate
     step(now_ + 3'000'000);
     EXPECT_NEAR(modem_->baud(), 111111, 1);
-    // 'K' and 'O' have edges one bit apart, so the shortest distance is the time of a bit.
+    // 'K' and 'O' contain edges that are one bit apart, so the shortest distance of two edges is
+    // the time of one bit.
     uint64_t shortest = ~uint64_t(0);
     for (size_t i = 1; i < edges_.size(); ++i)
         shortest = std::min(shortest, edges_[i] - edges_[i - 1]);
@@ -205,7 +209,7 @@ TEST_F(Wire, BDChangesAfterTheOKThoughMoreComesThanTheOldRateCarries) {
     step(now_ + 5'000'000);
     ASSERT_TRUE(modem_->inCommandMode());
     send("ATBD7\rATCN\r", 9600);
-    step(now_ + 250'000'000); // sending a full buffer takes 210 ms
+    step(now_ + 250'000'000); // the modem needs 210 ms to send a full buffer
     edges_.clear();
     step(now_ + 2'000'000);
     ASSERT_GT(edges_.size(), 2u);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// two_modems: two modems, `a` at address 1 and `b` at address 2, the air between them, and their
-// hosts.
+// two_modems: a test fixture with two modems, `a` with address 1 and `b` with address 2, the air
+// between them, and their hosts.
 
 #pragma once
 
@@ -19,7 +19,7 @@ protected:
     static constexpr uint64_t ms = 1'000'000;
     static constexpr uint64_t afterFrame = 544'000 + 640'000; // acknowledgement, gap
 
-    // Switches both modems on. Settings that differ from the factory's: short guard times,
+    // Switches both modems on. They have the factory settings except for short guard times and the
     // addresses 1 and 2.
     void power(Settings forA = {}, Settings forB = {}) {
         XBee::Options optionsA, optionsB;
@@ -55,11 +55,11 @@ protected:
         lineA.send(bytes(data), now);
         run(ns);
     }
-    // Returns the bytes that modem `a` has passed to its host since the last call.
+    // Returns the bytes that modem `a` has sent to its host since the last call.
     std::string heard() { return text(std::exchange(lineA.received, {})); }
     std::string heardB() { return text(std::exchange(lineB.received, {})); }
-    // Returns the bytes that modem `b` passes to its host within the given time after `data` went
-    // to `a`.
+    // Sends `data` to modem `a`. Returns the bytes that modem `b` sends to its host within the next
+    // `ns`.
     std::string across(const std::string& data, uint64_t ns) {
         send(data, ns);
         return heardB();
@@ -80,8 +80,8 @@ protected:
         Bytes bytes;
         RfChannel::Outcome outcome;
     };
-    std::string profile = "s1"; // profile of both modems at the next power()
-    bool perfect = true;        // RfWeather::perfect at the next power()
+    std::string profile = "s1"; // profile of both modems; takes effect at the next power()
+    bool perfect = true;        // value for RfWeather::perfect; takes effect at the next power()
     uint64_t now = 0;
     RfChannel air{testSeed()};
     HostLine lineA, lineB;

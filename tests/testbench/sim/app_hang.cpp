@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// app_hang: selects a firmware with an interrupt routine that does not end, for hang.sh.
+// app_hang: selects firmware whose interrupt routine never ends, for hang.sh.
 
 #include "uav_machine.h"
 
-// Computes without end; its name appears in the simulator's message.
+// Computes without end. The simulator's message must contain the name of this function.
 extern "C" __attribute__((noinline)) void computesWithoutEnd() {
     for (volatile unsigned work = 0;; work = work + 1) {
     }
@@ -14,7 +14,7 @@ UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>&, bool) {
     UavMachine::Firmware firmware;
     firmware.irqHandler = [] {
         computesWithoutEnd();
-        asm volatile(""); // no tail call
+        asm volatile(""); // prevents a tail call
     };
     return firmware;
 }

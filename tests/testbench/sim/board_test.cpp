@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// board_test: tests that the firmware flies through the kit's generated pins, with each modem on
-// sale, and that a flight fails with a swapped pair, a wrong alternate function, a bank without
-// supply or a wrong place in the constraints.
+// board_test: tests that the firmware can fly with the kit's generated pins and each of the modems
+// that can be bought. Also tests that a flight fails if a pair of wires is swapped, an alternate
+// function is wrong, a bank has no supply, or a location in the constraints is wrong.
 
 #include "ground.h"
 #include "m3_machine.h"
@@ -18,14 +18,14 @@ std::string textOf(const std::string& file) {
     return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// Replaces one text, which must exist, by another one.
+// Replaces a text by another one. The text must exist.
 std::string with(std::string text, const std::string& old, const std::string& other) {
     const size_t at = text.find(old);
     EXPECT_NE(at, std::string::npos) << old;
     return at == std::string::npos ? text : text.replace(at, old.size(), other);
 }
 
-// Exchanges two words of a text.
+// Swaps two words of a text.
 std::string swapped(const std::string& text, const std::string& a, const std::string& b) {
     return with(with(with(text, a, "@"), b, a), "@", b);
 }
@@ -34,8 +34,8 @@ struct Board {
     std::string wires = textOf("board.wires"), ucf = textOf("board.ucf");
 };
 
-// Flies on a board until a call has been answered, the firmware has given up, or the time is over.
-// Returns whether the call was answered.
+// Flies on a board until a call has been answered, the firmware has given up, or the time has
+// elapsed. Returns true if the call was answered.
 bool answersACall(const Board& board, double seconds) {
     GroundAndChip flight;
     flight.soc.wires() = BoardWires(board.wires, board.ucf);
@@ -54,7 +54,7 @@ bool answersACall(const Board& board, double seconds) {
     return isAnswered;
 }
 
-constexpr double enough = 3; // time limit, s; the good board answers after 1.3 s
+constexpr double enough = 3; // time limit, s; on a correct board the answer comes after 1.3 s
 
 TEST(BoardWires, AreStraightWhenTheFirmwaresTableHasSwitchedThePins) {
     Board kit;
@@ -85,7 +85,7 @@ TEST(BoardWires, AreStraightWhenTheFirmwaresTableHasSwitchedThePins) {
 
 TEST(BoardWires, ASwappedPairExchangesItsLevels) {
     Board board;
-    board.ucf = swapped(board.ucf, "\"E12\"", "\"E13\""); // D0 and D1
+    board.ucf = swapped(board.ucf, "\"E12\"", "\"E13\""); // swaps the locations of D0 and D1
     BoardWires wires(board.wires, board.ucf);
     EXPECT_FALSE(wires.isStraight());
     FsmcPins near;
@@ -111,7 +111,7 @@ TEST(BoardFlight, TheKitAnswersACallThroughItsGeneratedPins) {
     EXPECT_TRUE(answersACall({}, enough));
 }
 
-// name of a board on which no call is answered, and the fault that it gets
+// a board on which no call is answered: its name, and its fault
 struct WrongBoard {
     const char* name;
     void (*spoil)(Board& board);
@@ -120,7 +120,7 @@ struct WrongBoard {
 const WrongBoard wrongBoards[] = {
     {"TwoDataWiresInEachOthersPlaces",
      [](Board& board) { board.wires = swapped(board.wires, " E12 ", " E13 "); }},
-    {"TwoAddressPlacesSwappedInTheConstraints", // A0 and A1
+    {"TwoAddressPlacesSwappedInTheConstraints", // swaps the locations of A0 and A1
      [](Board& board) { board.ucf = swapped(board.ucf, "\"K15\"", "\"K16\""); }},
     {"ASignalOnAnotherAlternateFunction",
      [](Board& board) { board.wires = with(board.wires, "PD4 12 FSMC_NOE", "PD4 11 FSMC_NOE"); }},
@@ -145,8 +145,8 @@ TEST_P(BoardFlights, AnswerNoCall) {
     EXPECT_FALSE(answersACall(board, enough));
 }
 
-// Flies the mission through the kit's pins with each modem: set-up by the controller's AT commands,
-// a parameter, the picture's result and telemetry.
+// Flies the mission with the kit's pins and each modem: the controller sets the modem up by AT
+// commands, then a parameter is set, and a picture's result and telemetry are fetched.
 class ModemFlights : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(With, ModemFlights, testing::Values("s1", "s2c", "xb3"),
                          [](const auto& each) { return std::string(each.param); });

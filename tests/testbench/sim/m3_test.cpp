@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// m3_test: tests the firmware's ARM binary on the RTL: the same mission as the host build's, bit by
-// bit, and its failures: watchdog, faults, a corrupt image.
+// m3_test: tests the firmware's ARM binary on the RTL. It must fly the same mission as the host
+// build, bit by bit, and handle the watchdog, faults and a corrupt image.
 
 #include "m3_machine.h"
 #include "to_all.h"
@@ -19,14 +19,15 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-// UAV_FIRMWARE names another binary, such as one with the real uC/OS-II (docs/firmware.md).
+// UAV_FIRMWARE is the path of another binary to test, such as one with the real uC/OS-II
+// (docs/firmware.md).
 M3Machine::Config firmwareAt(uint32_t hclkHz) {
     const char* other = std::getenv("UAV_FIRMWARE");
     return {other ? other : FIRMWARE_ELF, hclkHz, Ground::guardMs};
 }
 const M3Machine::Config firmware = firmwareAt(120'000'000);
 
-// One flight: the air, both modems, the chip, and a ground station that makes a list of calls.
+// One flight: the air, both modems, the chip, and a ground station that makes calls from a list.
 struct Flight : GroundAndChip {
     Flight() {
         air.onPacket([this](uint64_t, const RfPacket& p, RfChannel::Outcome) {
@@ -76,10 +77,10 @@ size_t differingBytes(const Bytes& a, const Bytes& b) {
     return n;
 }
 
-// The reply of getResult contains the clock cycles that the core has counted. They depend on the
-// other accesses to the memory at that time. Only these four bytes may differ between the builds,
-// and with them two checksums: of the packet that contains them, and of the packet that ends the
-// message.
+// The reply to getResult contains the number of clock cycles that the core has counted. This number
+// depends on the other accesses to the memory at that time. Only its four bytes may differ between
+// the builds, and with them two checksums: that of the packet that contains them, and that of the
+// packet that ends the message.
 constexpr size_t cyclesAt = 29, cyclesBytes = 4, checksumBytes = 2;
 constexpr int packetsThatMayDiffer = 2;
 
@@ -88,7 +89,7 @@ TEST(CortexM3Firmware, FliesTheMissionAsTheHostBuildDoesByteByByteOnTheAir) {
     EXPECT_TRUE(flies(host.soc, host.mission(2), 30));
     m3.fly(m3.mission(2), 30);
     ASSERT_EQ(host.ground.replies.size(), 7u);
-    EXPECT_EQ(host.ground.replies[7], 2); // no object has this name
+    EXPECT_EQ(host.ground.replies[7], 2); // there is no object with this name
     for (auto* flight : {&host, &m3})
         std::fill_n(flight->ground.messages[5].begin() + cyclesAt, cyclesBytes, 0);
     EXPECT_GT(host.ground.messages[5].size(), 60u) << "no corners were found";
@@ -113,7 +114,8 @@ TEST(CortexM3Firmware, LosesNothingInBadWeatherAndAtTheBoardsCycleRatio) {
     f.fly(f.mission(22), 90, firmwareAt(0));
     EXPECT_EQ(f.ground.replies.size(), 27u);
     for (auto& [id, status] : f.ground.replies)
-        EXPECT_EQ(status, id < 27 ? 0 : 2) << id; // the last call is for a missing object
+        // the last call is to an object that does not exist
+        EXPECT_EQ(status, id < 27 ? 0 : 2) << id;
     EXPECT_GT(f.air.counters().lost, 0u);
 }
 
@@ -132,8 +134,9 @@ TEST(CortexM3Firmware, CarriesACallToAllVehiclesOutOnce) {
     EXPECT_TRUE(w.isDone);
 }
 
-// One flight with several faults: a core that hangs, a processor that hangs, the FSMC switched off,
-// a stack overflow. Each is reported in the system slot, and the link recovers by itself.
+// Tests several faults in one flight: a core that hangs, a processor that hangs, an FSMC that is
+// switched off, and a stack overflow. Each fault must be reported in the system slot, and the link
+// must recover by itself.
 TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
     Flight f;
     uint64_t since = 0;
@@ -142,11 +145,12 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
         try {
             return reasonOf(f.scratch());
         } catch (const FsmcError&) {
-            return Boot_Reason(); // the firmware has not switched the FSMC on yet
+            // the firmware has not switched the FSMC on yet, so nothing can be read
+            return Boot_Reason();
         }
     };
-    auto readNobodysRegister = [&] { // the access causes an event and an interrupt, and the flight
-                                     // continues
+    // this access causes an event and an interrupt, after which the flight continues
+    auto readNobodysRegister = [&] {
         EXPECT_EQ(f.variable("busErrors"), 0u);
         (void)f.soc.fsmc().read32(MAP_CONTROL_WINDOW + 64 * 33 + 4 * 5);
         since = f.soc.cycles();
@@ -155,11 +159,13 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
     auto hangProcessor = [&] {
         EXPECT_EQ(f.variable("busErrors"), 1u);
         EXPECT_EQ(f.variable("busErrorPlace"), 33u * 16 + 5);
-        f.ground.ping(100, "hwengine1");            // the call is on its way when ...
-        f.m3->cpu().setReg(CortexM3::Faultmask, 1); // ... interrupts are disabled
+        // this call is on its way when the next step ...
+        f.ground.ping(100, "hwengine1");
+        f.m3->cpu().setReg(CortexM3::Faultmask, 1); // ... disables interrupts
         return true;
     };
-    auto groundIsTold = [&] { // waits for the watchdog's reset, until the link is up again
+    // waits until the watchdog has reset the processor and the link is up again
+    auto groundIsTold = [&] {
         if (f.m3->stm32().resets().watchdog == 0 || f.ground.unknown == 0 || !f.ground.isUp())
             return false;
         EXPECT_EQ(f.ground.replies.count(100), 0u);
@@ -167,7 +173,7 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
         f.ground.replies.clear();
         return true;
     };
-    auto switchNe2Off = [&] { // the next register access fails
+    auto switchNe2Off = [&] { // makes the next access to a register fail
         f.soc.fsmc().write32(0xA0000008, 0x000030D2);
         return true;
     };
@@ -194,15 +200,17 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
     EXPECT_EQ(f.scratch() >> 16 & 0xFF, 4u) << "starts since power-on";
 }
 
-// The memory does not answer: accesses end by the time-out of the bridge. Each one is a bus error
-// with its address, without a reset. When the memory responds again, the flight continues.
+// The memory does not answer, so accesses end by the time-out of the bridge. Each of them is a bus
+// error with its address, and does not cause a reset. When the memory answers again, the flight
+// continues.
 TEST(CortexM3Firmware, AHungMemoryIsReportedAndTheFlightGoesOn) {
     Flight f;
     uint64_t since = 0;
     auto hang = [&] {
         EXPECT_EQ(f.variable("busErrors"), 0u);
         f.soc.memory().hang(true);
-        f.ground.ping(100, "hwengine1"); // the firmware must read its packet from the memory
+        // the firmware must read the packet of this call from the memory
+        f.ground.ping(100, "hwengine1");
         (void)f.soc.fsmc().read16(MAP_DDR_WINDOW);
         since = f.soc.cycles();
         return true;
@@ -235,8 +243,8 @@ TEST(CortexM3Firmware, ACorruptImageIsRefusedWithItsReason) {
         Flight f;
         M3Machine machine(f.soc, firmware, [&] { return f.within(0.3); });
         const ElfImage& image = *machine.stm32().image();
-        // Flips a bit anywhere after the reporting code; start, boot and FSMC driver come first in
-        // the image.
+        // Flips one bit behind the code that reports errors. Start-up code, boot code and FSMC
+        // driver are before it in the image.
         uint32_t begin = image.symbol("telling_end"), end = image.symbol("image_end");
         uint32_t at = begin + random.below(end - begin);
         uint8_t byte = 0;
@@ -262,7 +270,7 @@ TEST(CortexM3Firmware, AnAbortTellsWhereTheChipAndTheProgramAre) {
 TEST(CortexM3Firmware, WithoutAKeyItDoesNotStartAndTriesAgain) {
     Flight f;
     M3Machine machine(f.soc, firmware, [&] { return f.within(2.2); });
-    machine.stm32().backup().fill(0); // the battery was empty
+    machine.stm32().backup().fill(0); // the backup memory is empty, as after the battery was empty
     machine.run();
     EXPECT_EQ(reasonOf(f.scratch()), BOOT_NO_KEY);
     EXPECT_GE(machine.stm32().resets().watchdog, 1u);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// picture_test: tests that a photograph is upright, and that its grey levels are right.
+// picture_test: tests that photographs are turned upright, and that grey levels are correct.
 
 #include "picture.h"
 
@@ -14,8 +14,8 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-// A JPEG file of 32 x 16 pixels without its first marker. Its quarters have the grey levels 20 and
-// 80 (upper half), 140 and 220 (lower half).
+// A JPEG file of 32 x 16 pixels without its first marker. Its four quarters have the grey levels 20
+// and 80 (upper half) and 140 and 220 (lower half).
 const Bytes quarters = {
     0xFF, 0xDB, 0x00, 0x43, 0x00, 0x10, 0x0B, 0x0C, 0x0E, 0x0C, 0x0A, 0x10, 0x0E, 0x0D, 0x0E,
     0x12, 0x11, 0x10, 0x13, 0x18, 0x28, 0x1A, 0x18, 0x16, 0x16, 0x18, 0x31, 0x23, 0x25, 0x1D,
@@ -46,7 +46,7 @@ protected:
     }
     Picture read(const std::string& file) { return read(Bytes(file.begin(), file.end())); }
 
-    // Returns the message for a file that is rejected.
+    // Returns the message for a file that must be rejected.
     std::string reasonFor(const std::string& file) {
         try {
             read(file);
@@ -56,7 +56,7 @@ protected:
         return "accepted";
     }
 
-    // Adds an EXIF block with an orientation, in either byte order.
+    // Returns a file with an EXIF block that contains an orientation, in either byte order.
     static Bytes oriented(int orientation, bool isLittle) {
         const auto number = [&](size_t value, int bytes) {
             Bytes text;
@@ -74,7 +74,7 @@ protected:
         add(number(2, 2)); // two entries
         for (const auto& [tag, value] : {std::pair{0x0103, 6}, {0x0112, orientation}}) {
             add(number(size_t(tag), 2));
-            add(number(3, 2)); // an entry with a 16-bit number
+            add(number(3, 2)); // an entry that contains a 16-bit number
             add(number(1, 4));
             add(number(size_t(value), 2));
             add({0, 0});
@@ -87,9 +87,9 @@ protected:
     std::string path_;
 };
 
-// EXIF 2.3, tag 0x0112: the sides of the upright picture at which the stored row 0 and column 0
-// are. 1 top left, 2 top right, 3 bottom right, 4 bottom left, 5 left top, 6 right top, 7 right
-// bottom, 8 left bottom.
+// EXIF 2.3, tag 0x0112: an orientation states at which sides of the upright picture the stored row
+// 0 and column 0 are: 1 top and left, 2 top and right, 3 bottom and right, 4 bottom and left, 5
+// left and top, 6 right and top, 7 right and bottom, 8 left and bottom.
 TEST_F(Pictures, APhotographIsUprightInEachOfTheEightOrientations) {
     const int upright[][4] = {{20, 80, 140, 220}, {80, 20, 220, 140}, {220, 140, 80, 20},
                               {140, 220, 20, 80}, {20, 140, 80, 220}, {140, 20, 220, 80},
@@ -112,7 +112,7 @@ TEST_F(Pictures, AnOrientationThatIsDamagedIsIgnored) {
     for (const int orientation : {0, 9, 65535})
         EXPECT_EQ(read(oriented(orientation, false)).width, 32);
     Bytes cut = oriented(6, false);
-    cut[17] = 0xFF; // the directory would be far beyond the end
+    cut[17] = 0xFF; // the directory would begin far beyond the end of the file
     EXPECT_EQ(read(cut).width, 32);
 }
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// quiet_test: tests that a flight in which quiet clocks are skipped and idle cores have no clock
-// equals, clock by clock, a flight in which each clock is evaluated and each core is clocked.
-// COMPARE_MS=1000 compares one second of the flight. In a second flight every core works, and the
-// camera pins change.
+// quiet_test: compares two flights clock by clock. In the quick flight, quiet clocks are skipped,
+// and idle cores have no clock. In the slow flight, each clock is evaluated, and each core has its
+// clock. COMPARE_MS=1000 compares one second of the flight. In a second pair of flights every core
+// works, and the camera pins change.
 
 #include "../../support/environment.h"
 #include "VSoc___024root.h"
@@ -35,23 +35,25 @@ struct Flight {
     std::map<int, int> replies; // their statuses
 };
 
-// The plan of a flight. The slow flight evaluates each clock at its start and once for `compareNs`,
-// starting with reply number `comparedFrom` (0: with the first call).
+// The plan of a flight. The slow flight evaluates each clock at its start, and later for
+// `compareNs`. This later time begins with reply number `comparedFrom`; 0 means with the first
+// call.
 struct Plan {
-    std::vector<Ground::Call> calls; // repeated, each after the previous reply
+    // calls that are repeated; each call begins after the reply to the previous one
+    std::vector<Ground::Call> calls;
     uint64_t compareNs = 0;
     size_t comparedFrom = 0;
-    size_t framedAfter = 0; // number of replies after which the camera's sensor sends a frame; 0:
-                            // never
+    // number of replies after which the camera's sensor sends frames; 0 means that it sends none
+    size_t framedAfter = 0;
 };
 
-// Returns the time of a flight that is compared, ns.
+// Returns how much of a flight is compared, ns.
 uint64_t comparedNs() {
     return static_cast<uint64_t>(1e6 * numberFromEnvironment("COMPARE_MS", 40));
 }
 
-// Makes the camera's sensor send frames: at first one each millisecond, then one while a call waits
-// for it.
+// Makes the camera's sensor send frames: first one each millisecond, later one whenever a call
+// waits for a frame.
 void sendFrames(GroundAndChip& world, size_t framedAfter, std::function<void(uint32_t)> note) {
     Frame frame{16, 8, {}};
     for (int i = 0; i < 16 * 8; ++i)
@@ -67,7 +69,7 @@ void sendFrames(GroundAndChip& world, size_t framedAfter, std::function<void(uin
     connectSensor(world.soc, frame, sends, std::move(note));
 }
 
-// Flies until each call has been answered, and until the compared time is over.
+// Flies until all calls have been answered and the compared time has elapsed.
 Flight fly(const Plan& plan, bool slow) {
     Flight f;
     GroundAndChip world;
@@ -78,7 +80,7 @@ Flight fly(const Plan& plan, bool slow) {
         f.events.push_back({soc.cycles(), what, value});
     };
     soc.onTime([&](uint64_t now) {
-        note(2, 0); // call that gives modems and air something to do
+        note(2, 0); // a call that makes modems and air active
         return ground.advance(now);
     });
     soc.onIrq([&](bool high) { note(0, high); });
@@ -122,7 +124,7 @@ Flight fly(const Plan& plan, bool slow) {
     return f;
 }
 
-// Compares the quick flight with the slow flight, and returns both.
+// Flies the quick flight and the slow flight, and compares them. Returns both.
 std::pair<Flight, Flight> expectSame(const Plan& plan) {
     Flight quick = fly(plan, false), slow = fly(plan, true);
     EXPECT_EQ(quick.clocks, slow.clocks);
@@ -155,7 +157,7 @@ TEST(Quiet, AFlightIsTheSameWithQuietClocksPassedAtOnce) {
 }
 
 #if defined(MAP_SLOT_FIR) && defined(MAP_SLOT_ASCON)
-// A core that reports idle although it is not would stop only in the quick flight.
+// A core that reports that it is idle although it is not would stop only in the quick flight.
 TEST(Quiet, EachCoreWorksAsIfItsClockNeverStopped) {
     std::vector<uint8_t> samples = {24}, key = {16}, message = {40};
     for (uint8_t i = 0; i < 48; ++i)
@@ -177,8 +179,7 @@ TEST(Quiet, EachCoreWorksAsIfItsClockNeverStopped) {
 }
 #endif
 
-// Verilator reads a random value at an index beyond the range, and writes to a scratch variable
-// there.
+// If an index is out of range, Verilator reads a random value, or writes to a scratch variable.
 TEST(Quiet, VerilatorsScratchIsNoStateOfTheChip) {
     SocState::Image zeros(sizeof(VSoc___024root), 0), ones(sizeof(VSoc___024root), 255);
     auto paths = SocState::differences(zeros, ones);
@@ -221,7 +222,8 @@ TEST(Quiet, TheChipIsTheSameInWhateverClockItIsLookedAt) {
     EXPECT_LT(quick.evaluated() * 2, quick.cycles());
 }
 
-// Returns whether the memory is ready this many clocks after its start, in a chip that was quiet.
+// Starts the memory in a chip that was quiet. Returns true if the memory is ready after this number
+// of clocks.
 bool isMemoryReady(uint64_t clocks) {
     RfChannel air(testSeed());
     SocModel soc(air, Ground::uavModem());
@@ -238,7 +240,7 @@ TEST(Quiet, TheMemoryIsReadyInItsClock) {
     EXPECT_TRUE(isMemoryReady(McbModel::startClocks));
 }
 
-// Two chips with the same input; one of them evaluates each clock.
+// Two chips with the same input; in one of them each clock is evaluated.
 struct TwoChips {
     TwoChips() {
         slow.evaluateAll(true);
@@ -247,8 +249,8 @@ struct TwoChips {
             EXPECT_EQ(FSMC_init(&driverPort, &soc->fsmc()), FSMC_OK);
         }
     }
-    // Writes a 64-bit word to the memory, and begins the next one, so that the bridge sends the
-    // first.
+    // Writes a 64-bit word to the memory and begins the next word, so that the bridge sends the
+    // first one.
     static void write(SocModel& soc) {
         for (uint32_t word = 0; word < 2; ++word)
             soc.fsmc().write16(fsmc::windowsAt + 8 * word, 1);
@@ -258,7 +260,7 @@ struct TwoChips {
     SocModel quick{air, Ground::uavModem()}, slow{air, Ground::uavModem()};
 };
 
-// A platform that waits for the memory to be ready does not change, and continues as soon as the
+// A platform that waits until the memory is ready does not change, and must continue as soon as the
 // memory is ready.
 TEST(Quiet, WhatWaitsForTheMemoryGoesWhenItIsReady) {
     TwoChips pair;
@@ -290,7 +292,7 @@ TEST(Quiet, AMemoryThatHungGoesOnInItsClock) {
     EXPECT_EQ(pair.quick.memory().wordsWritten, 1u);
 }
 
-// Modem and air act in the clock in which they are due, regardless of when the test looks.
+// Modem and air must act in the clock in which they are due, whenever the test looks at them.
 TEST(Quiet, NothingOutsideOfTheChipIsLate) {
     GroundAndChip world;
     auto& [air, ground, soc] = world;
@@ -309,9 +311,10 @@ TEST(Quiet, NothingOutsideOfTheChipIsLate) {
     EXPECT_EQ(ground.replies.size(), 3u);
 }
 
-// A processor that takes no packets fills the ring: RTS holds back further bytes.
+// If a processor takes no packets, the ring becomes full, and RTS stops further bytes.
 TEST(Quiet, WhatRtsHoldsBackGoesOnInItsClock) {
-    constexpr unsigned bytes = 2500, fill = 14 * 100; // RTS rises at 14 packets of 16
+    // RTS rises when 14 of 16 packets are in the ring
+    constexpr unsigned bytes = 2500, fill = 14 * 100;
     constexpr uint64_t bitNs = 4000, byteNs = 10 * bitNs;
     RfChannel air(testSeed());
     SocModel soc(air, Ground::uavModem());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// soc_test: tests the whole chip through its FSMC pins: registers, memory, errors.
+// soc_test: tests the whole chip through its FSMC pins: registers, memory, and errors.
 
 #include "driver_port.h"
 #include "map_regs.h"
@@ -67,20 +67,21 @@ TEST_F(Soc, ThePageRegisterReachesTheUpperHalf) {
     write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, 1);
     fsmc_.write16(ddr + 0x40, 0x5A5A);
     write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, 0);
-    EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_PAGE), 0u); // the read waits for the posted write
+    // this read waits until the posted write has been done
+    EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_PAGE), 0u);
     EXPECT_EQ(soc_.memory().data()[0x04000040], 0x5A);
     EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0);
 }
 
-// Sets each address line alone, and each data line to both levels; this detects a line that is cut
-// or crossed. The memory has 128 MiB.
+// Sets each address line by itself, and each data line to both levels, which detects a line that is
+// cut or connected to another one. The memory has 128 MiB.
 TEST_F(Soc, EveryLineToTheMemoryIsConnected) {
     uint32_t page = 0;
     auto place = [&](uint32_t address) {
         if (address >> 26 != page) {
             page = address >> 26;
             write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, page);
-            read(MAP_SLOT_SYSTEM, SYSTEM_PAGE); // waits, because register writes are posted
+            read(MAP_SLOT_SYSTEM, SYSTEM_PAGE); // waits, because writes to registers are posted
         }
         return ddr + (address & 0x03FFFFFF);
     };
@@ -95,29 +96,29 @@ TEST_F(Soc, EveryLineToTheMemoryIsConnected) {
     }
     for (auto [address, value] : expected)
         EXPECT_EQ(fsmc_.read16(place(address)), value) << std::hex << address;
-    for (unsigned bit = 0; bit < 6; ++bit) { // the page register also stores bits beyond the memory
+    // the page register also stores bits for addresses beyond the memory
+    for (unsigned bit = 0; bit < 6; ++bit) {
         write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, 1u << bit);
         EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_PAGE), 1u << bit);
     }
 }
 
-// Walks bits through the writable registers of all slots, over the bus and back.
+// Writes words with a single bit set to the writable registers of all slots, and reads them back.
 TEST_F(Soc, EveryLineToTheSlotsIsConnected) {
     for (unsigned bit = 0; bit < 32; ++bit) {
         write(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH, 1u << bit);
         EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH), 1u << bit);
-        uint32_t address =
-            1u << bit & 0xFFFFF800; // a ring of the modem begins at a multiple of 2048
+        uint32_t address = 1u << bit & 0xFFFFF800; // rings of the modem begin at multiples of 2048
         write(MAP_SLOT_MODEM, MODEM_TX_BASE, address);
         EXPECT_EQ(read(MAP_SLOT_MODEM, MODEM_TX_BASE), address);
     }
-    for (unsigned slot = 0; slot < 64; ++slot) // every slot answers; an empty slot answers with an
-                                               // error
+    // every slot must answer; a slot that is empty answers with an error
+    for (unsigned slot = 0; slot < 64; ++slot)
         read(slot, 0);
 }
 
-// The processor starts before the DDR3, as on a board: nothing hangs, early accesses are reported,
-// and posted writes are kept.
+// The processor starts before the DDR3 is ready, as on a board. Nothing may hang, early accesses
+// must be reported, and posted writes must be kept.
 TEST_F(Soc, AnAccessWhileTheMemoryStartsIsToldAndLaterOnesAreRight) {
     soc_.reset(true);
     fsmc_.write16(ddr + 0x100, 0x1234);
@@ -132,8 +133,8 @@ TEST_F(Soc, AnAccessWhileTheMemoryStartsIsToldAndLaterOnesAreRight) {
     EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_EVENT), 0u);
 }
 
-// The chip, or its netlist, with real wires: registers and memory in each corner of the wires'
-// delays.
+// Accesses registers and memory of the chip, or of its netlist, through real wires, in each corner
+// of their delays.
 TEST(SocCorners, NoAccessIsLostInAnyOfThem) {
     for (unsigned index = 0; index < std::size(fsmcCorners); ++index)
         for (unsigned hclk : {60u, 100u, 120u})

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// standstill_test: tests that a computation without end is reported once, with its functions, and
-// that a computation in which simulated time passes is not reported.
+// standstill_test: tests that a computation that never ends is reported once, with its functions. A
+// computation in which simulated time passes must not be reported.
 
 #include "standstill.h"
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// to_all: a vehicle that receives calls to all vehicles. The host build and the ARM binary make the
+// to_all: a vehicle that receives calls to all vehicles. The host build and the ARM binary fly the
 // same flight.
 
 #pragma once
@@ -12,8 +12,8 @@ extern "C" {
 #include "link_broadcast.h"
 }
 
-// A vehicle that the pilot calls, and a modem that sends calls to all vehicles. A threshold of 10
-// finds some of the picture's corners, and a threshold of 200 finds none.
+// A vehicle that is called by the pilot, and a modem that sends calls to all vehicles. With a
+// threshold of 10 the picture has corners, with a threshold of 200 it has none.
 class ToAll : public GroundAndChip {
 public:
     using Key = std::vector<uint8_t>;
@@ -34,8 +34,8 @@ public:
         });
         provide(64, 64, [](uint32_t i) { return i % 8 < 3 && i / 64 % 8 < 3 ? 150 : 100; });
     }
-    // Begins a flight with these steps, and returns a function; a machine continues while the
-    // function returns true.
+    // Begins a flight with these steps. Returns a function that a machine calls; the machine
+    // continues while it returns true.
     std::function<bool()> flight(std::vector<Script> steps) {
         soc.reset(true);
         ground.start();
@@ -45,7 +45,7 @@ public:
             return !isDone && within(60);
         };
     }
-    // Sends a new call, in three copies, since one may collide with a packet of the link.
+    // Sends a new call in three copies, because one of them may collide with a packet of the link.
     Script send(const Key& key, U32 number, const Call& call) {
         const auto m = Ground::request(0, call.object, call.operation, call.mode, call.parameters);
         Key packet(LINK_MAX_FRAME, 0x55);
@@ -63,7 +63,8 @@ public:
             return at++ == packets.size();
         };
     }
-    // Makes calls of the pilot; `some` states whether the first byte of the last result is not 0.
+    // Makes calls of the pilot. `some` is the expected answer to the question whether the first
+    // byte of the last result is different from 0.
     Script calls(std::vector<Call> these, bool some = false, const char* what = "") {
         const int last = static_cast<int>(these.size());
         return inOrder({[this] { return ground.replies.clear(), true; },

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// uav_test: RTL, modems, radio and firmware together, deterministic. The ground station is the same
-// link layer in this process, and requests are written byte by byte. A third modem on the air
-// attacks: with a key it achieves nothing; in the clear it ends a session.
+// uav_test: tests RTL, modems, radio and firmware together; the simulation is deterministic. The
+// ground station uses the same link layer in this process, and its requests are written byte by
+// byte. A third modem on the air attacks: if the link has a key it achieves nothing; without a key
+// it can end a session.
 
 #include "attacker.h"
 #include "to_all.h"
@@ -40,8 +41,8 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
                      soc.modem().resetPin(false, soc.now() + 1000);
                      return hurry(10);
                  },
-                 // The link is dropped after 9 s of silence, and the modem is set up again 15 s
-                 // later, in the vehicle's time scale.
+                 // The link is ended after 9 s of silence, and the modem is set up again 15 s
+                 // later, both in the time of the vehicle, which is faster here.
                  [&] { return soc.now() - since > 2'350'000'000; },
                  [&] {
                      EXPECT_NE(Link_state(&uav_link), LINK_STATE_UP) << "the UAV has not noticed";
@@ -57,7 +58,8 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
     EXPECT_EQ(soc.modem().parameter("BD"), 250000u);
 }
 
-// A vehicle with two ground stations, each with a separate key, and a stranger.
+// Tests with a vehicle, two ground stations, each with its own key, and a ground station with
+// another key.
 class TwoGrounds : public GroundAndChip {
 public:
     static constexpr uint32_t observersAddress = 0x00F0;
@@ -74,7 +76,7 @@ public:
         });
         soc.reset(true);
     }
-    // Both ground stations call at the same time. The observer vanishes during a call, and returns
+    // Both ground stations call at the same time. The observer disappears during a call. It returns
     // first with the pilot's key, then with its own key.
     Script flight() {
         const auto vanish = [this] {
@@ -152,7 +154,7 @@ TEST(Fellow, OneThatIsAwayCostsLittleOfTheAirAndTheVehicleServesItsGroundMeanwhi
     world.ground.start();
     world.soc.reset(true);
     world.provide(48, 32, [](uint32_t i) { return static_cast<uint8_t>(i * 37); });
-    // After a frame, the vehicle calls the other one.
+    // After a frame, the vehicle calls the other ground station.
     const std::vector<Ground::Call> frame = {{"hwengine1", "startProcessing"},
                                              {"hwengine1", "getResult"}};
     std::vector<Ground::Call> calls(20, {"hwengine1", "ice_ping", 2});
@@ -183,8 +185,8 @@ TEST(Fellow, OneThatIsAwayCostsLittleOfTheAirAndTheVehicleServesItsGroundMeanwhi
     EXPECT_GT(share, 0.004) << "it is not sought: the idle sessions take 0.0015";
 }
 
-// Boots the vehicle with the given memory contents, and flies. Returns the memory contents
-// afterwards.
+// Boots the vehicle with these memory contents, and flies. Returns the memory contents after the
+// flight.
 SimulatedBoard::Words fly(ToAll& w, std::vector<Script> steps,
                           const std::function<void(SimulatedBoard&)>& provide) {
     UavMachine machine(w.soc, w.flight(std::move(steps)));
@@ -248,7 +250,7 @@ protected:
             return std::min(ground.advance(now), attacker_.nextEvent());
         });
     }
-    // Starts the vehicle, and flies until the script, called each millisecond, ends.
+    // Boots the vehicle, and flies until the script, which is called every millisecond, has ended.
     void fly(const Script& script, double seconds) {
         const Script withMischief = [&] {
             if (period_ && soc.now() >= nextMischief_) {
@@ -276,8 +278,8 @@ protected:
     uint64_t period_ = 0, nextMischief_ = 0, boots_ = 0;
 };
 
-// Returns resets for all epochs. Eight of them, one per epoch, ended an unencrypted session in each
-// of 60 attempts.
+// Returns RST frames for all epochs. In the unencrypted protocol, eight of them, one per epoch,
+// ended a session in each of 60 attempts.
 Bytes blindResets() {
     Bytes all;
     for (U32 epoch = 0; epoch < 8; ++epoch) {
@@ -304,8 +306,8 @@ TEST_F(Attack, InTheClearEightBlindResetsEndASession) {
         20);
 }
 
-// Does everything that is possible without the key, and adds twenty bytes to each packet, while the
-// ground station and then the vehicle restart. Then earlier packets are repeated.
+// Does everything that is possible without the key, and adds twenty bytes after each packet, while
+// first the ground station and then the vehicle restarts. After that it repeats earlier packets.
 TEST_F(Attack, WithAKeyNothingComesOfAnyMischief) {
     start(vehicleKey);
     attacker_.hinder(true);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// uav_update_test: sends new firmware over the air to the firmware's host build, which uses this
-// process's memory as its flash.
+// uav_update_test: tests an update of the firmware's host build over the air; memory of this
+// process is its flash.
 
 #include "ground.h"
 #include "keys.h"
@@ -19,7 +19,7 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 constexpr uint32_t product = 77, imageBytes = 1024, half = imageBytes / 2;
-bool restarted; // the firmware has requested a restart
+bool restarted; // true if the firmware has requested a restart
 
 struct Flash {
     static uint8_t* at(void* context, U32 offset) {
@@ -52,9 +52,11 @@ protected:
         std::memcpy(&flash.bytes[SLOTS_KEYS_AT], &list, sizeof list);
         std::memcpy(&flash.bytes[Slots_at(&slots_firmware, 0)], &running, sizeof running);
         Slots_set(&flash.port, 0, SLOTS_CONFIRMED);
-        flash.bytes[Slots_at(&slots_firmware, 1) + 3] = 0; // the slot must be erased
+        // the slot contains other data, so it must be erased first
+        flash.bytes[Slots_at(&slots_firmware, 1) + 3] = 0;
         for (size_t i = 0; i < imageBytes; ++i)
-            image[i] = static_cast<uint8_t>(i * i / 64); // both halves have the same contents
+            // both halves of the image have the same contents
+            image[i] = static_cast<uint8_t>(i * i / 64);
         std::copy_n(image.begin(), half - 16, image.begin() + half);
         uav_update[UAV_FIRMWARE] = {&flash.port, 0, product};
         uav_restart = [] { restarted = true; };
@@ -83,7 +85,7 @@ protected:
         bytes.insert(bytes.end(), data.begin(), data.end());
         return bytes;
     }
-    // Returns the second half of the image, compressed with the first half as dictionary.
+    // Returns the second half of the image, compressed with the first half as the dictionary.
     Bytes packedHalf() {
         LZ4_stream_t stream;
         LZ4_initStream(&stream, sizeof stream);
@@ -94,14 +96,14 @@ protected:
                                        reinterpret_cast<char*>(packed.data()), half, half, 1)));
         return packed;
     }
-    // A call, and the first byte of its expected reply; 0xFF: any. Calls of getStatus are repeated
-    // until this byte arrives.
+    // A call, and the first byte that its reply must have; 0xFF means any byte. Calls of getStatus
+    // are repeated until the reply has this byte.
     struct Step {
         const char* operation;
         Bytes parameters;
         uint8_t wanted;
     };
-    // Makes the calls, one after the other, and continues until `over`.
+    // Makes the calls one after the other, and continues until `over` returns true.
     void fly(const std::vector<Step>& steps, const std::function<bool()>& over) {
         size_t step = 0;
         int sent = 0;
@@ -132,7 +134,7 @@ protected:
     Bytes image = Bytes(imageBytes);
 };
 
-// error numbers of Update.ice
+// error numbers in Update.ice
 enum : uint8_t { None, Foreign, Old, WrongSignature, Misplaced = 8 };
 enum : uint8_t { Idle, Receiving = 3, Ready = 5 };
 
@@ -142,8 +144,8 @@ TEST_F(UavUpdate, AnImageComesInPiecesPackedOrNotAndIsStarted) {
     fly({{"getStatus", {}, Idle},
          {"begin", encoded(headerOf(6, 1)), None},
          {"getStatus", {}, Receiving},
-         {"write", piece(half, half, packed), Misplaced}, // sent before the bytes to which it
-                                                          // refers
+         // sent before the bytes to which it refers
+         {"write", piece(half, half, packed), Misplaced},
          {"write", piece(0, half, first), None},
          {"write", piece(half, half + 4, packed), Misplaced},
          {"write", piece(half, half, packed), None},
@@ -199,7 +201,8 @@ TEST_F(UavUpdate, InFlightImagesAndKeysAreRefusedAlsoAfterARestart) {
                                       {{"uav", "setFlightState", 2, {0}}, 0, ""},
                                       {{"keys", "setNextKey", 2, key}, 0, ""},
                                       {{"update", "begin", 0, header}, 0, ""}};
-    SimulatedBoard::Words words = SimulatedBoard().words; // contents kept by the battery
+    // contents of the memory that the battery preserves
+    SimulatedBoard::Words words = SimulatedBoard().words;
     for (const auto& list : {calls, landed}) {
         EXPECT_EQ(flash.bytes, before);
         std::vector<Ground::Call> made;
@@ -223,7 +226,7 @@ TEST_F(UavUpdate, InFlightImagesAndKeysAreRefusedAlsoAfterARestart) {
     }
 }
 
-// "keys" is added last: the adapter has room for all servants of the vehicle and of the cores.
+// "keys" is added last, so the adapter has room for all servants of the vehicle and of the cores.
 TEST_F(UavUpdate, WhereBothKindsOfImageAreTakenTheKeysAreServedToo) {
     uav_update[UAV_BITSTREAM] = {&flash.port, 0, product};
     EXPECT_TRUE(flies(soc, ground.pinging(1, "keys"), 4));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// flash_test: compares the model of the STM32F2's flash memory with PM0059.
+// flash_test: checks that the model of the STM32F2's flash memory behaves as PM0059 describes.
 
 #include "stm32_flash.h"
 #include <algorithm>
@@ -111,7 +111,7 @@ TEST_F(Flash, AStoreOfAnotherWidthThanPsizeIsRefused) {
     flash.store(0, 2, 0);
     EXPECT_EQ(status(), uint32_t(Stm32Flash::Pgperr));
     flash.write(Stm32Flash::Sr, Stm32Flash::Pgperr);
-    flash.store(14, 4, 0); // beyond the end of a row of 128 bits
+    flash.store(14, 4, 0); // this store goes beyond the end of a row of 128 bits
     EXPECT_EQ(status(), uint32_t(Stm32Flash::Pgaerr));
     EXPECT_EQ(word(12), 0xFFFFFFFFu);
 }
@@ -124,7 +124,7 @@ TEST_F(Flash, AResetInAWriteLeavesSomeOfItsBits) {
         flash.write(Stm32Flash::Cr, X32 | Stm32Flash::Pg);
         flash.store(4u * i, 4, 0x0000FFFF);
         flash.reset();
-        EXPECT_EQ(word(4u * i) & 0xFFFF, 0xFFFFu); // bits that stay 1 are not changed
+        EXPECT_EQ(word(4u * i) & 0xFFFF, 0xFFFFu); // bits that need not become 0 stay 1
         partial += word(4u * i) != 0x0000FFFF && word(4u * i) != 0xFFFFFFFF;
     }
     EXPECT_GT(partial, 16u);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// random_test: tests the registers of the random number generator against RM0033, 20.
+// random_test: checks that the registers of the random number generator behave as RM0033, 20
+// describes.
 
 #include "random_block.h"
 #include <gtest/gtest.h>

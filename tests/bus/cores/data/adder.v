@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// adder: a core in a slot without registers of its own.
+// adder: a core for tests that has no registers of its own.
 
 `default_nettype none
 

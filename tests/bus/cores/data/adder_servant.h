@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * adder_servant: the interface of a servant, as slice2c generates it.
+ * adder_servant: the interface of a servant for tests, as slice2c would generate it.
  */
 #include "hw_core.h"
 #include "icec.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// led: its lamp is on while the button is pressed.
+// led: a core for tests that switches its lamp on while its button is pressed.
 
 `default_nettype none
 

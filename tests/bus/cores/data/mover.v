@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// mover: a core with an unused memory port, and pins.
+// mover: a core for tests that has pins, and a memory port that it does not use.
 
 `default_nettype none
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// memories_proof: two generated wrappers whose buffers are allocated as for ip/cores.list, separate
-// and aligned to their sizes: the buffers never overlap.
+// memories_proof: proves that the buffers of two generated wrappers never overlap, if they are
+// allocated as for ip/cores.list: separate, and aligned to their sizes.
 
 `default_nettype none
 
@@ -12,10 +12,10 @@ module memories_proof (
     input wire        write_i,
     input wire [3:0]  addr_i,
     input wire [31:0] wdata_i,
-    input wire [6:0]  little_byte_i, // any byte of the buffers of each core
+    input wire [6:0]  little_byte_i, // an offset in the buffer of each core, chosen by the prover
     input wire [11:0] middle_byte_i
 );
-    localparam LITTLE = 7, MIDDLE = 12; // log2 of the buffers' sizes
+    localparam LITTLE = 7, MIDDLE = 12; // log2 of the size of each buffer
     localparam MEMORY = 4'd5;
 
     wire [31:0] little_base, middle_base;
@@ -28,7 +28,7 @@ module memories_proof (
         .bus_addr_i(addr_i), .bus_wdata_i(wdata_i), .fill_result_base_o(middle_base),
         .fill_result_count_i(13'd4096), .fill_done_i(1'b0), .fill_refused_i(1'b0));
 
-    (* anyconst *) reg [31:0] little, middle; // base addresses, as allocated for the list
+    (* anyconst *) reg [31:0] little, middle; // base addresses that were allocated for the list
     always @* begin
         assume (little[LITTLE-1:0] == 0 && middle[MIDDLE-1:0] == 0);
         assume (little + 33'd128 <= middle || middle + 33'd4096 <= little);
@@ -36,7 +36,7 @@ module memories_proof (
         assume (!(valid_i[1] && write_i && addr_i == MEMORY) || wdata_i == middle >> MIDDLE);
     end
 
-    reg [1:0] placed = 2'd0; // the servants have written MEMORY
+    reg [1:0] placed = 2'd0; // one bit per core: its servant has written the register MEMORY
     always @(posedge clk_i)
         placed <= rst_i ? 2'd0 : placed | valid_i & {2{write_i && addr_i == MEMORY}};
     always @* if (placed[0])

@@ -19,7 +19,8 @@ module crc32 (
     reg  [31:0] crc;
     wire        read_valid, read_idle;
     wire [63:0] read_data;
-    wire        go   = busy && !begun && read_idle; // an aborted transfer may still be in progress
+    // a transfer of an aborted call may still be in progress
+    wire        go   = busy && !begun && read_idle;
     wire        take = begun && read_valid;
     wire        done = begun && left == 13'd0;
 
@@ -33,8 +34,8 @@ module crc32 (
     wire write_ready, write_idle;
     npi_stream u_stream (
         `include "memory_connect.vh"
-        .clk_i(clk_i), .rst_i(rst_i), // not core_rst: words that were requested must still be
-                                      // received
+        // not core_rst: words that were requested must be received even after a reset of the core
+        .clk_i(clk_i), .rst_i(rst_i),
         .read_start_i(go && !core_rst), .read_base_i(base[31:6]),
         .read_words_i({14'd0, left[12:3]} + {23'd0, |left[2:0]}), .read_stop_i(core_rst),
         .read_valid_o(read_valid), .read_data_o(read_data),
@@ -43,7 +44,7 @@ module crc32 (
         .write_be_i(8'd0), .write_ready_o(write_ready), .write_flush_i(1'b0),
         .write_idle_o(write_idle));
 
-    // Returns the CRC after one more byte.
+    // Returns the CRC of the earlier bytes, with CRC `old`, and the byte `value`.
     function [31:0] with_byte(input [31:0] old, input [7:0] value);
         integer i;
         begin

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// crc32_test: compares the core's results with a CRC-32 computed bit by bit, with random wait
-// states of the memory.
+// crc32_test: compares the core's results with a CRC-32 that is computed bit by bit, with random
+// wait states of the memory.
 
 #include "Vcrc32_slot.h"
 #include "crc32_proxy.h"
@@ -33,7 +33,7 @@ TEST(Crc32, OfTheCheckString) {
     Ice_Byte digits[] = {49, 50, 51, 52, 53, 54, 55, 56, 57};
     Cores_Data data{9, digits};
     EXPECT_EQ(static_cast<uint32_t>(core.crc(&data)),
-              0xCBF43926u); // the check value in the catalogue of CRCs
+              0xCBF43926u); // check value of this CRC in the catalogue of CRCs
 }
 
 TEST(Crc32, ACountWrittenBehindTheStartDoesNotChangeTheCall) {
@@ -43,7 +43,8 @@ TEST(Crc32, ACountWrittenBehindTheStartDoesNotChangeTheCall) {
     core.crc(&data);
     core.bus_.write(CRC32_CONTROL, CRC32_CONTROL_CRC_MASK);
     core.bench_.tick(50);
-    core.bus_.write(CRC32_CONTROL, CRC32_CONTROL_RESET_MASK); // aborted while words are in transit
+    // the call is aborted while words are on their way from memory
+    core.bus_.write(CRC32_CONTROL, CRC32_CONTROL_RESET_MASK);
     core.bus_.write(CRC32_CONTROL, CRC32_CONTROL_CRC_MASK);
     core.bus_.write(CRC32_CRC_IN0, 8);
     core.bench_.waitFor([&] { return core.bench_.top().irq_o; }, "the core's interrupt", 20000);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// servo: generates pulses of given lengths on four pins, until the fault pin is high.
+// servo: generates pulses of given lengths on four pins until the fault pin is high.
 
 `default_nettype none
 
@@ -13,7 +13,7 @@ module servo #(
     output wire [3:0]  pwm_o,
     input  wire        fault_i
 );
-    localparam PERIOD = 20000; // microseconds: 50 Hz
+    localparam PERIOD = 20000; // period in microseconds, for 50 Hz
 
     wire        core_rst, set_pulse, clear, fault_start;
     wire [7:0]  channel;
@@ -27,8 +27,8 @@ module servo #(
         .clear_start_o(clear)
     );
 
-    // A microsecond takes CLK_HZ / 1000000 clocks; the remainder of the division is carried over,
-    // so any CLK_HZ is exact.
+    // A microsecond takes CLK_HZ / 1000000 clocks. The remainder of this division is carried over,
+    // so the pulses are exact for any CLK_HZ.
     reg [31:0] fraction;
     wire       next = fraction + 32'd1000000 >= CLK_HZ;
     reg [14:0] now; // time since the start of the period, microseconds

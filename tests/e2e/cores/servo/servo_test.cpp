@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// servo_test: the core pins, accessed through the model that the proxy holds.
+// servo_test: tests the pins of the core, which are accessed through the Verilated model.
 
 #include "Vservo_slot.h"
 #include "servo_proxy.h"
@@ -10,7 +10,7 @@ namespace {
 
 class Servo : public ::testing::Test {
 protected:
-    // Returns how long each pin is high within one frame of 20 ms.
+    // Returns the time for which each pin is high in one frame of 20 ms, us.
     std::array<uint64_t, 4> microsecondsHigh() {
         std::array<uint64_t, 4> clocks{};
         for (unsigned i = 0; i < 20 * coreClocksOfMs; ++i) {

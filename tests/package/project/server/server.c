@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * server: serves an object "thing" over TCP, in a project that uses the installed IceC and slice2c.
- * Usage: server PORT
+ * server: serves an object "thing" over TCP; part of a project that uses the installed IceC and
+ * slice2c. Usage: server PORT
  */
 #include "Thing.h"
 #include "tcp_endpoint.h"

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// chip_soak_test: the real system for a long time: stock Ice with the plugin and IceC on the RTL
-// call each other over a bad radio, while UAV, modems and the ground's program restart. No message
-// is wrong, duplicated or out of order; each call is answered, or reported with a status.
+// chip_soak_test: tests the real system for a long time. Stock Ice with the plugin and IceC on the
+// RTL call each other over a bad radio link, while UAV, modems and the ground's program restart. No
+// message may be wrong, duplicated or out of order, and each call must be answered or reported with
+// a status.
 //
 //   SOAK_SECONDS=600 build/main/tests/sw/ground/chip/test_chip_soak (simulated seconds; default 5)
-// SOAK_REST=10 makes each caller pause for this many seconds on average, with faults rarer by the
-// same factor. That is a flight (make fly): most of its clocks are skipped. The camera's sensor
-// then sends one picture per second, and the cores are called in turn.
+// SOAK_REST=10 makes each caller pause for this number of seconds on average, and faults rarer by
+// the same factor. This is a flight (make fly), in which most clocks are skipped. The camera's
+// sensor then sends one picture per second, and the cores are called in turn.
 
 #include "../../../support/delivery_check.h"
 #include "../../../support/environment.h"
@@ -31,7 +32,7 @@ RadioTest::Bytes pattern(int id, size_t size) {
     return bytes;
 }
 
-// The ground's program, which ends and restarts while it is being used.
+// The ground's program, which can end and restart while other threads use it.
 class GroundProgram {
 public:
     Ice::CommunicatorPtr get() {
@@ -50,9 +51,9 @@ public:
         }
         old->destroy();
     }
-    // True if an Ice exception means "this call may not have been executed". While a communicator
-    // is being destroyed, parts of Ice report it with other texts: "timer destroyed", a null
-    // handle.
+    // Returns true if an Ice exception means that the call may not have been executed. While a
+    // communicator is being destroyed, parts of Ice throw other exceptions ("timer destroyed", a
+    // null handle) with the same meaning.
     bool isReport(const Ice::CommunicatorPtr& used, const std::string& exceptionId) {
         static const std::set<std::string> reports = {
             "::Ice::ConnectionLostException",    "::Ice::ConnectFailedException",
@@ -70,13 +71,14 @@ private:
     std::set<Ice::CommunicatorPtr> ended_;
 };
 
-// The messages in one direction. The upper bits of a message's number are its sender.
+// The messages in one direction. The upper bits of a message's number identify its sender.
 class Book {
 public:
-    // Records a message. The sender sends its next one after this one has been reported.
+    // Records a message. The sender sends its next message only after this one has been reported.
     void sent(int id, const RadioTest::Bytes& data) {
         std::lock_guard<std::mutex> lock(mutex_);
-        (void)check_.forget(id >> 24); // the UAV has restarted
+        // an earlier message without a report was lost when the UAV restarted
+        (void)check_.forget(id >> 24);
         check_.sent(id >> 24, static_cast<uint32_t>(id), {data.begin(), data.end()});
     }
     void arrived(int id, const RadioTest::Bytes& data) {
@@ -87,7 +89,7 @@ public:
         std::lock_guard<std::mutex> lock(mutex_);
         note(check_.reported(static_cast<uint32_t>(id), isAnswered));
     }
-    // Checks that no fault was found.
+    // Checks that no error was found.
     void expectRight() {
         std::lock_guard<std::mutex> lock(mutex_);
         for (auto& fault : faults_)
@@ -129,7 +131,7 @@ protected:
     static double wanted() { return numberFromEnvironment("SOAK_SECONDS", 5); }
     static double rest() { return numberFromEnvironment("SOAK_REST", 0); }
     static double rest(Random& random) { return rest() * (0.5 + random.below(1000) / 1000.0); }
-    // ---- the UAV's side, in the world's thread ----
+    // ---- the UAV's side, which runs in the thread of the simulation ----
     static ChipSoak& self(void* context) { return *static_cast<ChipSoak*>(context); }
     static void executed(void* context, int id, const U8* data, int size) {
         self(context).up_.arrived(id, RadioTest::Bytes(data, data + size));
@@ -137,7 +139,7 @@ protected:
     static int next(void* context, int* id, U8* data, int* isOneway) {
         ChipSoak& s = self(context);
         Random& random = s.uavRandom_;
-        // The UAV calls now and then, but not before its previous call has ended.
+        // The UAV makes calls at random times, the next one only after its previous call has ended.
         if (s.uavStops_ || random.below(4) || s.world_.ns() < s.uavDue_)
             return -1;
         s.uavDue_ = s.world_.ns() + static_cast<uint64_t>(1e9 * rest(random));
@@ -192,7 +194,7 @@ protected:
             const auto ground = ground_.get();
             try {
                 auto echo = world_.echo(ground, std::to_string(worker));
-                if (random.below(4) == 0) { // not reported if it is lost, because it is oneway
+                if (random.below(4) == 0) { // a one-way call, for which no loss is reported
                     up_.sent(id, {});
                     up_.reported(id, false);
                     echo->ice_oneway()->note(id);
@@ -210,7 +212,7 @@ protected:
             world_.sleep(rest(random));
         }
     }
-    // ---- a flight's cores ----
+    // ---- cores that are called during a flight ----
     void connectCamera() {
         Frame frame{320, 240, {}};
         for (int i = 0; i < frame.width * frame.height; ++i) // a chessboard
@@ -223,7 +225,8 @@ protected:
             });
         });
     }
-    // Calls the cores in turn. The calls are two-way, so that a core works before the next call.
+    // Calls the cores in turn. The calls are two-way, so each core has finished before the next
+    // call.
     void callCore(const Ice::CommunicatorPtr& ground, int worker) {
         using Bytes = std::vector<Ice::Byte>;
         static const Bytes size = {64, 1, 240, 0}, one = {0, 0, 0, 1, 0}, key(17, 16), text(41, 40),
@@ -275,7 +278,7 @@ protected:
             ++modemResets_;
             break;
         case 3:
-            ground_.end(); // also ends the engine, as at the end of a program
+            ground_.end(); // also ends the engine, as happens at the end of a program
             startGround();
             ++groundStarts_;
             break;
@@ -290,7 +293,7 @@ protected:
         auto said = std::chrono::steady_clock::now();
         for (unsigned events = 0; world_.ns() < end; ++events) {
             misfortune(random,
-                       // first the events 3 0 2 4, then random ones
+                       // first the fixed events 3 0 2 4, then random events
                        events < 4 ? (events * 2 + 3) % 5 : random.below(6));
             world_.sleep((0.7 + random.below(1000) / 1000.0) * (1 + rest()));
             if (std::chrono::steady_clock::now() - said > std::chrono::seconds(15)) {
@@ -303,7 +306,8 @@ protected:
         for (int id = (8 << 24) + 1; id <= (8 << 24) + 20; ++id) {
             try {
                 const auto data = pattern(id, 500);
-                // Uses one of the three connections; a fourth program would wait.
+                // Uses one of the three connections; the program of a fourth connection would have
+                // to wait.
                 if (repeat(world_.echo(ground_.get(), "1"), id, data) == data)
                     return true;
             } catch (const Ice::Exception&) {
@@ -327,7 +331,7 @@ protected:
         down_.expectRight();
         EXPECT_GE(answered_ + wrong_ + reported, calls_.load())
             << "calls without a report; SEED " << testSeed();
-        // A reboot ends the current call.
+        // A call ends without a report if the UAV reboots.
         EXPECT_LE(uavAnswered_ + uavReported_, static_cast<unsigned>(uavSent_));
         EXPECT_GE(uavAnswered_ + uavReported_ + reboots_ + 1, static_cast<unsigned>(uavSent_));
         EXPECT_GE(2 * coreAnswers_ + 5, coreCalls_) << "cores that do not answer";
@@ -355,31 +359,32 @@ protected:
     Random uavRandom_{testSeed() + 7};
     RadioTest::Bytes uavMessage_;
     int uavSent_ = 0;
-    bool uavIsOneway_ = false; // kind of the UAV's last message
-    uint64_t uavDue_ = 0;      // ns; time of the UAV's next call
+    bool uavIsOneway_ = false; // true if the last message from the UAV was one-way
+    uint64_t uavDue_ = 0;      // earliest time of the UAV's next call, ns
     std::map<std::string, unsigned> uavReports_;
     unsigned reboots_ = 0, modemResets_ = 0, groundStarts_ = 0;
     std::mutex mutex_;
     std::map<std::string, unsigned> reports_;
     std::set<std::string> faults_;
     const EchoUav_Port port_{executed, next, outcome};
-    ChipWorld world_{testSeed(), port_, this, testSeed() % 2 != 0}; // every second seed has a key
+    // the link has a key for every second seed
+    ChipWorld world_{testSeed(), port_, this, testSeed() % 2 != 0};
     GroundProgram ground_;
 };
 
 TEST_F(ChipSoak, EveryMessageIsRightOnceInOrderOrReported) {
-    struct AtEnd { // also runs after an exception: the workers are stopped before they are joined
+    struct AtEnd { // stops the workers before they are joined, even after an exception
         ~AtEnd() { stop = true; }
         std::atomic<bool>& stop;
     };
     startGround();
-    std::vector<std::future<void>> workers; // joined in any case
+    std::vector<std::future<void>> workers; // the destructor of a future joins its worker
     for (int w = 1; w <= 3; ++w)
         workers.push_back(std::async(std::launch::async, [this, w] { work(w); }));
     AtEnd atEnd{stop_};
     if (rest() > 0)
         connectCamera();
-    world_.sleep(2); // time for the set-up, and for some good weather
+    world_.sleep(2); // time for the set-up, and for some time without faults
     endure();
     stop_ = true;
     world_.with([&] { world_.air.weather = {}; });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// chip_world: implements the thread in which simulated time passes.
+// chip_world: implements the thread of the simulation, in which simulated time passes.
 
 #include "chip_world.h"
 #include <condition_variable>
@@ -70,8 +70,8 @@ void ChipWorld::run() {
             machine.board.provide(std::vector<uint8_t>(key_ ? LINK_KEY_BYTES : 0, 0x55));
             machine.run();
         }
-    } catch (const std::exception& e) { // A model reports an error of the chip, so the test cannot
-                                        // continue.
+        // A model has reported an error of the chip, so the test cannot continue.
+    } catch (const std::exception& e) {
         std::fprintf(stderr, "chip: error: %s\n", e.what());
         std::_Exit(1);
     }
@@ -105,14 +105,15 @@ Ice::CommunicatorPtr ChipWorld::client(std::map<std::string, std::string> more) 
     std::map<std::string, std::string> all = {
         {"Ice.Plugin.XBeeAT", PLUGIN_FOLDER "/xbeeat:createXBeeAT"},
         {"Ice.Default.InvocationTimeout", "120000"},
-        {"Ice.RetryIntervals", "-1"}, // a call is made once, whatever its result
+        {"Ice.RetryIntervals", "-1"}, // a call is made only once, even if it fails
         {"Ice.ThreadPool.Client.Size", "4"},
         {"Ice.Warn.Connections", "0"},
         {"Ice.ACM.Close", "0"},
         {"XBeeAT.Guard", std::to_string(guardMs_)},
         {"XBeeAT.Down", "2"},
         {"Station.Endpoints", endpoint()},
-        {"Station.ThreadPool.Size", "1"}}; // one thread, so that the order of calls is visible
+        // one thread, so that the test sees the order of the calls
+        {"Station.ThreadPool.Size", "1"}};
     if (key_)
         all["XBeeAT.KeyFile"] = key_->path();
     for (auto& [name, value] : more)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// chip_world: the real system under stock Ice: RTL, DDR3, firmware with IceC, two modems, the air,
-// and a pty for the plugin; in a separate thread, in simulated time that waits for the plugin.
+// chip_world: simulates the real system for stock Ice: RTL, DDR3, firmware with IceC, two modems,
+// the air, and a pty for the plugin. The simulation runs in a separate thread, and simulated time
+// waits for the plugin.
 
 #pragma once
 
@@ -20,21 +21,22 @@ struct EchoUav_Port; // echo_uav.h
 
 class ChipWorld {
 public:
-    // `port`: the firmware's calls, in this world's thread. Ground and UAV share a key, or speak in
-    // the clear.
+    // `port` contains functions that the firmware calls in the thread of the simulation. `hasKey`:
+    // ground and UAV share a key; otherwise the link is not encrypted.
     ChipWorld(uint64_t seed, const EchoUav_Port& port, void* context, bool hasKey = false);
     ~ChipWorld();
     ChipWorld(const ChipWorld&) = delete;
     ChipWorld& operator=(const ChipWorld&) = delete;
 
-    // Runs `f` in the world's thread, the only one that uses timed objects.
+    // Runs `f` in the thread of the simulation, the only thread that may use the models.
     void with(std::function<void()> f);
     uint64_t ns() const { return clock_.ns(); }
     void sleep(double seconds) const; // simulated
-    // Restarts processor and chip; memory and modem are not reset.
+    // Restarts processor and chip, but not memory and modem.
     void reboot() { reboot_ = true; }
 
-    // A program on the ground, with a time-out per call in wall-clock ms.
+    // Returns the communicator of a program on the ground. The time-out of its calls is in
+    // wall-clock ms.
     Ice::CommunicatorPtr client(std::map<std::string, std::string> more = {}) const;
     std::string endpoint() const { return "xbee-at -t 120000 -d " + pty_.path(); }
     std::shared_ptr<RadioTest::EchoPrx> echo(const Ice::CommunicatorPtr& ic,
@@ -50,7 +52,7 @@ private:
     std::unique_ptr<UnnamedFile> key_; // null: unencrypted
     ClockFile clock_;
 
-public: // only used in the world's thread
+public: // to be used only in the thread of the simulation
     RfChannel air;
 
 private:

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * echo_uav: servant, client task, boot.
+ * echo_uav: implements the servant, the client task and the boot of the test's firmware.
  */
 #include "echo_uav.h"
 #include "Echo.h"
@@ -13,8 +13,8 @@
 #include "ucos_ii.h"
 
 #define STACK_WORDS 1024
-#define PAUSE_TICKS (OS_TICKS_PER_SEC / 100U) /* pause if no message has to be sent */
-#define TIMEOUT_MS 20000                      /* ms; time-out of a call to the ground */
+#define PAUSE_TICKS (OS_TICKS_PER_SEC / 100U) /* pause if there is no message to send */
+#define TIMEOUT_MS 20000                      /* time-out of a call to the ground, ms */
 
 static OS_STK serverStack[STACK_WORDS], clientStack[STACK_WORDS], radioStack[STACK_WORDS],
     coresStack[STACK_WORDS];
@@ -25,7 +25,8 @@ static U8 irqEnabled;
 static const EchoUav_Port* port;
 static void* portContext;
 static Ice_Byte sent[ECHO_UAV_LONGEST], fetched[8192];
-static U32 replyBuffer[2 * 8192 / 4]; /* buffer for a reply, and buffer for the decoded sequence */
+/* buffer for the reply, followed by the buffer for the decoded sequence */
+static U32 replyBuffer[2 * 8192 / 4];
 
 void EchoUav_setPort(const EchoUav_Port* tests, void* context) {
     port = tests;

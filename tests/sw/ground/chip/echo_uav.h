@@ -7,25 +7,27 @@
 
 #include "fsmc.h"
 
-/* Callbacks of the test: they decide what the firmware does, and observe it. The tasks of the
- * firmware call them. */
+/* Functions of the test that the tasks of the firmware call. They decide what the firmware sends,
+ * and observe the results. */
 typedef struct EchoUav_Port {
-    /* Called when an operation with an id has been executed here, with this data. */
+    /* Called when the UAV has executed an operation with an id; `data` contains its bytes. */
     void (*executed)(void* context, int id, const U8* data, int size);
-    /* Returns the next message to the ground: its id, its bytes written to `data`, and their
-     * number; -1 if no message is due. `isOneway`: sent as note(id), without bytes. */
+    /* Chooses the next message to the ground: sets its id, writes its bytes to `data` and returns
+     * their number, or returns -1 if no message must be sent now. If `isOneway` is set, the message
+     * is sent as note(id), without bytes. */
     int (*next)(void* context, int* id, U8* data, int* isOneway);
-    /* Outcome of a call: `status` 0, and the bytes of the reply unless it was oneway; otherwise a
-     * status of ice_status.c with its text. */
+    /* Called with the result of a call. If `status` is 0, `data` contains the bytes of the reply
+     * unless the call was one-way. Otherwise `status` is one of ice_status.c, and `text` is its
+     * text. */
     void (*outcome)(void* context, int id, int status, const char* text, const U8* answer,
                     int size);
 } EchoUav_Port;
 
-#define ECHO_UAV_LONGEST 4000 /* greatest number of bytes of a message to the ground */
+#define ECHO_UAV_LONGEST 4000 /* largest number of bytes in a message to the ground */
 
-/* Sets the program up; to be called before the first boot. */
+/* Sets the functions of the test. Call it before the first boot. */
 void EchoUav_setPort(const EchoUav_Port* port, void* context);
 
-/* Counterparts of UAV_start and related functions (uav.h). */
+/* Functions for booting the firmware, like UAV_start and related functions (uav.h). */
 void EchoUav_start(const FSMC_Port* fsmc, void* context);
 int EchoUav_irqEnabled(void);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// ice_test: stock Ice over the radio: callbacks, long messages, time-outs, shared channels. Many
-// calls from threads of several proxies, in bad weather, and the UAV's calls of the ground are
-// test_chip_soak's.
+// ice_test: tests stock Ice over the radio: callbacks, long messages, time-outs, shared channels.
+// test_chip_soak tests many calls from threads with several proxies, in bad conditions, and calls
+// from the UAV to the ground.
 
 #include "world.h"
 #include <future>
@@ -19,8 +19,8 @@ protected:
 TEST_F(StockIce, MessagesUpToTheLimitPassAndALongerOneIsRefusedInTheCaller) {
     Ice::CommunicatorHolder ic(world_.client());
     auto echo = world_.proxy(ic.communicator());
-    // Header 14, id 4, identity "echo" 6, facet 1, operation "repeat" 7, mode 1, context 1,
-    // encapsulation 6, int 4, size of the sequence 5.
+    // Size of a call without its data: header 14, id 4, identity "echo" 6, facet 1, operation
+    // "repeat" 7, mode 1, context 1, encapsulation 6, int 4, size of the sequence 5.
     const size_t most = LINK_MAX_MESSAGE - 49;
     for (size_t size : {most - 1, most})
         EXPECT_EQ(echo->repeat(static_cast<int>(size), World::pattern(1, size)),
@@ -53,7 +53,8 @@ TEST_F(StockIce, WhatIsMeantForAnotherVehicleDoesNotReachThisOne) {
     EXPECT_EQ(world_.proxy(ic.communicator())->repeat(2, {}).size(), 0u);
 }
 
-// Closing a connection needs a message to the UAV and back; its channel is in use until then.
+// To close a connection, a message must go to the UAV and back; the channel stays in use until
+// then.
 TEST_F(StockIce, WhoOpensWhileTheLastConnectionsStillCloseWaitsItsTurn) {
     Ice::CommunicatorHolder ic(world_.client());
     auto named = [&](const char* name) { return world_.proxy(ic.communicator(), name); };
@@ -75,8 +76,8 @@ TEST_F(StockIce, MoreProgramsThanChannelsShareThem) {
             world_.client({{"XBeeAT.Idle", "1"}, {"Ice.RetryIntervals", "0"}})));
         world_.proxy(programs.back()->communicator())->ice_ping();
     }
-    world_.proxy(programs[0]->communicator())->ice_ping(); // the connection of this program was the
-                                                           // first to be closed
+    // the connection of this program was closed first
+    world_.proxy(programs[0]->communicator())->ice_ping();
 }
 
 TEST_F(StockIce, AUavThatIsOffIsAConnectTimeout) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// world: stock Ice at both ends of the radio: a client with the plugin, the rig's modems and air,
-// and a stock Ice server for the UAV's objects.
+// world: connects stock Ice at both ends of the radio: a client with the plugin, the modems and the
+// air of the rig, and a stock Ice server with the UAV's objects.
 
 #pragma once
 
@@ -21,7 +21,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-// A program with these properties.
+// Returns the communicator of a program with these properties.
 inline Ice::CommunicatorPtr program(const std::map<std::string, std::string>& properties) {
     Ice::InitializationData data;
     data.properties = Ice::createProperties();
@@ -30,7 +30,7 @@ inline Ice::CommunicatorPtr program(const std::map<std::string, std::string>& pr
     return Ice::initialize(data);
 }
 
-// A server program; its output is read on demand.
+// A server process; its output is read when a test asks for it.
 class Server {
 public:
     explicit Server(std::vector<std::string> arguments) {
@@ -43,10 +43,10 @@ public:
         argv.push_back(nullptr);
         pid_ = fork();
         if (pid_ == 0) {
-            prctl(PR_SET_PDEATHSIG, SIGKILL); // if the test is killed, the server ends as well
+            prctl(PR_SET_PDEATHSIG, SIGKILL); // if the test is killed, the server ends too
             dup2(ends[1], 1);
             dup2(ends[1], 2);
-            close_range(3, ~0u, 0); // otherwise the server would inherit Ice's sockets
+            close_range(3, ~0u, 0); // otherwise the server would inherit the sockets of Ice
             execvp(argv[0], argv.data());
             _exit(127);
         }
@@ -58,14 +58,15 @@ public:
             stop();
         close(out_);
     }
-    // Returns the port printed between these words; -1 if the program ended without it.
+    // Returns the port that the server prints between these words, or -1 if it ended without
+    // printing it.
     int port(const std::string& before = "gateway: port ", const std::string& after = " leads") {
         if (!hear(before))
             return -1;
         const size_t at = heard_;
         return hear(after) ? std::atoi(said_.c_str() + at) : -1;
     }
-    // Ends the server; returns its exit status.
+    // Ends the server. Returns its exit status.
     int stop() {
         kill(pid_, SIGINT);
         return wait();
@@ -80,7 +81,7 @@ public:
     }
     pid_t pid() const { return pid_; }
     const std::string& said() const { return said_; }
-    // Reads the output until `text` occurs again. Returns false if the program ends before that.
+    // Reads output until `text` occurs (again). Returns false if the program ends before that.
     bool hear(const std::string& text) {
         size_t at;
         while ((at = said_.find(text, heard_)) == std::string::npos)
@@ -101,14 +102,15 @@ private:
     pid_t pid_ = 0;
     int out_ = -1;
     std::string said_;
-    size_t heard_ = 0; // position in said_ up to which hear has read
+    size_t heard_ = 0; // position in said_ up to which hear() has read
 };
 
-// The rig's UAV passes each channel of its link to an Ice server on 127.0.0.1, and a connection of
-// that server to the ground on channel 3. It runs in the rig's thread.
+// Connects the link of the rig's UAV to an Ice server on 127.0.0.1. Each channel of the link
+// becomes a connection to the server; a connection from the server to the ground uses channel 3.
+// This class runs in the rig's thread.
 class Relay {
 public:
-    // `server`: TCP port of the UAV's objects.
+    // `server` is the TCP port of the server with the UAV's objects.
     Relay(Rig& rig, int server) : rig_(rig), server_(server) {
         listener_ = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
         sockaddr_in any = local(0);
@@ -139,14 +141,16 @@ public:
     Relay(const Relay&) = delete;
     Relay& operator=(const Relay&) = delete;
 
-    int port() const { return port_; } // port at which the UAV's server reaches the ground
+    // port to which the UAV's server connects to reach the ground
+    int port() const { return port_; }
 
 private:
     static constexpr int ownChannel = 3;
     struct Line {
         int fd = -1;
-        Rig::Bytes in, out; // in: bytes from TCP that are not a complete message yet; out: bytes
-                            // for TCP that are not written yet
+        // in: bytes from TCP that do not form a complete message yet; out: bytes that must still be
+        // written to TCP
+        Rig::Bytes in, out;
     };
 
     static sockaddr_in local(int port) {
@@ -181,7 +185,7 @@ private:
     }
     static int take(Line& line, const U8* data, U32 count) {
         if (line.out.size() > 32768)
-            return 1; // the server is slow, so the message is taken later
+            return 1; // the server is slow, so the link delivers the message again later
         if (line.fd >= 0)
             line.out.insert(line.out.end(), data, data + count);
         return 0;
@@ -202,7 +206,7 @@ private:
             }
         }
     }
-    // Transfers bytes of the socket; returns false if the connection has ended.
+    // Reads and writes bytes of the socket. Returns false if the connection has ended.
     static bool move(Line& line) {
         if (!line.out.empty()) {
             ssize_t count = send(line.fd, line.out.data(), line.out.size(), MSG_NOSIGNAL);
@@ -303,12 +307,12 @@ public:
     }
     ~World() { server_->destroy(); }
 
-    // Returns the communicator of a program on the ground; several share the engine of the serial
-    // port.
+    // Returns the communicator of a program on the ground. Several communicators share the engine
+    // of the serial port.
     Ice::CommunicatorPtr client(std::map<std::string, std::string> more = {}) {
         more.insert({{"Ice.Plugin.XBeeAT", PLUGIN_FOLDER "/xbeeat:createXBeeAT"},
                      {"Ice.Default.InvocationTimeout", "1800000"},
-                     {"Ice.RetryIntervals", "-1"}, // a call is made once, whatever its result
+                     {"Ice.RetryIntervals", "-1"}, // a call is made only once, even if it fails
                      {"Ice.ThreadPool.Client.Size", "4"},
                      {"Ice.Warn.Connections", "0"},
                      {"XBeeAT.Guard", std::to_string(Rig::guardMs)},
@@ -331,7 +335,7 @@ public:
     Rig rig;
     std::shared_ptr<EchoServant> echo = std::make_shared<EchoServant>();
     std::shared_ptr<Ice::ObjectAdapter> uav;
-    int uavPort = 0; // port of the UAV
+    int uavPort = 0; // TCP port of the UAV's server
     std::unique_ptr<Relay> relay;
 
 private:

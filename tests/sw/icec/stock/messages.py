@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""messages: compares the reactions of IceC and of stock Ice to hostile and unusual messages: the
-operations executed, the replies, and whether the connection ends.
+"""messages: compares how IceC and stock Ice react to hostile and unusual messages: which operations
+they execute, what they reply, and whether they close the connection.
 
 usage: messages.py PROGRAM ECHO_ICE
        messages.py --serve ECHO_ICE     (the stock server)"""
@@ -14,10 +14,11 @@ import threading
 import time
 
 HEAD = b"IceP\1\0\1\0"
-# Time-outs, s, for the next reply after a call on a second connection was answered. A loaded
-# machine may exceed the first, so reactions that differ are compared again with the second.
+# Time-outs, s, for the next reply after a call on a second connection has been answered. On a
+# loaded machine the first time-out may be too short, so reactions that differ are compared again
+# with the second.
 QUICK, PATIENT = 0.3, 10
-PAIRS = 6  # number of pairs of servers; while one pair waits for a time-out, the others work
+PAIRS = 6  # number of pairs of servers; while one pair waits for a time-out, the other pairs work
 
 
 def size(n):
@@ -49,7 +50,7 @@ def request(op, params=b"", rid=1, version=(1, 1), more=0, **where):
     return message(0, number(rid) + target(op, **where) + encapsulation(params, version, more))
 
 
-def one(op, params=b""):  # Returns a request inside a batch.
+def one(op, params=b""):  # Returns a request for a batch.
     return target(op) + encapsulation(params)
 
 
@@ -171,8 +172,8 @@ CASES = {
     "a close, then a call": message(4, b"") + COUNT,
 }
 
-# Messages for which the two differ on purpose, or because stock Ice has a fault: (replies of IceC,
-# operations executed, reason).
+# Messages to which IceC and stock Ice react differently, on purpose or because of a fault in stock
+# Ice: (replies of IceC, number of executed operations, reason).
 FAILED = [(2, b"\x01\0\0\0\x05"), "open"], 0  # UnknownLocalException
 CLOSED = [""], 0
 IN_PYTHON = "stock Ice in Python has another exception, or none; in C++ it has this one"
@@ -210,12 +211,13 @@ class Server:
         return s
 
     def ask(self, data, timeout):
-        """Returns the bytes sent in reply, and the number of operations executed. timeout: for each
-        reply after the first connection's messages were handled, s."""
+        """Sends messages. Returns the replies and the number of executed operations. timeout: wait
+        for each reply after the messages on the first connection have been handled, s."""
         before = self.executed
         s = self.connect()
         s.sendall(data)
-        other = self.connect()  # when its reply arrives, all earlier messages have been handled
+        # when a call on this connection has been answered, all earlier messages have been handled
+        other = self.connect()
         other.sendall(COUNT)
         read(other, 25)
         other.close()
@@ -230,7 +232,8 @@ class Server:
             status = body[4] if head[8] == 2 else 0
             answers.append((head[8], body[:5] if status > 4 else body))
         s.close()
-        time.sleep(timeout / 6)  # wait until the last line about executed operations has arrived
+        # waits until the server's last line about an executed operation has arrived
+        time.sleep(timeout / 6)
         return answers, self.executed - before - 1
 
 
@@ -299,7 +302,8 @@ def serve(ice):
 
 
 def compare(names):
-    """Sends these messages to both servers. Returns a line for each unexpected difference."""
+    """Sends these messages to both servers. Returns one line for each difference that is not
+    expected."""
     stock_words = [sys.executable, __file__, "--serve", sys.argv[2]]
     ours, stock, wrong = Server([sys.argv[1]]), Server(stock_words), []
     for name in names:

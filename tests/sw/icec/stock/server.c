@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * server: an IceC server of Echo.ice over tcp, for messages.py. Prints its port, then one line per
- * executed operation.
+ * server: an IceC server for Echo.ice over tcp, for messages.py. It prints its port, then one line
+ * for each operation that it executes.
  */
 #include "Echo.h"
 #include "tcp_endpoint.h"

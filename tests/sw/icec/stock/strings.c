@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * strings: reads proxy strings, one line of hexadecimal digits each, for strings.py. Prints each
- * proxy as IceC formats it; for an invalid string prints "error" and the status.
+ * strings: parses proxy strings for strings.py. Each input line is one string in hexadecimal
+ * digits. Prints each proxy in IceC's format; for an invalid string, prints "error" and the status.
  */
 #include "icec.h"
 #include "tcp_endpoint.h"

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""strings: checks that IceC reads and prints proxy strings as stock Ice does: cases written by
-hand, and many more that are composed at random from parts.
+"""strings: checks that IceC parses and prints proxy strings in the same way as stock Ice. The cases
+are written by hand, and many more are composed at random from parts.
 
 usage: strings.py PROGRAM [SEED] [COUNT]"""
 import random
@@ -11,8 +11,8 @@ import sys
 
 import Ice
 
-# Differences by design (docs/icec.md): IceC lacks these transports and does not bind a source
-# address. In endpoints quotes must surround whole words, and "-timeout" is not accepted for "-t".
+# Intended differences (docs/icec.md): IceC does not have these transports and cannot bind a source
+# address. In endpoints, quotes must surround whole words, and "-timeout" is not accepted for "-t".
 NOT_HERE = ("udp", "ws", "wss", "ssl", "--sourceAddress")
 STRICTER = re.compile(r"""[^\s:]["'][^\s:@]|["'][^\s:]+["']\S|\s-[tzev][^\s:]""")
 

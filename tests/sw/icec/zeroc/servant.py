@@ -4,15 +4,15 @@
 
 servant.py BODIES HEADER... >servant.c
 
-The generated header contains the signatures; BODIES contains only the statements of the operations:
+The generated headers contain the signatures; BODIES contains only the statements of the operations:
 
     C, up to a line %%
-    prefix Test_Thing_ Test_Derived_    the operations below are of these interfaces
+    prefix Test_Thing_ Test_Derived_    the operations below belong to these interfaces
     echo op1 op2*                       each out parameter gets the in parameter of its type
     op3 op4: statements;                continued in lines that begin with a blank
 
 Names are shell patterns. In statements the parameters have their Slice names, `result` is the
-result, and `ex` the exception.
+result, and `ex` is the exception.
 """
 import fnmatch
 import re
@@ -23,13 +23,13 @@ PROTOTYPE = re.compile(r"^Ice_Status (\w+)\((\w+) self,\s*([^;]*?)const Ice_Curr
 
 
 def parameters(text):
-    """Returns [(type, name)] of a signature's parameters."""
+    """Returns the parameters of a signature as [(type, name)]."""
     words = [" ".join(p.split()) for p in text.split(",") if p.strip()]
     return [re.fullmatch(r"(.*?)(\w+)", w).groups() for w in words]
 
 
 def echo(found, classes):
-    """Returns statements that copy the in parameters to the out parameters of the same types, in
+    """Returns statements that copy each in parameter to the out parameter of the same type, in
     order."""
     plain = lambda t: t.replace("const", "").replace("*", "").strip()
     isOut = lambda t: "**" in t if plain(t) in classes else "const" not in t and "*" in t
@@ -41,7 +41,8 @@ def echo(found, classes):
         same = [s for s in sources if plain(s[0]) == plain(kind)]
         source, value = same[min(used.get(plain(kind), 0), len(same) - 1)]
         used[plain(kind)] = used.get(plain(kind), 0) + 1
-        levels = source.count("*") - (kind.count("*") - 1)  # a class is a pointer on both sides
+        # the type of a class is a pointer on both sides
+        levels = source.count("*") - (kind.count("*") - 1)
         lines.append("*%s = %s%s;" % (name, "*" * levels, value))
     return "\n    ".join(lines)
 

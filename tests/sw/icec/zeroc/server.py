@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""server: runs ZeroC's own server of a suite: server.py FOLDER SUITE ENCODING. Prints the ports of
-its two adapters, and serves until `shutdown` is called."""
+"""server: runs ZeroC's own server of a suite. Usage: server.py FOLDER SUITE ENCODING. Prints the
+ports of its two adapters, and serves until `shutdown` is called."""
 import os
 import socket
 import sys
@@ -21,7 +21,8 @@ import TestHelper  # noqa: E402
 def createTestProperties(self, args=[], create=TestHelper.TestHelper.createTestProperties):
     made = create(self, list(args))
     made.setProperty("Ice.Default.EncodingVersion", encoding)
-    made.setProperty("Ice.ThreadPool.Server.SizeMax", "3")  # an operation may call back
+    # several threads, because an operation may call back
+    made.setProperty("Ice.ThreadPool.Server.SizeMax", "3")
     return made
 
 

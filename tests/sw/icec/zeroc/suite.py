@@ -4,9 +4,10 @@
 
 suite.py FOLDER SUITE RUN [--Ice.Property=value...] ENDPOINT|PORT
 
-A check is a call of the client's function test(), whether true or false. The original client stops
-at its first failure; here each statement is guarded, so that one failure does not hide others.
-expected.toml contains the reason of each failure, and the number of checks that must pass.
+A check is a call of the client's function test(), whether its argument is true or false. The
+original client stops at its first failure. Here each statement is guarded, so that a failure does
+not hide later ones. expected.toml contains the reason for each expected failure, and the number of
+checks that must pass.
 """
 import argparse
 import ast
@@ -25,7 +26,7 @@ passed = 0
 failures = {}  # "File.py:line": text
 lock = threading.Lock()
 PATIENCE = 3  # seconds
-TURNS = 200  # greatest number of iterations of a loop that waits for the server
+TURNS = 200  # maximum number of iterations of a loop that waits for the server
 
 
 def check(truth):
@@ -47,27 +48,28 @@ def failed(where, error):
 
 
 def turn(turns):
-    """Ends a loop that waits in vain, after TURNS iterations."""
+    """Called in each iteration of a loop; ends a loop that waits without success after TURNS
+    iterations."""
     turns.append(0)
     if len(turns) > TURNS:
         raise RuntimeError("waited for %d turns" % TURNS)
 
 
 def wait(self, timeout=None, wait=threading.Condition.wait):
-    """Waits for a condition that a callback of the client signals, but not for ever, because the
-    callback may have failed."""
+    """Waits for a condition that a callback of the client signals. The wait has a time-out, because
+    the callback may have failed."""
     if not wait(self, timeout or PATIENCE) and timeout is None:
         raise RuntimeError("nothing came")
 
 
 class Guard(ast.NodeTransformer):
-    """Wraps each statement of a function outside `try` in a separate `try`."""
+    """Puts each statement of a function that is not within a `try` into a separate `try`."""
 
     def __init__(self, name):
         self.name = name
 
     def visit_Try(self, node):
-        return self.guarded(node)  # this statement contains expectations of exceptions
+        return self.guarded(node)  # the `try` as a whole is guarded, because it expects exceptions
 
     def visit_FunctionDef(self, node):
         node.body = [self.visit(s) for s in node.body]
@@ -86,7 +88,8 @@ class Guard(ast.NodeTransformer):
     def visit_While(self, node):
         begin, turn = ast.parse("__turns__ = []\n__turn__(__turns__)").body
         node.body.insert(0, turn)
-        return self.guarded(node, begin)  # this statement may wait for a call that has failed
+        # the loop is limited, because it may wait for a call that has failed
+        return self.guarded(node, begin)
 
     def visit_If(self, node):
         node.body = [self.visit(s) for s in node.body]
@@ -121,7 +124,7 @@ class Loader(importlib.abc.Loader):
 
 
 class Finder(importlib.abc.MetaPathFinder):
-    """Loads the modules of the suite with each statement guarded."""
+    """Loads the modules of the suite, and guards each of their statements."""
 
     def find_spec(self, name, path, target=None):
         file = os.path.join(os.getcwd(), name + ".py")
@@ -131,8 +134,8 @@ class Finder(importlib.abc.MetaPathFinder):
 
 
 def expected(run):
-    """Returns the number of checks that must pass in this run, and {place: reason} of checks that
-    need not."""
+    """Returns the number of checks that must pass in this run, and {place: reason} for checks that
+    need not pass."""
     with open(os.path.join(OWN, "expected.toml"), "rb") as file:
         known = tomllib.load(file)
     wanted = [n for runs, n in known["passed"].items() if fnmatch.fnmatch(run, runs)]
@@ -195,8 +198,8 @@ def main():
     print("%s: %d checks passed (%d expected), %d by design, %d failed"
           % (a.run, passed, wanted, len(failures) - unknown, unknown))
     sys.stdout.flush()
-    os._exit(0 if unknown == 0 and passed >= wanted else 1)  # threads that a suite has started may
-                                                             # still be waiting
+    # exits without waiting for threads that the suite has started
+    os._exit(0 if unknown == 0 and passed >= wanted else 1)
 
 
 main()

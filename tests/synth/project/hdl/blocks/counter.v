@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// counter: WIDTH bits that count while enabled: WIDTH flip-flops, a carry segment for every four.
+// counter: a counter with an enable, for tests; it has WIDTH flip-flops, and one carry segment for
+// every four bits.
 
 `default_nettype none
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// pair: a counter that addresses a store, to tell instances apart.
+// pair: a counter that addresses a store; a design for tests with more than one instance.
 
 `default_nettype none
 

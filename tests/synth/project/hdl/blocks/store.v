@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// store: 32 words of 6 bits: one RAM32M, which is four LUTs.
+// store: 32 words of 6 bits, for tests; this is one RAM32M, which occupies four LUTs.
 
 `default_nettype none
 

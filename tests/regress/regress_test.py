@@ -16,6 +16,7 @@ import re
 import signal
 import subprocess
 import sys
+import time
 import types
 import unittest.mock
 import xml.etree.ElementTree as xml
@@ -188,6 +189,29 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
                      file="build/regress/junit.xml")
         self.regress("--rerun-failed", 1)
         self.has("^2 tests, SEED=1")
+
+    def test_slow_terminal(self):
+        """TERM while the terminal is slow: results that CTest has printed and nobody has read yet
+        are not lost."""
+        write("slow/CTestTestfile.cmake", "".join(
+            f"add_test({number:03}{'x' * 2000} true)\n" for number in range(200)))
+        results = self.work / "slow/junit.xml"
+        run = subprocess.Popen(
+            [TREE / "tools/python", "-m", "icesoc.regress.ctest", "--test-dir", "slow",
+             "--output-junit", results], stdout=subprocess.PIPE, text=True)
+        run.stdout.readline()
+        log, size = Path("slow/Testing/Temporary/LastTest.log.tmp"), -1
+        while not log.exists() or log.stat().st_size != size:  # until all pipes are full
+            size = log.stat().st_size if log.exists() else -1
+            time.sleep(1)
+        run.send_signal(signal.SIGTERM)
+        self.said = run.communicate(timeout=LONGEST)[0]
+        self.assertEqual(run.returncode, 143)
+        logged = log.read_text().count("Test Passed.")
+        kept = results.read_text().count("<testcase ")
+        self.assertGreater(logged, 20)
+        self.assertLessEqual(logged - kept, 1)  # CTest was killed while it printed one line
+        self.has(f"^stopped after {kept} of 200: {kept} passed, 0 failed$")
 
     def test_unchanged(self):
         """Some changed inputs make a test run again: files whose paths its program contains, all

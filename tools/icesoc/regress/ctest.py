@@ -6,6 +6,7 @@ notes of tests that passed (lines that begin with `note: `), and each skipped te
 After Ctrl-C, TERM or HUP it ends the tests, and FILE contains the tests that have finished.
 """
 
+import contextlib
 import datetime
 import pathlib
 import re
@@ -16,7 +17,8 @@ import time
 
 from icesoc.regress.junit import ended, finished, read_junit, write_junit
 from icesoc.util.errors import Interrupted
-from icesoc.util.process import adopt_orphans, end_descendants, hear_signals, start, wait
+from icesoc.util.process import (adopt_orphans, end_descendants, hear_signals, reading, start,
+                                 wait)
 
 
 def reason(text):
@@ -41,16 +43,21 @@ def write_finished(folder, results, ends, total):
 def run(words, results):
     """Runs CTest. Returns its exit status, and whether it was stopped."""
     ends, total = {}, 0
+
+    def hear(line):
+        nonlocal total
+        if end := ended(line):
+            name, outcome, seconds, total = end
+            ends[name] = outcome, seconds
+        with contextlib.suppress(OSError):  # the terminal is gone
+            print(line, end="", flush=True)
     # CTest gets a separate process group. Otherwise Ctrl-C would reach the tests, and CTest would
     # report them as failed.
     program = start(["ctest", "--test-output-size-passed", "100000", *words], process_group=0,
                     stdout=subprocess.PIPE, text=True, errors="replace")
+    reader = reading(program, hear)
     try:
-        for line in program.stdout:
-            print(line, end="", flush=True)
-            if end := ended(line):
-                name, outcome, seconds, total = end
-                ends[name] = outcome, seconds
+        reader.join()
         status = wait(program)
         if results.exists() or status < 128:
             return status, False
@@ -60,6 +67,7 @@ def run(words, results):
         program.kill()
         program.wait()
         end_descendants()
+        reader.join()
         status = stop.status
     # CTest was stopped, by us or by a signal, before it wrote its JUnit file, which it does only
     # when it ends.

@@ -11,6 +11,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 from icesoc.util.console import warn
@@ -136,23 +137,38 @@ def collect(command, environment=None, on_line=None, before_kill=None, **more):
     kills the program as well, after a call of `before_kill`."""
     words = ["setpriv", "--pdeathsig", "TERM", *map(str, command)]
     said = []
+
+    def hear(line):
+        said.append(line)
+        if on_line:
+            on_line(line.rstrip("\n"))
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           errors="replace", env={**os.environ, **(environment or {})},
                           **more) as process:
+        reader = reading(process, hear)
         try:
-            for line in process.stdout:
-                said.append(line)
-                if on_line:
-                    on_line(line.rstrip("\n"))
+            reader.join()
         except BaseException:
             if before_kill:
                 before_kill()
             process.kill()
+            reader.join(1)
             raise
     status = process.returncode
     if status in (126, 127):
         raise Stop(f"cannot run {command[0]}: {''.join(said)}")
     return (status if status >= 0 else 128 - status), "".join(said)
+
+
+def reading(process, hear):
+    """Starts and returns a thread that calls `hear` with each line of a program's output. A signal
+    interrupts only the main thread, so it does not lose lines that were not yet read."""
+    def read():
+        for line in process.stdout:
+            hear(line)
+    reader = threading.Thread(target=read, daemon=True)
+    reader.start()
+    return reader
 
 
 def children(pid):

@@ -25,8 +25,10 @@
 #include "ddr3_timing.h"
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <new>
 #include <stdexcept>
-#include <vector>
 
 class McbError : public std::runtime_error {
 public:
@@ -50,6 +52,27 @@ public:
 private:
     T items_[capacity];
     size_t head_ = 0, tail_ = 0;
+};
+
+// Bytes that are 0 at first. The system provides their pages when they are first used, so that a
+// large memory costs a flight no time at its start.
+class ZeroedBytes {
+public:
+    explicit ZeroedBytes(size_t size)
+        : bytes_(static_cast<uint8_t*>(std::calloc(size, 1))), size_(size) {
+        if (!bytes_)
+            throw std::bad_alloc();
+    }
+    uint8_t* data() { return bytes_.get(); }
+    const uint8_t* data() const { return bytes_.get(); }
+    size_t size() const { return size_; }
+
+private:
+    struct Free {
+        void operator()(uint8_t* bytes) const { std::free(bytes); }
+    };
+    std::unique_ptr<uint8_t, Free> bytes_;
+    size_t size_;
 };
 
 class McbModel {
@@ -174,7 +197,7 @@ private:
     Lines lines_;
     bool isFaulty_ = false;
     mutable uint64_t noise_ = 1;
-    std::vector<uint8_t> memory_;
+    ZeroedBytes memory_;
     Timing timing_;
     Ddr3Timing device_;
     bool hung_ = false;

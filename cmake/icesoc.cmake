@@ -215,10 +215,12 @@ endmacro()
 # icesoc_verilate(NAME TOP module SOURCES file... [PARAMS NAME=value...] [INCLUDES dir...]
 #                 [REGS block...] [DEPENDS target-or-file...] [FLAGS ...] [FAST] [CLASS class])
 # Builds a Verilated model of a module as the library NAME with the class V<NAME>, or V<CLASS>. Lint
-# (-Wall) is on, and its warnings are errors. FAST is for the model of the whole chip. It compiles
-# with clang (measured: 1.18 times the speed of code by g++). With COVERAGE, a FAST model counts
-# only soc.v, because the test of each block counts the block. With all counters, a few simulated
-# seconds of flight took minutes.
+# (-Wall) is on, and its warnings are errors. FAST is for the model of the whole chip. With COVERAGE,
+# a FAST model counts only soc.v, because the test of each block counts the block. With all counters,
+# a few simulated seconds of flight took minutes.
+#
+# Clang compiles the model: it takes 0.6 of the time of g++ (fir), and its code is 1.18 times as fast
+# (the chip).
 function(icesoc_verilate name)
   cmake_parse_arguments(A "FAST" "TOP;CLASS" "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;FLAGS" ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name})
@@ -249,7 +251,7 @@ function(icesoc_verilate name)
   endforeach()
   set(deps ${sources} ${library} ${A_DEPENDS})
   set(compiler ${CMAKE_CXX_COMPILER})
-  if(A_FAST AND NOT COVERAGE AND NOT SANITIZE)
+  if(NOT COVERAGE AND NOT SANITIZE)
     set(compiler ${CLANGXX})
   endif()
   # The simulator is installed, so its messages must not contain the path of this tree.

@@ -100,21 +100,116 @@ class Boards(unittest.TestCase):
         for file in re.findall(r"^\| `([a-z_.]+)` \|", text, re.M):
             self.assertIn(f"build/board/nucleo-qmtech/{file}", said)
 
-    def test_errors_name_the_place(self):
-        cases = {
-            'title = 3\n': "title: expected a text, got 3",
-            'nets = [{ name = "D99", fpga = "A5" }]\n': "nets: unknown name D99; did you mean",
-            'base = "nucleo-qmtec"\n': "no board 'nucleo-qmtec'; did you mean nucleo-qmtech?",
-        }
-        for text, expected in cases.items():
-            with tempfile.TemporaryDirectory() as folder:
-                path = Path(folder) / "board.toml"
-                base = "" if "base" in text else 'base = "nucleo-qmtech"\n'
-                path.write_text(base + text)
-                with self.assertRaises(Wrong) as caught:
-                    model.read(path)
-                self.assertIn(expected, str(caught.exception))
+    def read(self, text, folder="my_board"):
+        """Returns the error of a file board.toml, or None."""
+        with tempfile.TemporaryDirectory() as parent:
+            path = Path(parent) / folder / "board.toml"
+            path.parent.mkdir()
+            path.write_bytes(text if isinstance(text, bytes) else text.encode())
+            try:
+                model.read(path)
+            except Wrong as error:
+                return str(error).replace(f"{path}: ", "")
+        return None
 
+    def test_errors_of_a_variant_name_the_place(self):
+        for text, expected in VARIANTS.items():
+            text = text if text.startswith("base") else 'base = "nucleo-qmtech"\n' + text
+            self.assertEqual(self.read(text), expected, text)
+
+    def test_errors_of_a_board_name_the_place(self):
+        kit = KIT.path.read_text()
+        self.assertIsNone(self.read(kit))
+        for old, new, expected in CHANGES:
+            self.assertIn(old, kit)
+            self.assertEqual(self.read(kit.replace(old, new, 1)), expected, new[:60])
+
+    def test_files_in_other_encodings_are_read_or_refused(self):
+        kit = KIT.path.read_text()
+        self.assertIsNone(self.read("\ufeff" + kit))  # a byte order mark, as Windows writes it
+        self.assertIsNone(self.read(kit.replace("\n", "\r\n")))
+        for encoding in ("utf-16", "latin-1"):
+            text = kit.replace("QMTECH", "QMT\u00c9CH").encode(encoding)
+            self.assertEqual(self.read(text), "expected text in UTF-8", encoding)
+
+    def test_texts_of_a_board_cannot_add_code_to_generated_files(self):
+        text = KIT.path.read_text()
+        for place in ('title = "', 'to = "jumper', 'source = "', 'notes = [\n    "'):
+            self.assertIn(place, text)
+            evil = r'<script>alert()</script>)board\"; int x; // '
+            text = text.replace(place, place[:place.rindex('"') + 1] + evil, 1)
+        with tempfile.TemporaryDirectory() as parent:
+            path = Path(parent) / "kit" / "board.toml"
+            path.parent.mkdir()
+            path.write_text(text)
+            board = model.read(path)
+            made = {**make.for_build(board), **make.for_bench(board)}
+        self.assertNotIn("int x", made["board_wires.inc"] + made["board_pins.h"])
+        for name in ("wiring.html", "wiring.svg", "page.md"):
+            self.assertNotIn("<script", made[name], name)
+            self.assertIn("&lt;script", made[name], name)
+        for name in ("openocd.cfg", "board.ucf"):
+            for line in made[name].splitlines():
+                self.assertTrue("int x" not in line or line.startswith("#"), line)
+
+    def test_the_name_of_the_folder_is_safe_in_generated_files(self):
+        expected = ("expected a folder with the name of the board, at most 64 letters, digits, '.',"
+                    " '_' and '-', got ")
+        for folder in ('my "board"', "a\nb", "\u0428", "a" * 65, "-a"):
+            self.assertEqual(self.read(KIT.path.read_text(), folder), f"{expected}'{folder}'")
+
+
+FILE = "expected the name of a file without its ending: lower-case letters, digits and -, got "
+# Text of a board that is derived from the kit -> error.
+VARIANTS = {
+    "title = 3": "title: expected a text of one line, got 3",
+    'title = "a\\n#error"': 'title: expected a text of one line, got "a\\n#error"',
+    'nets = [{ name = "D99", fpga = "A5" }]': "nets: unknown name D99; did you mean D9?",
+    "nets = 3": "nets: expected a list of tables, got 3",
+    'nets = ["A0"]': 'nets[0]: expected a table with name, got "A0"',
+    'nets = [{ mcu = "PF0" }]': "nets[0]: missing key 'name'",
+    'nets = [{ name = ["A0"] }]':
+        'nets[0].name: expected the name of a signal, such as "NWE", got ["A0"]',
+    "fpga = 3": "fpga: expected a table with part, got 3",
+    "mcu = []": "mcu: expected a table with part, got []",
+    "without = 3": "without: expected a list of texts, got 3",
+    'without = "A0"': 'without: expected a list of texts, got "A0"',
+    "without = [{ a = 1 }]": 'without[0]: expected a text of one line, got {"a": 1}',
+    'without = ["A99"]':
+        "without: expected a net of nucleo-qmtech, got 'A99'; did you mean A9?",
+    'base = "nucleo-qmtec"':
+        "base: expected a board of boards/, got 'nucleo-qmtec'; did you mean nucleo-qmtech?",
+    'base = "nucleo-qmtech-muxed"':
+        "base: expected a board without a base, got 'nucleo-qmtech-muxed'",
+    'base = "../nucleo-qmtech"': f'base: {FILE}"../nucleo-qmtech"',
+    "base = 3": f"base: {FILE}3",
+    f'base = "{"a" * 5000}"': f'base: {FILE}"{"a" * 59}',
+}
+# Part of the kit's board.toml, its replacement, and the error.
+CHANGES = [
+    ("hse_hz = 8000000", f"hse_hz = 8{'0' * 5000}", "a number has too many digits"),
+    ("hse_hz = 8000000", "hse_hz = 8e6",
+     "mcu.hse_hz: expected a frequency in Hz, 1000000 to 200000000, got 8000000.0"),
+    ("hse_hz = 8000000", "hse_hz = true",
+     "mcu.hse_hz: expected a frequency in Hz, 1000000 to 200000000, got true"),
+    ("banks = [3.3", "banks = [nan", "fpga.banks[0]: expected a voltage, 0 to 24, got NaN"),
+    ('mcu = "PF0"', 'mcu = "PF\u0660"',
+     'nets[0].mcu: expected a pin of the microcontroller, such as "PD14", got "PF\u0660"'),
+    ("[modem]", "[fpga]", "Cannot declare ('fpga',) twice (at line 124, column 6)"),
+    ("[mcu]", "without = []\n[mcu]", "without: expected with 'base' only"),
+    ("[mcu]", "a = " + "[" * 2000 + "]" * 2000 + "\n[mcu]", "brackets are nested too deep"),
+    ('part = "stm32f207zgt6"', 'part = "stm32f407"',
+     "mcu.part: expected stm32f207vgt6 or stm32f207zgt6, got 'stm32f407'; did you mean "
+     "stm32f207zgt6?"),
+    ('part = "xc6slx16-ftg256"', 'part = "stm32f207zgt6"',
+     "fpga.part: expected xc6slx16-ftg256, got 'stm32f207zgt6'"),
+    ('part = "stm32f207zgt6"', 'part = "../x"', f'mcu.part: {FILE}"../x"'),
+    ('module = "nucleo-f207zg"', 'module = "nucleo"',
+     "mcu.module: expected nucleo-f207zg or qmtech-xc6slx16-ddr3 or xbee, got 'nucleo'; did you "
+     "mean nucleo-f207zg?"),
+    ('module = "nucleo-f207zg"', 'module = "xbee"',
+     "mcu.module: expected a module with the part stm32f207zgt6, got 'xbee' with xbee"),
+]
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])

@@ -7,6 +7,7 @@ to it.
 """
 import csv
 import json
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -128,18 +129,40 @@ class Board:
         return module.place(net.get(end), connectors) if module and net.get(end) else None
 
 
-def names():
-    """Returns the names of all boards of the tree."""
-    return sorted(path.parent.name for path in BOARDS.glob("*/board.toml"))
+def names(boards=BOARDS):
+    """Returns the names of all boards in a folder (default: the boards of the tree)."""
+    return sorted(path.parent.name for path in boards.glob("*/board.toml"))
 
 
 def rows(path):
     """Returns the rows of a file of facts, without comments."""
-    if not path.is_file():
-        raise Wrong(f"{path}: no such part; expected "
-                    f"{', '.join(sorted(p.stem for p in path.parent.glob('*.csv')))}")
     lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
     return list(csv.DictReader(lines))
+
+
+def part_file(name, column, where, boards):
+    """Returns the path of a part's facts. `column` is a column that files of its kind have. Raises
+    Wrong if boards/parts has no such part of this kind; `where` starts the message."""
+    known = {path.stem: path for path in sorted((boards / "parts").glob("*.csv"))
+             if column in rows(path)[0]}
+    if name not in known:
+        raise Wrong(f"{where}.part: expected {' or '.join(known)}, got '{name}'"
+                    + nearest(name, known))
+    return known[name]
+
+
+def read_module(name, part, where, boards):
+    """Returns the Module with this name. Raises Wrong if boards/modules has no such module, or if
+    it has another part; `where` starts the message."""
+    known = {path.stem: path for path in sorted((boards / "modules").glob("*.toml"))}
+    if name not in known:
+        raise Wrong(f"{where}.module: expected {' or '.join(known)}, got '{name}'"
+                    + nearest(name, known))
+    module = Module(name, checked(known[name], "module"))
+    if part and module.facts["part"] != part:
+        raise Wrong(f"{where}.module: expected a module with the part {part}, got '{name}' with "
+                    f"{module.facts['part']}")
+    return module
 
 
 def mcu_part(path):
@@ -178,48 +201,79 @@ def merged(base, facts):
     return {key: value for key, value in result.items() if key not in ("base", "without")}
 
 
+def problems(path, facts, kind, **changes):
+    """Raises Wrong if facts do not fit the schema of a board or a module."""
+    found = schema.problems(facts, {**SCHEMA["$defs"][kind], "$defs": SCHEMA["$defs"], **changes})
+    if found:
+        raise Wrong("\n".join(f"{path}: {text}" for text in found))
+
+
+def with_base(path, facts, boards):
+    """Returns the facts of a board that names a `base`: the facts of the base, except for those
+    that the board changes."""
+    tables = {key: {k: v for k, v in value.items() if k != "required"}
+              for key, value in SCHEMA["$defs"]["board"]["properties"].items()}
+    problems(path, facts, "board", required=[], properties=tables)  # the base has the rest
+    base = facts["base"]
+    known = names(boards)
+    if base not in known:
+        raise Wrong(f"{path}: base: expected a board of boards/, got '{base}'"
+                    + nearest(base, known))
+    other = boards / base / "board.toml"
+    if "base" in parse(other):
+        raise Wrong(f"{path}: base: expected a board without a base, got '{base}'")
+    below = checked(other, "board", boards)
+    has = [net["name"] for net in below["nets"]]
+    for name in facts.get("without", []):
+        if name not in has:
+            raise Wrong(f"{path}: without: expected a net of {base}, got '{name}'"
+                        + nearest(name, has))
+    return merged(below, facts)
+
+
 def checked(path, kind, boards=BOARDS):
     """Returns the facts in a TOML file after checking them against the schema. If the file names a
     `base`, the facts of the base are included, except for those that the file changes."""
     facts = parse(path)
-    base = facts.get("base")
-    if kind == "board" and isinstance(base, str):
-        other = boards / base / "board.toml"
-        if not other.is_file():
-            raise Wrong(f"{path}: base: no board '{base}'" + nearest(base, names()))
-        if "base" in parse(other):
-            raise Wrong(f"{path}: base: expected a board without a base, got '{base}'")
-        facts = merged(checked(other, kind, boards), facts)
-    if found := schema.problems(facts, {**SCHEMA["$defs"][kind], "$defs": SCHEMA["$defs"]}):
-        raise Wrong("\n".join(f"{path}: {text}" for text in found))
+    if kind == "board" and "base" in facts:
+        facts = with_base(path, facts, boards)
+    elif "without" in facts:
+        raise Wrong(f"{path}: without: expected with 'base' only")
+    problems(path, facts, kind)
     return facts
 
 
 def read(path, boards=BOARDS):
     """Returns the Board of a file board.toml; raises Wrong with the reason and what to do.
     `boards`: the folder with parts/ and modules/."""
-    path = Path(path)
+    path = Path(path).absolute()
+    name = path.parent.name
+    if not re.fullmatch(r"[a-z0-9][\w.-]{0,63}", name, re.A | re.I):
+        raise Wrong(f"{path}: expected a folder with the name of the board, at most 64 letters, "
+                    f"digits, '.', '_' and '-', got '{name}'")
     facts = checked(path, "board", boards)
     parts, modules = {}, {}
     for role, reader in (("mcu", mcu_part), ("fpga", fpga_part), ("modem", None)):
         if role not in facts:
             continue
+        part, where = facts[role].get("part"), f"{path}: {role}"
         if reader:
-            parts[role] = reader(boards / "parts" / f"{facts[role]['part']}.csv")
-        if name := facts[role].get("module"):
-            modules[role] = Module(name, checked(boards / "modules" / f"{name}.toml", "module"))
+            column = {"mcu": "functions", "fpga": "ball"}[role]
+            parts[role] = reader(part_file(part, column, where, boards))
+        if module := facts[role].get("module"):
+            modules[role] = read_module(module, part, where, boards)
     nets = []
     for entry in facts["nets"]:
         if entry["name"] not in SIGNALS:
             raise Wrong(f"{path}: nets: unknown name {entry['name']}"
                         + nearest(entry["name"], SIGNALS))
         nets.append(Net(entry["name"], entry))
-    return Board(path, path.parent.name, facts, parts, modules, nets)
+    return Board(path, name, facts, parts, modules, nets)
 
 
 def find(name, boards=BOARDS):
     """Returns the Board with this name."""
-    path = boards / name / "board.toml"
-    if not path.is_file():
-        raise Wrong(f"no board '{name}'; expected {', '.join(names())}" + nearest(name, names()))
-    return read(path, boards)
+    known = names(boards)
+    if name not in known:
+        raise Wrong(f"no board '{name}'; expected {', '.join(known)}" + nearest(name, known))
+    return read(boards / name / "board.toml", boards)

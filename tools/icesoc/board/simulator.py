@@ -33,6 +33,9 @@ def wires(board: Board):
 
 def literals(wires_text, ucf_text):
     """Returns the texts of the wires and of the UCF as C++ string literals, for the simulator's
-    default board."""
+    default board. Leaves comments out, because a title could contain the end of the literal."""
+    wires_text, ucf_text = ("".join(line for line in text.splitlines(keepends=True)
+                                    if not line.startswith("#"))
+                            for text in (wires_text, ucf_text))
     return (f'constexpr char defaultWires[] = R"board({wires_text})board";\n'
             f'constexpr char defaultUcf[] = R"board({ucf_text})board";\n')

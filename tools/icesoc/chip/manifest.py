@@ -63,6 +63,8 @@ def parse(path):
         raise Wrong(f"{path}: {e.strerror}") from None
     except RecursionError:
         raise Wrong(f"{path}: brackets are nested too deep") from None
+    except ValueError:  # Python converts at most 4300 digits
+        raise Wrong(f"{path}: a number has too many digits") from None
 
 
 def read(path):

@@ -151,7 +151,7 @@ static int mustAsk(const Link_Sender* sender, U32 seq) {
 
 /* Returns whether the peer may deliver a message of one fragment before earlier fragments have
  * arrived. The peer must have all earlier fragments of the channel, and must learn no header from
- * this fragment. */
+ * this fragment or from an earlier one in the window. */
 static int isReady(const Link_Sender* sender, U32 seq, U32 flags) {
     const Link_Entry* entries = sender->queue.entries;
     const Link_Fragment* f = FRAGMENT(sender, seq);

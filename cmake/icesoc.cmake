@@ -215,12 +215,12 @@ endmacro()
 # icesoc_verilate(NAME TOP module SOURCES file... [PARAMS NAME=value...] [INCLUDES dir...]
 #                 [REGS block...] [DEPENDS target-or-file...] [FLAGS ...] [FAST] [CLASS class])
 # Builds a Verilated model of a module as the library NAME with the class V<NAME>, or V<CLASS>. Lint
-# (-Wall) is on, and its warnings are errors. FAST is for the model of the whole chip. With COVERAGE,
-# a FAST model counts only soc.v, because the test of each block counts the block. With all counters,
-# a few simulated seconds of flight took minutes.
+# (-Wall) is on, and its warnings are errors. FAST is for the model of the whole chip. With
+# COVERAGE, a FAST model counts only soc.v, because the test of each block counts the block. With
+# all counters, a few simulated seconds of flight took minutes.
 #
-# Clang compiles the model: it takes 0.6 of the time of g++ (fir), and its code is 1.18 times as fast
-# (the chip).
+# Clang compiles the model: it takes 0.6 of the time of g++ (fir), and its code is 1.18 times as
+# fast (the chip).
 function(icesoc_verilate name)
   cmake_parse_arguments(A "FAST" "TOP;CLASS" "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;FLAGS" ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name})

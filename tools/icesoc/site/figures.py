@@ -54,11 +54,11 @@ PLACES = {
         "with these, the blocks of Table I take {table1.through} LUTs. ",
         "The blocks of Table I take {table1.lut} LUTs, {table1.ff} flip-flops and about "
         "{table1.slices} slices",
-        "Counted in this way, it is about {table1.sites},",
+        "Counted in this way, the blocks take about {table1.sites} sites,",
         "put the sites at {table1.low} to {table1.high} and the slices at {table1.less} to "
         "{table1.more}.",
-        "It takes {flown.sites} LUT sites ({flown.low} to {flown.high}), {flown.ff} flip-flops and "
-        "{flown.slices} slices ({flown.less} to {flown.more})",
+        "They take {flown.sites} LUT sites ({flown.low} to {flown.high}), {flown.ff} flip-flops "
+        "and {flown.slices} slices ({flown.less} to {flown.more})",
         "four cores takes {soc.lut} LUTs, {soc.ff} flip-flops and {soc.dsp} DSP blocks",
         "the chip's is {soc.slowest} to {soc.fastest} MHz (median {soc.mhz})"],
     "docs/hw-mapping.md": ["({soc.lut} LUTs, {soc.ff} flip-flops)"],

@@ -28,8 +28,8 @@ FIELDS = [
         "loss",
         matching(r"0?\.\d+|[01](\.0*)?", "0 to 1", float,
                  SHARE.schema, "N"), "share of packets lost on the air, in each direction", 0.0),
-    Option("interference", SHARE, "share of each 20 ms in which other transmitters use the "
-                                  "channel", 0.0),
+    Option("interference", SHARE, "share of each period of 20 ms during which other "
+           "transmitters use the channel", 0.0),
     Option("distance", number(0, 100000, "metres", float),
         "distance between the modems in metres, with fading; 0 disables path loss",
            0.0),

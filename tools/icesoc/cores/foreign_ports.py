@@ -106,7 +106,8 @@ def ports_by_verilator(top, words, is_needed=True):
 
 
 def check_interfaces(top, files):
-    """Rejects a top module with a SystemVerilog interface as port: a slot's wrapper is Verilog."""
+    """Rejects a top module with a SystemVerilog interface as a port, because the slot's wrapper is
+    in Verilog."""
     names = [name for name, *_ in declared(files, "interface") if name != "class"]
     for file in files:
         text = re.sub(r"/\*.*?\*/|//[^\n]*", "", text_of(file), flags=re.S)
@@ -261,7 +262,7 @@ def modules_by_yosys(top, files, headers, params, defines, is_whole, work):
     is_system = any(end_of(f) == ".sv" for f in files)
     short, whole = (copies_in(work, files, change) for change in (without_initial, str))
     accepted = elaborates(short, short == whole and not is_system)
-    # read again without cuts, so that the message shows lines of the original files
+    # runs again on the complete files, so that the message shows their line numbers
     if accepted is False and short != whole:
         accepted = elaborates(whole, not is_system)
     if accepted is None:

@@ -103,7 +103,8 @@ class Changes:
                       if each and self.differing(each) is not None), None)
         if not since or not (end or self.differing(since)):
             return ""
-        # Not all files that a script reads are known.
+        # A script may read files that are not known here, so without a known change, all changes
+        # are listed.
         files = self.of_test(test, since) or self.differing(since)
         text = "the commit; it is not known to have passed" if not end else \
             f"it passed at {commit}" + (

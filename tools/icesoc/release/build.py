@@ -41,7 +41,8 @@ class Release:
 
     @property
     def changes(self):
-        """Returns the changes since the last version, or the changes of this version."""
+        """Returns the changelog's text about the changes since the last version; if there are none,
+        about this version."""
         text = self.files["CHANGELOG.md"].decode()
         return version.unreleased(text) or dict(version.sections(text))[version.newest(text)]
 

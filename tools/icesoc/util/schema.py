@@ -27,7 +27,7 @@ def _validator():
 
 
 def description(schema):
-    """Returns a text about the values that a schema allows: its description."""
+    """Returns a text about the values that a schema allows: the description in the schema."""
     return schema["description"]
 
 

@@ -237,8 +237,8 @@ def synth(values):
 
 
 def one_test(program, text):
-    """Returns the name of the test, given by its full name or by an expression that matches only
-    one."""
+    """Returns the name of a test. `text` is the full name, or an expression that matches only this
+    test."""
     listed = output([program, "--gtest_list_tests"])
     suite, names = "", []
     for line in listed.splitlines():
@@ -271,7 +271,7 @@ def rows_of(fst, build, core):
     rows, most, last = [*ports(build, core)], 200, []
     for signal in sorted(filter(lambda s: s.is_shown, signals), key=lambda s: len(s.scopes)):
         if signal.scopes == ["TOP"] and rows and not last:
-            continue  # a port is in the list already
+            continue  # the port is already in the list
         if signal.scopes != last:
             last = signal.scopes
             rows.append("-" + ".".join(last))

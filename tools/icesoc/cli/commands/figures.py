@@ -15,7 +15,8 @@ from icesoc.util.console import say
 from icesoc.util.process import run
 
 STEPS = ["bench", "synth", "regress", "pictures", "pages"]
-# The seeded fault of the regression page's picture, and the tests that its run selects.
+# Seeded fault that the picture of the regression page shows, and the expression that selects the
+# tests of this regression.
 FAULT, FOUND_BY = "fsmc/lanes_ignored", r"fsmc_(post|memory)$|^test_fsmc_bridge"
 TREE = Path("build/figures/tree")
 

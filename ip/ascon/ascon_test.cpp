@@ -143,7 +143,7 @@ TEST_F(AsconTest, EqualsTheModelForRandomMessages) {
              want = asconEncrypt(key, nonce, associated, message);
         ASSERT_EQ(hex(sealed.text), hex(want.text)) << associated.size() << ", " << message.size();
         ASSERT_EQ(hex(sealed.tag), hex(want.tag));
-        EXPECT_EQ(memory_.byte(tagBase_ + 16), 0) << "16 bytes, no more";
+        EXPECT_EQ(memory_.byte(tagBase_ + 16), 0) << "the core wrote more than 16 bytes of tag";
         // Changes each bit of the protected data in turn. The core must then reject the tag and
         // erase the message.
         auto forged = sealed;
@@ -162,7 +162,7 @@ TEST_F(AsconTest, EqualsTheModelForRandomMessages) {
         ASSERT_EQ(memory_.bytes(target_, message.size()), AsconBytes(message.size(), 0));
         ASSERT_EQ(memory_.bytes(target_ + static_cast<uint32_t>(message.size()), 8),
                   AsconBytes(8, 0x55))
-            << "not behind it";
+            << "the core wrote behind the message";
         ASSERT_TRUE(decrypt(nonce, associated, sealed));
         ASSERT_EQ(memory_.bytes(target_, message.size()), message);
     }
@@ -244,15 +244,16 @@ TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
     };
     EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_REFUSED_MASK);
     put(ASCON_NONCE, sixteen(1));
-    EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_REFUSED_MASK) << "no key";
+    EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_REFUSED_MASK)
+        << "no key has been written";
     put(ASCON_KEY, sixteen(2));
     EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_DONE_MASK);
     EXPECT_EQ(start(ASCON_CONTROL_DECRYPT_MASK), ASCON_EVENT_REFUSED_MASK)
-        << "the nonce is used up";
+        << "the nonce has already been used";
     for (int i = 0; i < 3; ++i)
         bus_.write(ASCON_NONCE, 7);
     EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_REFUSED_MASK)
-        << "three words of a nonce";
+        << "only three of the four words of the nonce have been written";
     bus_.write(ASCON_NONCE, 7);
     EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_DONE_MASK);
     // A nonce that was written only in part is discarded.
@@ -281,8 +282,9 @@ TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
     bus_.write(ASCON_CONTROL, ASCON_CONTROL_FORGET_MASK);
     put(ASCON_NONCE, sixteen(1));
     EXPECT_EQ(start(ASCON_CONTROL_ENCRYPT_MASK), ASCON_EVENT_REFUSED_MASK)
-        << "the key is forgotten";
-    EXPECT_EQ(start(ASCON_CONTROL_HASH_MASK), ASCON_EVENT_DONE_MASK) << "a digest needs neither";
+        << "FORGET has erased the key";
+    EXPECT_EQ(start(ASCON_CONTROL_HASH_MASK), ASCON_EVENT_DONE_MASK)
+        << "a digest needs neither key nor nonce";
     auto refusesBits = [&](unsigned word, unsigned first, unsigned last) {
         for (unsigned bit = first; bit <= last; ++bit) {
             bus_.write(word, 1u << bit);
@@ -337,7 +339,7 @@ TEST_F(AsconTest, AbortEndsAMessageAndLeavesNoPlaintext) {
         for (uint32_t i = 0; i < 3000; ++i)
             ASSERT_TRUE(memory_.byte(target_ + i) == 0 || memory_.byte(target_ + i) == 0x55) << i;
     }
-    ASSERT_TRUE(decrypt(nonce, {}, sealed)) << "the next is right";
+    ASSERT_TRUE(decrypt(nonce, {}, sealed)) << "the next decryption succeeds";
     EXPECT_SAME(memory_.bytes(target_, 3000), message);
 }
 

@@ -107,7 +107,7 @@ TEST_F(CameraTest, EveryFrameIsInMemoryAsTheSensorSentIt) {
         EXPECT_EQ(bus_.read(CAMERA_DROPPED), 0u);
         for (uint32_t i = 0; i < 3; ++i)
             EXPECT_EQ(memory_.byte(base_ + i * stride_ + width * height), 0)
-                << "nothing behind a frame";
+                << "the camera wrote behind a frame";
         stop();
     }
 }
@@ -190,7 +190,8 @@ TEST_F(CameraTest, BrokenFramesAreToldAndNeverHandedOn) {
     sensor_.addFrame(good = picture(), width, height, {-1, 0, 3});
     EXPECT_EQ(drain(), CAMERA_EVENT_LONG_FRAME_MASK | CAMERA_EVENT_FRAME_MASK);
     expectAt(latest(), good);
-    EXPECT_EQ(bus_.read(CAMERA_DROPPED), dropped) << "more lines than wanted: the frame was whole";
+    EXPECT_EQ(bus_.read(CAMERA_DROPPED), dropped)
+        << "a frame with too many lines is complete, and is not dropped";
 }
 
 TEST_F(CameraTest, AMemoryThatIsTooSlowIsToldAndTheNextFrameIsRight) {
@@ -209,7 +210,7 @@ TEST_F(CameraTest, AMemoryThatIsTooSlowIsToldAndTheNextFrameIsRight) {
     sensor_.addFrame(pixels, width, height);
     events |= drain();
     EXPECT_TRUE(events & CAMERA_EVENT_OVERFLOW_MASK);
-    EXPECT_EQ(bus_.read(CAMERA_DROPPED), 2u) << "the second has no pixel";
+    EXPECT_EQ(bus_.read(CAMERA_DROPPED), 2u) << "the second dropped frame has no pixels";
     expectAt(latest(), pixels);
 }
 
@@ -227,7 +228,7 @@ TEST_F(CameraTest, TheFrameThatAnotherCoreHasIsNotOverwritten) {
         bench_.tick();
         top.frame_take_i = 0;
         bench_.tick();
-        EXPECT_FALSE(top.frame_valid_o) << "offered once";
+        EXPECT_FALSE(top.frame_valid_o) << "the frame is offered only once";
         std::vector<uint8_t> last;
         for (uint32_t i = 0; i < 1 + random_.below(4); ++i)
             sensor_.addFrame(last = picture(), width, height);
@@ -256,7 +257,7 @@ TEST_F(CameraTest, AnotherCoreTakesAFrameInAnyClock) {
             top.eval();
             if (top.frame_take_i && top.frame_valid_o) {
                 uint32_t at = base_ + (top.frame_index_o - 1u) * stride_;
-                ASSERT_TRUE(pixels.empty() || at != held) << "offered again";
+                ASSERT_TRUE(pixels.empty() || at != held) << "the same frame is offered again";
                 held = at;
                 pixels.assign(w * h, memory_.byte(at));
             }

@@ -131,7 +131,7 @@ TEST_F(VisionServant, AFrameThatTheCoreRefusesIsAnError) {
     loadAtHeader();
     busErrorsOfRead = 1;
     ASSERT_EQ(start(), ICE_OK);
-    EXPECT_EQ(result(), ICE_UNKNOWN_EXCEPTION) << "its registers did not respond";
+    EXPECT_EQ(result(), ICE_UNKNOWN_EXCEPTION) << "the core's registers did not respond";
     busErrorsOfRead = 0;
     ASSERT_EQ(start(), ICE_OK);
     ASSERT_EQ(result(), ICE_OK);
@@ -146,7 +146,7 @@ TEST_F(VisionServant, AFrameThatWasGivenUpHasNoResult) {
     slot_.memory_.hold(true);
     EXPECT_EQ(result(), ICE_TIMEOUT);
     slot_.memory_.hold(false);
-    EXPECT_EQ(result(), ICE_UNKNOWN_EXCEPTION) << "half of it";
+    EXPECT_EQ(result(), ICE_UNKNOWN_EXCEPTION) << "the result is incomplete";
     ASSERT_EQ(start(), ICE_OK);
     ASSERT_EQ(result(), ICE_OK);
     expectCorners();

@@ -99,7 +99,7 @@ TEST_F(VisionTest, StoresAtMostWhatItIsTold) {
     EXPECT_EQ(bus_.read(VISION_STORED), 5u);
     want.resize(5);
     EXPECT_TRUE(results() == want);
-    EXPECT_EQ(memory_.byte(resultBase_ + 40), 0) << "nothing behind the fifth";
+    EXPECT_EQ(memory_.byte(resultBase_ + 40), 0) << "the core wrote behind the fifth corner";
 }
 
 TEST_F(VisionTest, SettingsWrittenWhileBusyAreTheNextFrames) {
@@ -158,7 +158,7 @@ TEST_F(VisionTest, FollowsAnotherCoresFramesAndWaitsForItsReader) {
         top.frame_valid_i = 1;
         bench_.waitFor([&] { return top.frame_take_o; }, "the frame to be taken", 5);
         bench_.tick();
-        EXPECT_FALSE(top.frame_take_o) << "taken once";
+        EXPECT_FALSE(top.frame_take_o) << "the frame is taken only once";
         bench_.waitFor([&] { return top.irq_o; }, "the core's interrupt", 100000);
         // the next frame is offered, but it must not start, because the results of the current
         // frame have not been read

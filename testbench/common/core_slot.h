@@ -140,7 +140,7 @@ public:
         U32 next = HW_NEVER;
         Hw_Core_later(core_, operation);
         while (!Hw_Core_ended(core_, operation, nowMs(this), &status, &next)) {
-            ASSERT_LT(next, HW_NEVER / 2) << "nothing would wake the task";
+            ASSERT_LT(next, HW_NEVER / 2) << "no event and no time-out would wake the task";
             wait(this, operation, next + 3);
             next = HW_NEVER;
         }

@@ -124,13 +124,14 @@ TEST_F(Bridge, ARegisterWrittenTooEarlyIsLostAndReported) {
         fsmc_.write16(at(41), 0x5A5A);
         fsmc_.idle(30);
         EXPECT_EQ(b_.errors, errors + 1);
-        EXPECT_EQ(b_.errorAddr, 40u) << "the access that was under way";
+        EXPECT_EQ(b_.errorAddr, 40u) << "address of the access that was in progress";
         EXPECT_EQ(b_.errorWrite, behindWrite);
         b_.slave.hung = false;
         fsmc_.write32(bcr2, bcr);
         fsmc_.write16(at(41) + 2, 0x7777);
         EXPECT_EQ(fsmc_.read32(at(41)), 0x99998888u);
-        EXPECT_EQ(b_.errors, errors + 2) << "a high half, and its low half was lost";
+        EXPECT_EQ(b_.errors, errors + 2)
+            << "the high half of a word was written after its low half was lost";
         EXPECT_EQ(fsmc_.read32(at(40)), 0x5A5A1234u);
     }
 }
@@ -142,7 +143,8 @@ TEST_F(Bridge, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
     EXPECT_EQ(b_.errors, 1u);
     EXPECT_EQ(b_.errorAddr, 0x3FFu);
     b_.memory.hold(false);
-    EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0x77) << "a late answer is not taken for another one";
+    EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0x77)
+        << "a late answer must not be used for a later request";
     EXPECT_EQ(fsmc_.read16(ddr + 0x80), 0);
 }
 
@@ -157,7 +159,7 @@ TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     for (; b_.errors == 0 && done < 32; ++done)
         fsmc_.write16(ddr + 8 * done, value(done)); // each write has an address of its own
     const unsigned before = done - 1;
-    EXPECT_EQ(before, 14u) << "of 16 places two are kept";
+    EXPECT_EQ(before, 14u) << "two of the 16 places are reserved";
     EXPECT_EQ(b_.errorAddr, 0x3FFu);
     EXPECT_TRUE(b_.errorWrite);
     EXPECT_EQ(event, 0u);
@@ -168,7 +170,8 @@ TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     b_.memory.hold(false);
     for (unsigned i = 0; i < done; ++i)
         EXPECT_EQ(fsmc_.read16(ddr + 8 * i), i < before + 2 ? value(i) : 0) << "write " << i;
-    EXPECT_EQ(event, unsigned(SYSTEM_EVENT_LATE_MASK)) << "some were lost";
+    EXPECT_EQ(event, unsigned(SYSTEM_EVENT_LATE_MASK))
+        << "the event must show that writes were lost";
     fsmc_.write16(ddr, 0x4321);
     EXPECT_EQ(fsmc_.read16(ddr), 0x4321);
     EXPECT_EQ(b_.errors, 4u);
@@ -183,7 +186,7 @@ TEST_F(Bridge, AHungMemoryDoesNotKeepRegistersAway) {
     EXPECT_GE(b_.errors, 1u);
     b_.memory.hold(false);
     unsigned errors = b_.errors;
-    EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0x1234) << "posted data are written late";
+    EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0x1234) << "posted data must be written even after a delay";
     EXPECT_EQ(b_.errors, errors);
 }
 
@@ -236,12 +239,12 @@ TEST_F(Bridge, StreamsAreRightHoweverSlowTheMemoryIs) {
             again += FSMC_streamRead(address, in.data(), count);
             ASSERT_EQ(in, out) << "SEED=" << testSeed() << " stall " << stall << " copy " << i;
             if (stall == 0.0) {
-                EXPECT_EQ(again, 0u) << "a quick memory keeps up";
+                EXPECT_EQ(again, 0u) << "a fast memory must not cause repetitions";
             }
             repeated += again;
         }
     }
-    EXPECT_GT(repeated, 0u) << "a slow one does not, and that was seen";
+    EXPECT_GT(repeated, 0u) << "a slow memory must cause repetitions";
 }
 
 // At an HCLK of 120 MHz, edges of NWE are 33.3 ns apart. With other ratios of the clocks, the edges
@@ -257,7 +260,8 @@ TEST(BridgeRatios, WritesOfAStreamAreTakenAtEveryPhase) {
         std::vector<uint16_t> in(out.size());
         uint64_t start = b.clocks();
         FSMC_streamWrite(0x400, out.data(), static_cast<U32>(out.size()));
-        EXPECT_LT(b.clocks() - start, out.size() * 41 * clk / hclk / 10) << "4 HCLK an access";
+        EXPECT_LT(b.clocks() - start, out.size() * 41 * clk / hclk / 10)
+            << "an access must take 4 periods of HCLK";
         FSMC_streamRead(0x400, in.data(), static_cast<U32>(in.size()));
         EXPECT_EQ(in, out) << "SEED=" << testSeed() << " HCLK : clock = " << hclk << " : " << clk;
     }
@@ -280,7 +284,8 @@ TEST_F(Bridge, TheDriverTurnsThePageAndTellsOfTheFirstBusError) {
     EXPECT_EQ(FSMC_checkError(&where), FSMC_BUS_ERROR);
     EXPECT_EQ(where, 0x123u);
     doorbell();
-    EXPECT_EQ(words[SYSTEM_EVENT], unsigned(SYSTEM_EVENT_LATE_MASK)) << "only the reported event";
+    EXPECT_EQ(words[SYSTEM_EVENT], unsigned(SYSTEM_EVENT_LATE_MASK))
+        << "exactly the reported event must be set";
 }
 
 TEST_F(Bridge, OtherChipsOnTheBusAreLeftAlone) {

@@ -140,7 +140,8 @@ TEST(Modes, TheDriverRefusesWhatTheManualForbids) {
         EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.writeMode = FSMC_MODE_1; }));
         EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.mode = static_cast<FSMC_Mode>(7); }));
     }
-    EXPECT_THROW(b.master.read16(control), FsmcError) << "bank 2 is off: nothing was written";
+    EXPECT_THROW(b.master.read16(control), FsmcError)
+        << "bank 2 is still off, because nothing was written";
 }
 
 // The model is strict: it throws if a real STM32 would behave in another way, or would fail.
@@ -155,11 +156,11 @@ TEST(Modes, TheModelRefusesWhatTheManualForbids) {
     set(base, timing(2, 0));
     EXPECT_THROW(m.read16(ddr), FsmcError) << "DATAST 0 is reserved";
     set(base, timing(2, 3));
-    EXPECT_THROW(m.read16(ddr), FsmcError) << "NWAIT cannot be seen";
+    EXPECT_THROW(m.read16(ddr), FsmcError) << "the write is too short for NWAIT";
     set(base & ~bcrWriteEnable, timing(2, 4));
     EXPECT_THROW(m.write16(ddr, 1), FsmcError) << "WREN is 0";
     EXPECT_THROW(m.write32(registersAt + 0x20, 1), FsmcError);
-    EXPECT_THROW(m.read16(0x70000000), FsmcError) << "no bank";
+    EXPECT_THROW(m.read16(0x70000000), FsmcError) << "this address is in no bank";
 }
 
 } // namespace

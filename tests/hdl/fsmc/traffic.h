@@ -73,7 +73,8 @@ void traffic(BridgeBench<Bridge>& b, uint64_t seed, int accesses, uint32_t page 
             break;
         case 7:
             EXPECT_EQ(m.read32(control), SYSTEM_ID_VALUE);
-            EXPECT_EQ(m.read16(0x68000000 | half), 0xFFFF) << "another chip's";
+            EXPECT_EQ(m.read16(0x68000000 | half), 0xFFFF)
+                << "this address belongs to another chip";
             break;
         default:
             half -= half % 256 < 20 ? 0 : 2 * random.below(10);

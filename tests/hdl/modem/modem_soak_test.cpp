@@ -106,15 +106,15 @@ TEST_F(ModemSoak, NoiseIsReceivedAsItIsOrDroppedWhole) {
     RecordProperty("packets", static_cast<int>(packets_));
     EXPECT_GT(packets_, bytes / 400) << "SEED " << testSeed();
     for (uint32_t i = 0; i < 4096; ++i) {
-        ASSERT_EQ(memory_.byte(rxRing - 1 - i), 0) << "below the ring";
-        ASSERT_EQ(memory_.byte(rxRing + 2048 + i), 0) << "above the ring";
+        ASSERT_EQ(memory_.byte(rxRing - 1 - i), 0) << "the controller wrote below the ring";
+        ASSERT_EQ(memory_.byte(rxRing + 2048 + i), 0) << "the controller wrote above the ring";
     }
     std::cout << "modem controller: " << bytes << " bytes of noise into its UART, " << packets_
               << " packets received, each a part of the bytes sent" << std::endl;
     noise_ = false;
     plain_.send(frame(50, 9), now());
     runMs(10);
-    EXPECT_EQ(take(), frame(50, 9)) << "it works afterwards";
+    EXPECT_EQ(take(), frame(50, 9)) << "a packet after the faults must arrive";
 }
 
 } // namespace

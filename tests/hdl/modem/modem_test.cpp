@@ -93,7 +93,7 @@ TEST_F(ModemTest, ARefusedCommandIsReportedWithItsStep) {
     configure();
     EXPECT_EQ(takeEvents(), MODEM_EVENT_CONFIGURE_FAILED_MASK);
     EXPECT_EQ(bus_.read(MODEM_STATUS) >> MODEM_STATUS_STEP_LSB & 15, 5u);
-    EXPECT_EQ(near_->counters().refused, 3u) << "sent once and twice again";
+    EXPECT_EQ(near_->counters().refused, 3u) << "the command must be sent once and repeated twice";
 }
 
 TEST_F(ModemTest, EncryptionAndItsKeyAreSet) {
@@ -105,7 +105,7 @@ TEST_F(ModemTest, EncryptionAndItsKeyAreSet) {
     EXPECT_EQ(takeEvents(), MODEM_EVENT_CONFIGURED_MASK);
     EXPECT_EQ(near_->parameter("EE"), 1u);
     EXPECT_EQ(near_->key(), "00112233445566778899AABBCCDDEEFF");
-    EXPECT_EQ(bus_.read(MODEM_KEY), 0u) << "it cannot be read back";
+    EXPECT_EQ(bus_.read(MODEM_KEY), 0u) << "the key must not be readable";
 }
 
 TEST_F(ModemTest, TheKeyIsSentOnlyWithEncryption) {
@@ -116,7 +116,8 @@ TEST_F(ModemTest, TheKeyIsSentOnlyWithEncryption) {
     EXPECT_EQ(near_->parameter("EE"), 0u);
     EXPECT_EQ(near_->parameter("D6"), 1u);
     EXPECT_EQ(near_->parameter("D7"), 1u);
-    EXPECT_EQ(near_->parameter("RN"), 2u) << "modems that write in step";
+    EXPECT_EQ(near_->parameter("RN"), 2u)
+        << "RN must be 2, so that modems that send at the same time do not collide";
 }
 
 TEST_F(ModemTest, WrongPutsAreRefused) {
@@ -131,7 +132,8 @@ TEST_F(ModemTest, WrongPutsAreRefused) {
     }
     for (unsigned i = 0; i < 17; ++i)
         bus_.write(MODEM_TX_PUT, 100);
-    EXPECT_TRUE(takeEvents() & MODEM_EVENT_TX_REFUSED_MASK) << "the ring is full";
+    EXPECT_TRUE(takeEvents() & MODEM_EVENT_TX_REFUSED_MASK)
+        << "a packet must be refused, because the ring is full";
 }
 
 TEST_F(ModemTest, ResetInMidPacketAndSetUpAgain) {
@@ -140,7 +142,8 @@ TEST_F(ModemTest, ResetInMidPacketAndSetUpAgain) {
     runMs(4);
     bus_.write(MODEM_CONTROL, MODEM_CONTROL_RESET_MODEM_MASK);
     runMs(80);
-    EXPECT_EQ(near_->parameter("BD"), 3u) << "nothing was written to its memory";
+    EXPECT_EQ(near_->parameter("BD"), 3u)
+        << "the set-up must not write the modem's permanent settings";
     EXPECT_EQ(bus_.read(MODEM_TX_STATE), 16u);
     configure();
     EXPECT_TRUE(takeEvents() & MODEM_EVENT_CONFIGURED_MASK);
@@ -198,7 +201,8 @@ TEST_F(ModemTest, EncryptedPacketsOf95BytesFollowEachOther) {
     EXPECT_LT((static_cast<double>(now()) - begin) / 1e6, 950 * 0.09 + 1)
         << "ms; rests would be 3.6";
     runMs(10);
-    EXPECT_EQ(sizes_, std::vector<size_t>(10, 100)) << "with the cipher's five bytes";
+    EXPECT_EQ(sizes_, std::vector<size_t>(10, 100))
+        << "a packet has five additional bytes of the cipher";
 }
 
 TEST_F(ModemTest, ShortPacketsInARowAreNotJoined) {
@@ -268,7 +272,7 @@ TEST_F(ModemTest, AFullRingDropsWholePacketsAndNothingElse) {
     EXPECT_TRUE(take().empty());
     plain_.send(frame(50, 99), now());
     runMs(10);
-    EXPECT_EQ(take(), frame(50, 99)) << "it works afterwards";
+    EXPECT_EQ(take(), frame(50, 99)) << "a packet after the fault must arrive";
 }
 
 TEST_F(ModemTest, RTSHoldsTheModemInMidPacketAndThePacketIsWhole) {

@@ -38,7 +38,7 @@ TEST_F(Scale, EverySampleComesOutOnceScaled) {
     }
     EXPECT_FALSE(core_.bench_.top().over_o);
     scaled({0x7FFF});
-    EXPECT_TRUE(core_.bench_.top().over_o) << "pin of the core";
+    EXPECT_TRUE(core_.bench_.top().over_o) << "the core drives this pin";
 }
 
 TEST_F(Scale, GivesABeatAClockWhenTheMemoryKeepsUp) {

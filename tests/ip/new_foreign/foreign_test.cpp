@@ -40,7 +40,7 @@ void holdsRegisters(CoreSlot<Module>& slot, unsigned first, const std::string& h
         for (unsigned i = 0; i < 2; ++i)
             EXPECT_EQ(slot.bus_.read(first + i), round + i) << how << ", register " << i;
     }
-    EXPECT_EQ(slot.bus_.read(1), 0u) << how << ": no time-out";
+    EXPECT_EQ(slot.bus_.read(1), 0u) << how << ": a time-out occurred";
 }
 
 TEST(Wishbone, RegistersReachThePinsAndTheInterruptComesThrough) {
@@ -93,7 +93,7 @@ TEST(Avalon, ACoreWaitsAndAnswersWhenItLikes) {
 TEST(Own, ARequestWithAnAcknowledgeLastsOneClock) {
     CoreSlot<Vmy_ways_slot> slot;
     holdsRegisters(slot, 8, "two addresses, two acknowledges");
-    EXPECT_EQ(slot.bus_.read(12), 4u) << "each write once";
+    EXPECT_EQ(slot.bus_.read(12), 4u) << "each write must be carried out exactly once";
 }
 
 TEST(Memory, WhatIsReadIsThereAtOnceOrNineClocksLater) {
@@ -127,7 +127,8 @@ TEST(Apb, TransfersBeginWithoutEnableAndEndWithReady) {
     slot.bus_.write(A_BRIDGE_REG2, 0x9ABCDEF0);
     EXPECT_EQ(slot.bus_.read(A_BRIDGE_REG1), 0x12345678u);
     EXPECT_EQ(slot.bus_.read(A_BRIDGE_REG2), 0x9ABCDEF0u);
-    EXPECT_TRUE(slot.bus_.transfer(false, A_BRIDGE_REG3, 0).error) << "refused by PSLVERR";
+    EXPECT_TRUE(slot.bus_.transfer(false, A_BRIDGE_REG3, 0).error)
+        << "the core refuses this access by PSLVERR";
     EXPECT_EQ(slot.bus_.read(A_BRIDGE_REG0), 5u);
     EXPECT_EQ(slot.bus_.read(1), 0u);
     slot.bench_.top().clk_div_i = 3; // activates the second of the core's interrupts
@@ -141,7 +142,8 @@ TEST(Apb, ACoreIsReadyAtRestOrAfterWaitsOrHasNoReady) {
     for (uint8_t waits = 0; waits < 6; ++waits) {
         slot.bench_.top().waits_i = waits;
         holdsRegisters(slot, A_BRIDGE_REG1, std::to_string(waits) + " waits");
-        EXPECT_TRUE(slot.bus_.transfer(true, A_BRIDGE_REG3, 0).error) << "refused by PSLVERR";
+        EXPECT_TRUE(slot.bus_.transfer(true, A_BRIDGE_REG3, 0).error)
+            << "the core refuses this access by PSLVERR";
     }
     CoreSlot<Vmy_apb2_slot> apb2;
     apb2.bench_.top().waits_i = 0;
@@ -159,7 +161,8 @@ TEST(Apb, RegistersOfOneByteAreReachedThroughPackedStructures) {
         EXPECT_EQ(slot.bus_.read(MY_NARROW_REG0 + i % 8), 0x80 + i);
     }
     EXPECT_EQ(slot.bench_.top().lamp_o, 1u); // the lamp's pin is bit 7 of register 8, with colour 0
-    EXPECT_TRUE(slot.bus_.transfer(false, MY_NARROW_REG9, 0).error) << "refused by PSLVERR";
+    EXPECT_TRUE(slot.bus_.transfer(false, MY_NARROW_REG9, 0).error)
+        << "the core refuses this access by PSLVERR";
 }
 
 // Runs the generated test with a table in which two names belong to one register.
@@ -248,7 +251,8 @@ TEST(RegistersApart, ACoreThatNeverRestsIsToldWithWhatMoves) {
 
 TEST(Late, AValueIsReadOnceAndAClockLater) {
     CoreSlot<Vmy_late_slot> slot;
-    EXPECT_EQ(slot.bus_.read(MY_LATE_REG2), 0x3222u) << "content of its file, in any directory";
+    EXPECT_EQ(slot.bus_.read(MY_LATE_REG2), 0x3222u)
+        << "the memory must contain the data of its file, whatever the current directory is";
     for (uint32_t i = 0; i < 4; ++i)
         slot.bus_.write(MY_LATE_REG0 + i, 0xA5C0 + i);
     for (uint32_t i = 0; i < 4; ++i) {

@@ -27,7 +27,9 @@ template <class Call> Ice_Status statusOf(Call call) {
 
 class CalculatorServant : public ::testing::Test {
 protected:
-    ~CalculatorServant() override { EXPECT_EQ(core_.errors_, 0u) << "accesses to no register"; }
+    ~CalculatorServant() override {
+        EXPECT_EQ(core_.errors_, 0u) << "the test accessed words that are no registers";
+    }
     Ice_Int divide(Ice_Int a, Ice_Int b) {
         core_.started_ = core_.bench_.cycles();
         return core_.divide(a, b, &remainder_);
@@ -88,7 +90,7 @@ TEST_F(CalculatorServant, ALongOperationEndsByItsEvent) {
         EXPECT_EQ(divide(-1000 - round, 7), (-1000 - round) / 7);
         EXPECT_EQ(remainder_, (-1000 - round) % 7);
         EXPECT_GE(core_.waitedClocks_, 38u) << "the core takes 40 clocks";
-        EXPECT_LE(core_.waitedClocks_, 60u) << "it ends by the event, not by the time-out";
+        EXPECT_LE(core_.waitedClocks_, 60u) << "the event, not the time-out, must end the wait";
     }
 }
 
@@ -142,9 +144,11 @@ TEST_F(WideEchoServant, ValuesOf64BitsAreTwoWords) {
 
 TEST_F(WideEchoServant, MetadataChoosesTheWord) {
     EXPECT_EQ(core_.sameFloat(1.5f), 1.5f);
-    EXPECT_EQ(FSMC_read(slot, 9), 0x3FC00000u) << "IEEE 754 single precision";
+    EXPECT_EQ(FSMC_read(slot, 9), 0x3FC00000u)
+        << "the register contains the number in IEEE 754 single precision";
     EXPECT_EQ(core_.same(2.0), 2.0);
-    EXPECT_EQ(FSMC_read(slot, 13), 0x40000000u) << "high half of the result, word 12 being the low";
+    EXPECT_EQ(FSMC_read(slot, 13), 0x40000000u)
+        << "word 13 contains the high half of the result, word 12 the low half";
 }
 
 TEST_F(WideEchoServant, AStartIsOneClock) {
@@ -197,7 +201,9 @@ protected:
                                  top.add_result_i = top.add_a_o + top.add_b_o;
                              });
     }
-    ~ManyServant() override { EXPECT_EQ(rig_.errors_, 0u) << "accesses to no register"; }
+    ~ManyServant() override {
+        EXPECT_EQ(rig_.errors_, 0u) << "the test accessed words that are no registers";
+    }
     static Ice_Long number(U32 n) { return {n * 0x9E3779B9U, static_cast<Ice_Int>(n * 77 + 1)}; }
     static Ice_Long inverted(Ice_Long n) { return {~n.low, ~n.high}; }
     // Makes a call. Each call has other values, so that a value of an earlier call is detected.
@@ -226,7 +232,7 @@ TEST_F(ManyServant, WordsBehindPageAreCalledAsOthers) {
         turn();
         add();
     }
-    EXPECT_EQ(FSMC_read(slot, 5), 0u) << "PAGE is put back";
+    EXPECT_EQ(FSMC_read(slot, 5), 0u) << "PAGE must have its earlier value again";
 }
 
 TEST_F(ManyServant, InTheChipsClockACoreIsNotAskedWhetherItAnswers) {
@@ -246,7 +252,7 @@ TEST_F(ManyServant, ATaskThatInterruptsAnotherLeavesItsPageAlone) {
                 add();
         };
         turn();
-        ASSERT_FALSE(HasFailure()) << "add interrupts the access " << at;
+        ASSERT_FALSE(HasFailure()) << "add interrupts access " << at;
     }
     EXPECT_GT(last, 100u);
 }
@@ -258,7 +264,7 @@ TEST_F(ManyServant, AWordThatNoPageHasIsAnError) {
     FSMC_write(slot, 15, 1);
     EXPECT_EQ(rig_.errors_, 2u);
     FSMC_read(slot, 6);
-    EXPECT_EQ(rig_.errors_, 2u) << "words below 8 are in each page";
+    EXPECT_EQ(rig_.errors_, 2u) << "the words below 8 must be available in each page";
     rig_.errors_ = 0;
     FSMC_write(slot, 5, 0);
     turn();

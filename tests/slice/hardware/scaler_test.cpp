@@ -51,7 +51,7 @@ TEST_F(Scaler, BuffersThatDoNotBeginAtAMultipleOfTheirSizeAreRefused) {
 TEST_F(Scaler, TooManyElementsAreRefusedBeforeTheCoreSeesThem) {
     try {
         shift(std::vector<Ice_Short>(101), 1);
-        FAIL() << "101 elements in a buffer of 100";
+        FAIL() << "101 elements were accepted for a buffer of 100";
     } catch (const CoreError& e) {
         EXPECT_EQ(e.status(), ICE_LIMIT);
     }
@@ -63,13 +63,13 @@ TEST_F(Scaler, ACoreThrowsAnExceptionWithItsFieldsAndThoseOfItsBase) {
     values[13] = values[17] = 32000;
     try {
         shift(values, 1000);
-        FAIL() << "nothing was thrown";
+        FAIL() << "the call threw no exception";
     } catch (const Demo_Scaler_shift_Exception& e) {
         EXPECT_EQ(e.type, Demo_Scaler_shift_Exception::Demo_Scaler_shift_Overflow);
         EXPECT_EQ(e.u.Overflow.index, 13);
         EXPECT_EQ(e.u.Overflow.base.code, 42);
     }
-    EXPECT_EQ(shift(values, 0), 18 * 5 + 2 * 32000) << "the exception is over";
+    EXPECT_EQ(shift(values, 0), 18 * 5 + 2 * 32000) << "a call after the exception must succeed";
 }
 
 TEST_F(Scaler, ACoreRefusesAndHangsLaterToo) {
@@ -119,7 +119,7 @@ TEST(Proxy, MovesThePins) {
     EXPECT_EQ(pins.set_limit_limit_o, 0xFFFD);
     EXPECT_EQ(pins.shift_list_base_o, coreMemory);
     EXPECT_EQ(pins.shift_shifted_base_o, coreMemory + 256)
-        << "200 bytes, and the next multiple of 128";
+        << "the second buffer begins at the first multiple of 128 behind 200 bytes";
 }
 
 TEST(Proxy, ElementsLieInMemoryAsInC) {
@@ -150,7 +150,8 @@ TEST(Proxy, ElementsLieInMemoryAsInC) {
     ASSERT_EQ(w.size, 1);
     EXPECT_EQ(w.data[0], 2.0);
     pins.exchange_bytes_count_i = 4001;
-    EXPECT_THROW(core.exchange(&v, &list, &bytes, &w), CoreError) << "more than the buffer holds";
+    EXPECT_THROW(core.exchange(&v, &list, &bytes, &w), CoreError)
+        << "the core must reject more bytes than the buffer holds";
 }
 
 } // namespace

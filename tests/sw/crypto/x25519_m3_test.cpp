@@ -45,7 +45,8 @@ TEST(X25519M3, TakesTheSameCyclesForAnyNumberAndALittleStack) {
         m3.cpu.readMemory(result, here.data(), X25519_BYTES);
         X25519(there.data(), own.data(), peer.data());
         EXPECT_EQ(here, there);
-        EXPECT_EQ(m3.cpu.word(stack - 576), 0xA5A5A5A5u) << "more than 576 bytes of stack";
+        EXPECT_EQ(m3.cpu.word(stack - 576), 0xA5A5A5A5u)
+            << "X25519 used more than 576 bytes of stack";
     }
     EXPECT_LT(cycles[0], 12'000'000u); // 100 ms at 120 MHz
     // The model counts 2 cycles more for a multiplication before which it was stopped.

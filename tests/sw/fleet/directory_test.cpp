@@ -179,9 +179,10 @@ void Directory::followAVehicle(const Words& more) {
         fly(isHome);
         const double since = rig_.seconds();
         if (isHome)
-            EXPECT_NO_THROW(echo->ice_ping()) << "idempotent: Ice calls again";
+            EXPECT_NO_THROW(echo->ice_ping())
+                << "the operation is idempotent, so Ice repeats the call";
         else
-            EXPECT_LE(callOn(echo), 1) << "only a call under way";
+            EXPECT_LE(callOn(echo), 1) << "only a call that was in progress may fail";
         const double seconds = rig_.seconds() - since;
         std::printf("directory: handed over after %.2f s\n", seconds);
         EXPECT_LT(seconds, 5);
@@ -189,7 +190,8 @@ void Directory::followAVehicle(const Words& more) {
     }
     EXPECT_EQ(world_.echo->twice(), 0);
     EXPECT_EQ(home->stop() + other->stop(), 0);
-    EXPECT_THROW(echo->ice_ping(), Ice::NotRegisteredException) << "both grounds have ended";
+    EXPECT_THROW(echo->ice_ping(), Ice::NotRegisteredException)
+        << "both ground stations have ended";
 }
 
 TEST_F(Directory, ClientsFollowAVehicleFromOneGroundToAnother) {
@@ -200,7 +202,7 @@ TEST_F(SecureDirectory, ClientsFollowAVehicleFromOneGroundToAnother) {
     followAVehicle({"--key", key()});
     Ice::CommunicatorHolder stranger(program({{"Ice.Plugin.IceSSL", "IceSSL:createIceSSL"}}));
     EXPECT_THROW(stranger->stringToProxy(locator())->ice_ping(), Ice::LocalException)
-        << "without a certificate";
+        << "a client without a certificate must be refused";
 }
 
 // The vehicle is in reach of both ground stations, which have the same address and key.
@@ -236,10 +238,12 @@ TEST_F(Directory, OneOfTwoRegistriesIsKilledAndComesBack) {
     };
     EXPECT_EQ(callOn(echoOf(ic.communicator())), 0);
     master_.kill();
-    EXPECT_EQ(callOn(echoOf(ic.communicator())), 0) << "a client that knows the way";
+    EXPECT_EQ(callOn(echoOf(ic.communicator())), 0)
+        << "a client that already knows the endpoint needs no master";
     {
         Ice::CommunicatorHolder late(client());
-        EXPECT_EQ(callOn(echoOf(late.communicator())), 0) << "one that asks the replica";
+        EXPECT_EQ(callOn(echoOf(late.communicator())), 0)
+            << "a new client must get the endpoint from the replica";
     }
     fly(false); // while the master is down, the registry cannot be updated
     ASSERT_TRUE(other->hear("does not answer")) << other->said();

@@ -61,7 +61,8 @@ TEST_F(Gateway, MaintenanceIsReachedAtItsOwnDoor) {
     EXPECT_EQ(whyFails(call("echo", door)), "");
     EXPECT_EQ(whyFails(call("echo", port_)), "");
     EXPECT_EQ(whyFails(call("missing", port_)), "::Ice::ObjectNotExistException");
-    EXPECT_EQ(servant->calls, 5) << "calls on the maintenance endpoint";
+    EXPECT_EQ(servant->calls, 5)
+        << "the number of calls that arrived at the maintenance endpoint is wrong";
 }
 
 // ---- calls made by the vehicle ----
@@ -115,9 +116,10 @@ TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
     passes(idle, "ice_ping");
     EXPECT_EQ(two.echo->callBack(1), 10);
     passes(one, "fetch");
-    EXPECT_EQ(two.echo->callBack(1), 1) << "only one has passed this object";
+    EXPECT_EQ(two.echo->callBack(1), 1) << "only one client has passed this object";
     passes(two, "fetch");
-    EXPECT_THROW(two.echo->callBack(1), Ice::Exception) << "it could be either object";
+    EXPECT_THROW(two.echo->callBack(1), Ice::Exception)
+        << "two clients have passed this object, so the call must fail";
     EXPECT_EQ(idle.heard->calls, 0);
 }
 
@@ -160,8 +162,9 @@ TEST_F(Gateway, ACertificateSaysWhoAsks) {
     EXPECT_EQ(call("observer", false), "");
     EXPECT_NE(call("observer", true).find("'CN=observer' has no right to call repeat of 'echo'"),
               std::string::npos);
-    EXPECT_NE(call("", false), "") << "without a certificate";
-    EXPECT_NE(call("others/pilot", false), "") << "a certificate of another authority";
+    EXPECT_NE(call("", false), "") << "a client without a certificate must be refused";
+    EXPECT_NE(call("others/pilot", false), "")
+        << "a certificate of another authority must be refused";
     std::filesystem::remove_all(folder);
 }
 

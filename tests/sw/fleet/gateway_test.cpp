@@ -110,7 +110,8 @@ TEST_F(Gateway, AFloodLeavesRoomForOthers) {
     for (int i = 0; i < 2000; ++i)
         flood->noteAsync(i);
     expectAnswer(9999);
-    EXPECT_LT(echo_->noted(), 1000) << "the flood went first";
+    EXPECT_LT(echo_->noted(), 1000)
+        << "too many calls of the flood came before the other client's call";
 }
 
 // Returns the durations of calls in simulated time, ms, sorted.
@@ -164,7 +165,7 @@ TEST_F(Gateway, AHundredFloodingConnectionsLeaveAGoodClientItsTurns) {
         });
     for (int tries = 0; tries < 3000 && sent < 2 * connections; ++tries)
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    EXPECT_GE(sent, 2 * connections) << "calls of the flood";
+    EXPECT_GE(sent, 2 * connections) << "too few calls of the flood were carried out";
     const auto crowded = timesOf(world_, echo_, calls);
     isOver = true;
     EXPECT_EQ(stop(), 0);
@@ -409,12 +410,14 @@ TEST_F(Gateway, IsReachedThroughAGlacier2Router) {
         ic->stringToProxy("Glacier2/router:" + endpoint(port)));
     ic->setDefaultRouter(session);
     const auto echo = proxy(ic.communicator());
-    EXPECT_THROW(echo->ice_ping(), Ice::LocalException) << "without a session";
+    EXPECT_THROW(echo->ice_ping(), Ice::LocalException)
+        << "a client without a session must be refused";
     session->createSession("pilot", "");
     const auto data = World::pattern(1, 100);
     EXPECT_EQ(proxy(ic.communicator())->repeat(1, data), data);
     const auto other = ic->stringToProxy("missing:" + endpoint());
-    EXPECT_THROW(other->ice_ping(), Ice::ObjectNotExistException) << "the router's filter";
+    EXPECT_THROW(other->ice_ping(), Ice::ObjectNotExistException)
+        << "the filter of the router must hide this object";
 }
 
 } // namespace

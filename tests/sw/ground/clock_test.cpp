@@ -129,7 +129,7 @@ protected:
         answer_.push_back(static_cast<uint8_t>(byte + 1));
         pty_.wake(now);
     }
-    void framingError(uint64_t) override { ADD_FAILURE() << "a framing error"; }
+    void framingError(uint64_t) override { ADD_FAILURE() << "a framing error occurred"; }
     bool nextToHost(uint8_t& byte) override {
         if (answer_.empty())
             return false;
@@ -207,7 +207,7 @@ TEST_F(Step, NoTimePassesWhileTheProgramWorksAndNoByteIsLate) {
             ASSERT_EQ(byte, i + 1);
             const uint32_t from = clock.nowUs();
             ASSERT_EQ(clock.wait(&none_, 1, 1000), 0);
-            ASSERT_LE(clock.nowUs() - from, 1010u) << "it overslept";
+            ASSERT_LE(clock.nowUs() - from, 1010u) << "the wait took too long";
         }
     });
 }
@@ -282,7 +282,7 @@ TEST_F(Step, WhoIsHeldByADebuggerIsWaitedFor) {
     ASSERT_EQ(waitpid(program, nullptr, WUNTRACED), program);
     const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
     simulate([&] { return std::chrono::steady_clock::now() > end; }, 0.1);
-    EXPECT_LT(status_->ns, 1'000'000u) << "time went on";
+    EXPECT_LT(status_->ns, 1'000'000u) << "simulated time continued";
     kill(program, SIGKILL);
     waitpid(program, nullptr, 0);
     close(ready[0]);

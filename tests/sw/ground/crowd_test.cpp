@@ -151,7 +151,7 @@ TEST_F(Crowd, AfterAFloodEveryNewProgramIsServed) {
             unsigned openings = 2 * round + 1;
             Program next(engine_->connect(i));
             echoes(next);
-            EXPECT_EQ(wire_.openings[i], ++openings) << "the UAV sends no greeting";
+            EXPECT_EQ(wire_.openings[i], ++openings) << "the UAV must greet each new program";
         }
         wire_.until([] {
             static int n;

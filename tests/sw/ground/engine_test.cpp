@@ -119,7 +119,8 @@ TEST_F(EngineTest, WhatIsLateIsWithdrawnAndItsSenderIsTold) {
     writeAll(fd, message(1));
     writeAll(fd, message(2));
     EXPECT_TRUE(rig_.read(fd, 1).empty());
-    EXPECT_TRUE(rig_.read(other, 1).empty()) << "all share the session";
+    EXPECT_TRUE(rig_.read(other, 1).empty())
+        << "programs that share the session must be disconnected as well";
     const double seconds = rig_.seconds() - begun;
     EXPECT_GE(seconds, 2.0);
     EXPECT_LT(seconds, 2.5);
@@ -180,7 +181,7 @@ TEST_F(EngineTest, HeartbeatsTakeNoAir) {
     EXPECT_EQ(rig_.read(fd, 14),
               heartbeat); // the engine sends a heartbeat after 5 s without bytes from the UAV
     rig_.with([&] {
-        EXPECT_EQ(rig_.uav.received.size(), 1u) << "a heartbeat crossed the air";
+        EXPECT_EQ(rig_.uav.received.size(), 1u) << "a heartbeat was sent by radio";
         Bytes reply = message(1, 30);
         reply[8] = 2;
         Link_send(rig_.uav.link(), 0, reply.data(), 30, 0);
@@ -259,7 +260,7 @@ TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     rig_.with([&] { rig_.ground->power(false, rig_.ns()); });
     auto engine = start();
     int ready = engine->listen();
-    EXPECT_EQ(engine->listen(), -1) << "a second listener";
+    EXPECT_EQ(engine->listen(), -1) << "a second listener must be refused";
     int fd = engine->connect(0);
     // there is no reply; the program that waits gets an error
     EXPECT_TRUE(rig_.read(fd, 1).empty());
@@ -414,7 +415,8 @@ TEST(Engine, APortThatAnotherProgramUsesIsRefusedWithItsNumber) {
         << refusal(wire.path());
     kill(first, SIGKILL);
     waitpid(first, nullptr, 0);
-    EXPECT_EQ(refusal(wire.path()), "none") << "nothing is left of one that was killed";
+    EXPECT_EQ(refusal(wire.path()), "none")
+        << "an engine that was killed must leave nothing that blocks the next one";
     close(ready[0]);
     close(ready[1]);
 }

@@ -171,7 +171,8 @@ TEST_F(FleetTest, EachVehicleAnswersItsOwnCallsUnderItsOwnKey) {
         for (const auto& [address, program] : programs)
             answers(program.fd, address & 0xFF);
     EXPECT_TRUE(log_.has("1 0x0102: link up, secure")) << log_.text();
-    EXPECT_THROW(peer(2, keys.at(1)), std::system_error) << "another key for the same vehicle";
+    EXPECT_THROW(peer(2, keys.at(1)), std::system_error)
+        << "another key for the same vehicle must be refused";
 }
 
 TEST_F(FleetTest, VehiclesShareTheAirAlikeAndOneThatIsAwayCostsTheOthersLittle) {
@@ -196,7 +197,7 @@ TEST_F(FleetTest, VehiclesShareTheAirAlikeAndOneThatIsAwayCostsTheOthersLittle) 
     const double share = (rig_.with(airNs) - before) / 8e9;
     std::printf("fleet: one that is away takes %.2f %% of the air\n", 100 * share);
     EXPECT_LT(share, 0.02);
-    EXPECT_GT(share, 0.0001) << "it is sought";
+    EXPECT_GT(share, 0.0001) << "the engine must search for the vehicle that is away";
 }
 
 TEST_F(FleetTest, OneThatComesWhileOthersAreCalledAtFullRateIsServedSoon) {
@@ -273,7 +274,7 @@ TEST_P(TwinGrounds, TheNewerOneKeepsTheVehicleAndTheOlderOneHasItAgainAfterIt) {
     settings_.device = rig_.otherPty.path();
     auto newer = std::make_unique<Program>(peer(1, GetParam()));
     answers(newer->fd, 1);
-    EXPECT_TRUE(rig_.read(before.fd, 1).empty()) << "the older one's connection ends";
+    EXPECT_TRUE(rig_.read(before.fd, 1).empty()) << "the connection of the older program must end";
     const unsigned made = sessions(1);
     for (int second = 0; second < 6; ++second) {
         rig_.pass(1);
@@ -313,7 +314,7 @@ TEST_P(TwinGrounds, AVehicleThatFallsSilentInAFrameHasNoOtherGround) {
             dying.advance(rig_.ns());
         };
     });
-    EXPECT_TRUE(rig_.read(before.fd, 1).empty()) << "the connection ends";
+    EXPECT_TRUE(rig_.read(before.fd, 1).empty()) << "the connection must end";
     rig_.pass(1);
     rig_.with([&] {
         rig_.step = step;
@@ -406,12 +407,13 @@ TEST_F(BroadcastTest, EachVehicleTakesACallOnceInOrder) {
                 EXPECT_EQ(delivery.arrived(0, call), "");
             EXPECT_GT(h.packets.size(), 2 * h.calls.size());
             if (&h == &hearers_.back())
-                EXPECT_TRUE(h.calls.empty()) << "it has another key";
+                EXPECT_TRUE(h.calls.empty()) << "a vehicle with another key must not accept calls";
             else
-                EXPECT_GE(h.calls.size(), 23u) << "five copies miss once in 400";
+                EXPECT_GE(h.calls.size(), 23u)
+                    << "with five copies, only one call in 400 is missed";
         }
     });
-    EXPECT_EQ(sessions(9), 1u) << "it also hears them";
+    EXPECT_EQ(sessions(9), 1u) << "calls to all vehicles must not end the session";
     answers(one.fd, 9);
 }
 

@@ -29,9 +29,11 @@ TEST_F(Calls, AFailureIsToldOfItsProxyWhateverOthersCall) {
         return str(current.operation) == "works" ? ICE_OK : ICE_LIMIT;
     };
     EXPECT_EQ(call(fails, "fails"), ICE_UNKNOWN_EXCEPTION);
-    EXPECT_EQ(reason(fails), Ice_Status_text(ICE_LIMIT)) << "the status in words";
+    EXPECT_EQ(reason(fails), Ice_Status_text(ICE_LIMIT))
+        << "the reason must be the text of the status";
     Ice_ObjectPrx_failure(&works, &failure);
-    EXPECT_EQ(failure.unknown.size + failure.identity.name.size, 0) << "no call so far";
+    EXPECT_EQ(failure.unknown.size + failure.identity.name.size, 0)
+        << "a proxy without calls has no failure";
     EXPECT_EQ(call(works, "works"), ICE_OK);
     Ice_ObjectPrx_failure(&works, &failure);
     EXPECT_EQ(failure.unknown.size + failure.identity.name.size + failure.operation.size, 0);
@@ -42,7 +44,7 @@ TEST_F(Calls, AFailureIsToldOfItsProxyWhateverOthersCall) {
     EXPECT_EQ(str(failure.operation), "first");
     EXPECT_EQ(failure.unknown.size, 0);
     Ice_ObjectPrx_failure(&fails, &failure);
-    EXPECT_EQ(failure.unknown.size, 0) << "the reply is gone, and so is its text";
+    EXPECT_EQ(failure.unknown.size, 0) << "the text is invalid after the reply was released";
 }
 
 // Makes a call whose result is the string `mine`. The result stays in the buffer of the reply.
@@ -142,7 +144,8 @@ TEST_F(Calls, ABatchIsOneMessageAndIsSentWhenFullOrFlushed) {
     Ice_Batch batch;
     Ice_Byte data[200];
     Ice_ObjectPrx_ice_batchOneway(&prx_, &batch, data, sizeof data);
-    EXPECT_EQ(Ice_ObjectPrx_ice_flushBatchRequests(&prx_), ICE_OK) << "nothing to send";
+    EXPECT_EQ(Ice_ObjectPrx_ice_flushBatchRequests(&prx_), ICE_OK)
+        << "an empty batch is sent successfully";
     for (int i = 0; i < 5; ++i)
         EXPECT_EQ(call(prx_, "op", i), ICE_OK);
     settle();

@@ -71,7 +71,7 @@ TEST_F(Manual, ACopyIsChangedAndTheProxyIsNot) {
         Ice_OutputStream_writeInt(os, 5);
         return ICE_OK;
     };
-    EXPECT_EQ(ask(other, "op", 0), 5) << "two-way again";
+    EXPECT_EQ(ask(other, "op", 0), 5) << "the proxy must be two-way again";
 }
 
 TEST_F(Manual, AnAdaptersProxyLeadsToItsObjectWhereverItIsSent) {
@@ -98,7 +98,7 @@ TEST_F(Manual, SeveralAdaptersServeTheSameConnections) {
     ASSERT_EQ(Ice_Communicator_createObjectAdapter(&there().ic, "Other", &other), ICE_OK);
     ASSERT_EQ(Ice_ObjectAdapter_add(&other, &second.base, "second"), ICE_OK);
     Ice_ObjectPrx prx = here().proxy("second:loop"), first = here().proxy("thing:loop");
-    EXPECT_EQ(call(prx, "op"), ICE_OBJECT_NOT_EXIST) << "not active yet";
+    EXPECT_EQ(call(prx, "op"), ICE_OBJECT_NOT_EXIST) << "the adapter is not active yet";
     Ice_ObjectAdapter_activate(&other);
     EXPECT_EQ(call(prx, "op"), ICE_OK);
     EXPECT_EQ(call(first, "op"), ICE_OK);
@@ -190,8 +190,9 @@ TEST_F(Manual, AServantHasRoomForItsResults) {
         return ICE_OK;
     };
     EXPECT_EQ(ask(prx_, "op", ICE_ARENA_BYTES), 0x55);
-    EXPECT_EQ(ask(prx_, "op", ICE_ARENA_BYTES + 8), -1) << "the servant then reports it";
-    EXPECT_EQ(ask(prx_, "op", 1), 0x55) << "each call has all of it";
+    EXPECT_EQ(ask(prx_, "op", ICE_ARENA_BYTES + 8), -1)
+        << "the servant must report that the arena is full";
+    EXPECT_EQ(ask(prx_, "op", 1), 0x55) << "each call must have the whole arena";
 }
 
 TEST_F(Manual, ALocatorTellsWhereAnIndirectProxyLeads) {
@@ -213,7 +214,8 @@ TEST_F(Manual, ALocatorTellsWhereAnIndirectProxyLeads) {
         EXPECT_EQ(Ice_ObjectPrx_resolve(&prx, &locator), ICE_OK) << string;
         EXPECT_EQ(written(prx), "x -t -e 1.1:loop -c 1");
         int calls = servant_.calls;
-        EXPECT_EQ(Ice_ObjectPrx_resolve(&prx, &locator), ICE_OK) << "it is direct";
+        EXPECT_EQ(Ice_ObjectPrx_resolve(&prx, &locator), ICE_OK)
+            << "a direct proxy needs no locator";
         EXPECT_EQ(servant_.calls, calls);
     }
     for (const char* string : {"x@B", "y"}) {
@@ -240,7 +242,7 @@ TEST_F(Calls, AnAnswerForALostConnectionIsRefused) {
     Ice_Connection_close(&here().ic, prx_.connection);
     settle();
     servant_.run = returns(ICE_OK);
-    EXPECT_EQ(call(prx_, "again"), ICE_OK) << "a new connection of the same number";
+    EXPECT_EQ(call(prx_, "again"), ICE_OK) << "a new connection with the same number must be used";
     (void)Ice_Reply_begin(&later);
     EXPECT_EQ(Ice_Reply_end(&later, ICE_OK), ICE_CONNECTION_LOST);
 }
@@ -262,7 +264,7 @@ TEST_F(Calls, TheCallersConnectionCarriesCallsBack) {
     Ice_OutputStream os;
     Ice_OutputStream_init(&os, bytes, sizeof bytes);
     Ice_OutputStream_writePrx(&os, &fixed);
-    EXPECT_TRUE(os.failed) << "a fixed proxy means nothing to others";
+    EXPECT_TRUE(os.failed) << "a fixed proxy must not be sent to others";
     Ice_Connection_close(&here().ic, prx_.connection);
     settle();
     EXPECT_EQ(call(fixed, "op"), ICE_CONNECTION_LOST);
@@ -308,8 +310,10 @@ TEST_F(Calls, AfterShutdownNothingIsExecutedAndCallersKnowIt) {
     Ice_ObjectPrx prx = here().proxy("thing:loop"), other = here().proxy("thing:loop -c 1");
     ASSERT_EQ(call(prx, "op"), ICE_OK);
     Ice_Communicator_shutdown(&there().ic);
-    EXPECT_EQ(call(prx, "op"), ICE_CONNECTION_CLOSED) << "repeating it elsewhere is safe";
-    EXPECT_EQ(call(other, "op"), ICE_CONNECTION_LOST) << "no new connection is taken";
+    EXPECT_EQ(call(prx, "op"), ICE_CONNECTION_CLOSED)
+        << "the status must show that the call was not executed";
+    EXPECT_EQ(call(other, "op"), ICE_CONNECTION_LOST)
+        << "no new connection is accepted after the shutdown";
     EXPECT_EQ(servant_.calls, 1);
 }
 
@@ -343,7 +347,7 @@ TEST_F(Calls, AGracefulCloseSaysThatNothingWasExecuted) {
     };
     EXPECT_EQ(call(prx_, "op"), ICE_CONNECTION_CLOSED);
     servant_.run = returns(ICE_OK);
-    EXPECT_EQ(call(prx_, "op"), ICE_OK) << "a new connection";
+    EXPECT_EQ(call(prx_, "op"), ICE_OK) << "the call must use a new connection";
 }
 
 TEST_F(Calls, PropertiesMakeAdaptersAndProxies) {

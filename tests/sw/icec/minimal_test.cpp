@@ -35,7 +35,8 @@ TEST_F(Minimal, CallsFromWithinAnOperationAreRefused) {
     EXPECT_EQ(ask(prx_, "op", 4), 5);
     EXPECT_EQ(inner, ICE_LIMIT);
     Ice_ObjectPrx back = there().proxy("missing:loop");
-    EXPECT_EQ(call(back, "op"), ICE_OBJECT_NOT_EXIST) << "afterwards they are not";
+    EXPECT_EQ(call(back, "op"), ICE_OBJECT_NOT_EXIST)
+        << "outside a dispatch, calls must be possible";
 }
 
 TEST_F(Minimal, StringsThatAreNoProxiesSaySo) {
@@ -128,7 +129,7 @@ TEST_F(MinimalPeer, ARequestMeanwhileIsServedBeforeTheReplyIsRead) {
     };
     EXPECT_EQ(ask(prx_, "op", 0), 7);
     EXPECT_EQ(servant.calls, 1);
-    EXPECT_EQ(requests_, 2) << "the request and the answer to the other one";
+    EXPECT_EQ(requests_, 2) << "one message is the request, one is the answer to the other request";
 }
 
 TEST_F(MinimalPeer, AConnectionThatEndsFailsTheCallAndTheNextOneConnectsAgain) {

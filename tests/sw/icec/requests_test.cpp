@@ -130,7 +130,8 @@ TEST_F(Wire, MalformedMessagesCloseTheConnection) {
         EXPECT_FALSE(isOpen()) << i;
     }
     EXPECT_EQ(servant_.calls, 0);
-    EXPECT_EQ(exchange(good).size(), 1u) << "and then all is well";
+    EXPECT_EQ(exchange(good).size(), 1u)
+        << "a valid message after the invalid ones must be answered";
 }
 
 TEST_F(Wire, RepliesThatNobodyAskedForArePassedOver) {

@@ -305,7 +305,8 @@ TEST_F(Results, OfAnAsynchronousCallAreThereWhenItIsCompleted) {
 
 TEST_F(Results, NeedTheModeOfTheirOperation) {
     Graph_MakerPrx prx = proxy("maker");
-    EXPECT_EQ(::call(prx, "echo", 0, nullptr, 2), ICE_UNKNOWN_LOCAL_EXCEPTION) << "not idempotent";
+    EXPECT_EQ(::call(prx, "echo", 0, nullptr, 2), ICE_UNKNOWN_LOCAL_EXCEPTION)
+        << "the operation is not idempotent";
 }
 
 } // namespace

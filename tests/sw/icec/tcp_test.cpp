@@ -166,10 +166,11 @@ TEST_F(Tcp, AHundredClientsAtOnceAreServed) {
     for (int i = 0; i < 100; ++i)
         peers.emplace_back(port());
     for (RawSocket& peer : peers)
-        ASSERT_TRUE(peer.isConnected(100)) << "the system keeps them until they are accepted";
+        ASSERT_TRUE(peer.isConnected(100))
+            << "the operating system must keep connections until they are accepted";
     serve();
     while (!peers.empty()) { // peers that have been served disconnect, so that others can connect
-        ASSERT_TRUE(ping(peers.front())) << peers.size() << " to come";
+        ASSERT_TRUE(ping(peers.front())) << peers.size() << " connections are still waiting";
         peers.pop_front();
     }
 }
@@ -214,7 +215,9 @@ TEST_F(Tcp, ANewPeerDisplacesTheOneThatHasBeenIdleLongest) {
     }
     RawSocket other(port());
     EXPECT_TRUE(ping(other, 2000));
-    EXPECT_EQ(idle[0].receive(1000), message(4, {})) << "CloseConnection: it may come again";
+    EXPECT_EQ(idle[0].receive(1000), message(4, {}))
+        << "the server must close the connection by CloseConnection, after which the client may "
+           "connect again";
     EXPECT_TRUE(ping(idle[1])) << "no other connection was closed";
 }
 
@@ -246,7 +249,7 @@ TEST_F(Tcp, ARequestThatIsTooLongIsAnsweredWithTheLimitsName) {
         << "UnknownLocalException";
     EXPECT_EQ(std::string(reply.begin() + 20, reply.end()),
               "::Ice::MemoryLimitException: over ICE_MESSAGE_MAX (8192)");
-    EXPECT_TRUE(ping(peer)) << "the connection lives";
+    EXPECT_TRUE(ping(peer)) << "the connection must remain open";
 }
 
 // A caller that gets no reply notices that a limit was exceeded by the end of its connection, as
@@ -264,7 +267,7 @@ TEST_F(Tcp, WhatIsRefusedWithoutAnAnswerIsLoggedAndEndsTheConnection) {
         ASSERT_TRUE(ping(*peer));
         ASSERT_TRUE(peer->send(bytes));
         EXPECT_TRUE(peer->receive(20000).empty());
-        EXPECT_FALSE(ping(*peer, 500)) << "the connection has ended";
+        EXPECT_FALSE(ping(*peer, 500)) << "the connection must have ended";
     }
     ASSERT_TRUE(ping(compressed));
     ASSERT_TRUE(compressed.send(message(1, Bytes(100, 1), 2)));
@@ -300,9 +303,11 @@ TEST_F(Tcp, APeerWhoseOperationIsUnderWayIsNotDisplaced) {
         peers.emplace_back(port());
         ASSERT_TRUE(ping(peers.back())) << i;
     }
-    EXPECT_EQ(peers[1].receive(1000), message(4, {})) << "the idlest of the others";
+    EXPECT_EQ(peers[1].receive(1000), message(4, {}))
+        << "of the other connections, the one idle for longest must be closed";
     EXPECT_EQ(peers[0].receive(1000), message(3, {}));
-    EXPECT_TRUE(peers[0].receive(100).empty()) << "it still waits";
+    EXPECT_TRUE(peers[0].receive(100).empty())
+        << "a client that waits for an answer must stay connected";
 }
 
 // Ice 3.8 would close a connection without heartbeats

@@ -200,7 +200,7 @@ TEST(Stream, SizesAreCheckedBeforeUse) {
     open(5);
     (void)Ice_InputStream_readInt(&is);
     EXPECT_TRUE(is.failed);
-    EXPECT_EQ(Ice_InputStream_readByte(&is), 0) << "errors stick";
+    EXPECT_EQ(Ice_InputStream_readByte(&is), 0) << "after an error, all reads must fail";
     U32 arena[8];
     open(5);
     is.arena = arena;

@@ -358,7 +358,8 @@ TEST(HandshakeModel, KeepsItsPromisesInEveryState) {
     for (const auto& limits : {withData, withPings}) {
         const auto result = HandshakeModel(Bug::None, limits).explore();
         EXPECT_EQ(result.fault, "") << testing::PrintToString(result.way);
-        EXPECT_TRUE(result.bothWereUp) << "or it promises little";
+        EXPECT_TRUE(result.bothWereUp)
+            << "the model never reached a state in which both sides are up";
         EXPECT_EQ(result.dataArrived, limits.data > 0);
         std::printf("%llu states\n", static_cast<unsigned long long>(result.states));
     }

@@ -177,7 +177,7 @@ TEST(LinkOverApi, APeerThatVanishesInMidSessionTakesLittleOfTheAir) {
         const double share = static_cast<double>(pair.air.counters().airNs - before) / 1e10;
         std::printf("a peer that vanishes takes %.2f %% of the air\n", 100 * share);
         EXPECT_LT(share, 0.02) << (isCalled ? "during a call" : "idle");
-        EXPECT_GT(share, 0.002) << "the link searches for it";
+        EXPECT_GT(share, 0.002) << "the link must search for the peer";
     }
 }
 

@@ -583,7 +583,8 @@ TEST(Broadcasts, AreOpenedUnderTheGroupsKeyOnceAndWithNoBitWrong) {
     EXPECT_EQ(open(packet, key, 0x01020303), text);
     for (U32 newest : {0x01020304u, 0x01020305u, 0xFFFFFFFFu})
         EXPECT_TRUE(open(packet, key, newest).empty()) << newest;
-    EXPECT_TRUE(open(packet, Bytes(LINK_KEY_BYTES), 0).empty()) << "another key";
+    EXPECT_TRUE(open(packet, Bytes(LINK_KEY_BYTES), 0).empty())
+        << "a packet with another key must be refused";
     for (size_t bit = 0; bit < 8 * packet.size(); ++bit) {
         Bytes wrong = packet;
         wrong[bit / 8] ^= static_cast<uint8_t>(1u << bit % 8);

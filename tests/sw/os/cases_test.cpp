@@ -49,7 +49,8 @@ TEST(OsHostPort, AnExceptionInATaskLeavesRun) {
     OS_STK stack[16];
     OsHost::setMachine({[] { OsHost::stop(); }, [] { return false; }, [] {}});
     OSInit();
-    OSTaskCreate([](void*) { throw std::runtime_error("bus hung"); }, nullptr, stack + 15, 5);
+    OSTaskCreate([](void*) { throw std::runtime_error("the bus does not respond"); }, nullptr,
+                 stack + 15, 5);
     EXPECT_THROW(OsHost::run(), std::runtime_error);
 }
 
@@ -61,7 +62,7 @@ TEST(OsHostPort, PrioritiesAndTasksAreLimited) {
     INT8U err = 0;
     OSInit();
     OSMutexCreate(2, &err);
-    EXPECT_EQ(create(2), OS_ERR_PRIO_EXIST) << "a mutex's ceiling";
+    EXPECT_EQ(create(2), OS_ERR_PRIO_EXIST) << "the priority is the ceiling of a mutex";
     EXPECT_EQ(create(OS_LOWEST_PRIO), OS_ERR_PRIO_INVALID);
     for (unsigned i = 0; i < OS_MAX_TASKS; ++i)
         EXPECT_EQ(create(10 + i), OS_ERR_NONE);

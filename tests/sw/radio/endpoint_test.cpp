@@ -103,10 +103,10 @@ TEST_F(RadioEndpoint, AMessageIsTakenOnceAndOnlyWhileSomebodyReceives) {
     auto offer = [&](int channel) {
         return XBeeATEndpoint_onMessage(&endpoint_, channel, message, sizeof message);
     };
-    EXPECT_EQ(offer(2), 1) << "the link keeps it";
+    EXPECT_EQ(offer(2), 1) << "the link must keep the message";
     atWait_ = [&] {
         EXPECT_EQ(offer(2), 0);
-        EXPECT_EQ(offer(1), 1) << "one at a time";
+        EXPECT_EQ(offer(1), 1) << "only one message is accepted at a time";
     };
     Ice_Event event{};
     EXPECT_EQ(ops().receive(ic_.transports[0].context, buffer_, 1, &event), ICE_OK);

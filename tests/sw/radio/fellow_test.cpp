@@ -208,7 +208,7 @@ TEST(Fellows, CallEachOtherTwowayAndOnewayInOneSessionWithAKeyAndWithout) {
         Team world(key);
         world.run(5000);
         EXPECT_EQ(world.five.ends[Craft::fellow].sent + world.seven.ends[Craft::fellow].sent, 0u)
-            << "no call yet";
+            << "a vehicle must not send before the first call";
         EXPECT_EQ(world.five.call("it:xbee-at -a 7"), ICE_OK);
         EXPECT_EQ(world.seven.call("it:xbee-at -a 0x0005"), ICE_OK);
         EXPECT_EQ(world.five.call("it -o:xbee-at -a 7"), ICE_OK);
@@ -282,19 +282,22 @@ TEST(Fellows, OneThatIsAwayEndsTheCallInTimeAndTheGroundIsServedMeanwhile) {
             const U32 since = world.ms;
             EXPECT_EQ(world.five.call(to, 3000), ICE_TIMEOUT);
             EXPECT_NEAR(world.ms - since, 3000, 20);
-            EXPECT_GT(world.ground.replies - replies, 60u) << "each takes two packets of 10 ms";
+            EXPECT_GT(world.ground.replies - replies, 60u)
+                << "too few replies: each takes two packets of 10 ms";
         }
         for (int n = 0; n < 50; ++n)
             EXPECT_EQ(world.five.call("it:xbee-at -a 7", 200), ICE_TIMEOUT);
         EXPECT_LE(world.five.ends[Craft::fellow].sent, 11u)
-            << "HELLO each 2.4 s, however many call it";
+            << "one HELLO is sent every 2.4 s, however many calls wait";
         world.run(11000);
         const unsigned sent = world.five.ends[Craft::fellow].sent;
         world.run(20000);
-        EXPECT_EQ(world.five.ends[Craft::fellow].sent, sent) << "no further calls";
+        EXPECT_EQ(world.five.ends[Craft::fellow].sent, sent)
+            << "nothing may be sent without further calls";
         world.seven.isAway = false;
         EXPECT_EQ(world.five.call("it:xbee-at -a 7"), ICE_OK);
-        EXPECT_EQ(world.seven.servant.calls, 1u) << "an abandoned call is not executed later";
+        EXPECT_EQ(world.seven.servant.calls, 1u)
+            << "a call whose caller has given up must not be executed later";
     }
 }
 

@@ -365,9 +365,9 @@ TEST_F(ApiRadio, AModemThatRefusesBothModesIsToldAsThat) {
     run([&] {
         soc_.modem().refuseCommand("AP");
         EXPECT_EQ(initApi(RADIO_250000), RADIO_REFUSED);
-        EXPECT_EQ(Radio_failedStep(), 13u) << "ATAP";
+        EXPECT_EQ(Radio_failedStep(), 13u) << "step 13 sends ATAP";
         soc_.modem().refuseCommand("");
-        EXPECT_EQ(initApi(RADIO_250000), RADIO_OK) << "and tried again";
+        EXPECT_EQ(initApi(RADIO_250000), RADIO_OK) << "a second set-up must succeed";
         EXPECT_TRUE(Radio_answers());
     });
 }
@@ -459,7 +459,8 @@ TEST_F(EncryptedRadio, WithAnotherKeyOrNoneThereIsNoSession) {
             EXPECT_FALSE(connect(3000));
             Link_stop(nearPeer_.link(), us());
         });
-    EXPECT_GT(far_.counters().packetsReceived, 3u) << "garbage, not silence";
+    EXPECT_GT(far_.counters().packetsReceived, 3u)
+        << "packets must arrive even if they cannot be read";
 }
 
 } // namespace

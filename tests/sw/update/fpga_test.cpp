@@ -74,7 +74,8 @@ public:
     uint32_t boot() override {
         if (Slots_settleFpga(&port, 0))
             fpga.configure(flash.memory);
-        EXPECT_TRUE(fpga.running.has_value()) << (fpga.isStuck ? "stuck" : "nothing configures");
+        EXPECT_TRUE(fpga.running.has_value())
+            << (fpga.isStuck ? "the FPGA is stuck" : "no bitstream configures the FPGA");
         const uint32_t slot = Slots_is(&port, 1, SLOTS_READY);
         EXPECT_EQ(fpga.running.value_or(0), slot ? multiBoot : golden);
         Receiver_init(&receiver, &port, product, slot);
@@ -84,7 +85,8 @@ public:
         flash.powerOff();
         // the FPGA configures itself before the processor does anything
         fpga.configure(flash.memory);
-        EXPECT_TRUE(fpga.running.has_value()) << (fpga.isStuck ? "stuck" : "nothing configures");
+        EXPECT_TRUE(fpga.running.has_value())
+            << (fpga.isStuck ? "the FPGA is stuck" : "no bitstream configures the FPGA");
         return boot();
     }
     uint64_t operations() const override { return flash.operations(); }

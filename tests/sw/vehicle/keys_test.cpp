@@ -131,14 +131,17 @@ TEST(Keys, AHighNumberDoesNotSilenceCallsToAll) {
     };
     const U32 now = 115'000'000; // November 2026
     UAV_providePeer(UAV_GROUP, UAV_EVERYBODY, newKey.data());
-    EXPECT_FALSE(opens(newKey, 0xFFFFFFFF)) << "although no number is known yet";
+    EXPECT_FALSE(opens(newKey, 0xFFFFFFFF))
+        << "the highest number must be refused even if no number is known yet";
     UAV_setCallNumber(now);
-    EXPECT_FALSE(opens(newKey, now)) << "recorded before the vehicle joined";
+    EXPECT_FALSE(opens(newKey, now))
+        << "a call that was recorded before the vehicle joined must be refused";
     EXPECT_TRUE(opens(newKey, now + 1));
     EXPECT_FALSE(opens(newKey, 0xFFFFFFFF));
     EXPECT_FALSE(opens(newKey, now + 2 + UAV_MOST_AHEAD));
     EXPECT_TRUE(opens(newKey, now + 2));
-    EXPECT_TRUE(opens(newKey, now + 2 + UAV_MOST_AHEAD)) << "a year without a call";
+    EXPECT_TRUE(opens(newKey, now + 2 + UAV_MOST_AHEAD))
+        << "after a year without a call, the number must be accepted";
     EXPECT_FALSE(opens(newKey, now + 3));
     UAV_providePeer(UAV_GROUP, UAV_EVERYBODY, oldKey.data());
     UAV_setCallNumber(now + 3);
@@ -152,7 +155,8 @@ TEST(Keys, TheGroupsKeyOpensEachCallOnceAndGoesWithANewVehiclesKey) {
         U8 packet[LINK_MAX_FRAME] = {};
         return UAV_openBroadcast(packet, Link_sealBroadcast(packet, 5, key.data(), number)) == 5;
     };
-    EXPECT_FALSE(UAV_isOfGroup()) << "it has a key, and not the group's";
+    EXPECT_FALSE(UAV_isOfGroup())
+        << "a vehicle with a key and without the group key is not in the group";
     UAV_providePeer(UAV_GROUP, UAV_EVERYBODY, newKey.data());
     EXPECT_TRUE(UAV_isOfGroup());
     EXPECT_EQ(UAV_countKeys(0), 1);
@@ -160,10 +164,11 @@ TEST(Keys, TheGroupsKeyOpensEachCallOnceAndGoesWithANewVehiclesKey) {
     EXPECT_FALSE(opens(oldKey, 77));
     EXPECT_TRUE(opens(newKey, 77));
     UAV_providePeer(UAV_GROUP, UAV_EVERYBODY, newKey.data());
-    EXPECT_FALSE(opens(newKey, 77)) << "recorded, under the same key";
+    EXPECT_FALSE(opens(newKey, 77))
+        << "a recorded call must be refused, even if the same key is provided again";
     EXPECT_TRUE(opens(newKey, 78));
     UAV_provide(address, nullptr);
-    EXPECT_TRUE(UAV_isOfGroup()) << "it is open";
+    EXPECT_TRUE(UAV_isOfGroup()) << "a vehicle in open mode is in the group";
     EXPECT_FALSE(opens(newKey, 80));
     EXPECT_TRUE(opens(Key{}, 1));
     vehicle.words = {};
@@ -186,18 +191,20 @@ TEST(Keys, ASecondGroundHasKeysOfItsOwn) {
     EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), UAV_NO_PEER);
     UAV_providePeer(UAV_OBSERVER, 0xF0, nullptr);
     EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), UAV_NO_PEER)
-        << "without a key, for a vehicle with a key";
+        << "a vehicle with a key must not accept an observer without a key";
     UAV_providePeer(UAV_OBSERVER, 0xF0, foreignKey.data());
     EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), 0xF0u);
     EXPECT_EQ(vehicle.change(), std::vector<Key>{newKey});
     Key key{};
     EXPECT_TRUE(UAV_readKey(1, 0, key.data()) && key == foreignKey);
     EXPECT_EQ(UAV_countKeys(1), 1);
-    EXPECT_FALSE(UAV_isKey(foreignKey.data())) << "it opens no serial port";
+    EXPECT_FALSE(UAV_isKey(foreignKey.data()))
+        << "the observer's key must not permit access by the serial port";
     UAV_provide(address, nullptr);
     EXPECT_EQ(UAV_countKeys(1), 0);
     UAV_providePeer(UAV_OBSERVER, 0xF0, nullptr);
-    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), 0xF0u) << "the vehicle is open";
+    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), 0xF0u)
+        << "a vehicle in open mode accepts an observer without a key";
 }
 
 TEST(Keys, OfTwoVehiclesTheOneWithTheLowerAddressHasTheGroundsPart) {
@@ -215,22 +222,25 @@ TEST(Keys, OfTwoVehiclesTheOneWithTheLowerAddressHasTheGroundsPart) {
         EXPECT_TRUE(vehicle.connect());
     }
     UAV_providePeer(UAV_OBSERVER, 0xFFFE, newKey.data());
-    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), 0xFFFEu) << "together with the fellow";
+    EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), 0xFFFEu)
+        << "the observer must be accepted while the vehicle has a fellow";
     vehicle.a.boot();
     vehicle.b.boot();
     UAV_giveKeys(UAV_OBSERVER, vehicle.b.link());
     Link_setKey(vehicle.a.link(), 0, newKey.data(), LINK_GROUND | address);
-    EXPECT_TRUE(vehicle.connect()) << "a ground has the ground's part, whatever its address";
+    EXPECT_TRUE(vehicle.connect())
+        << "a peer with the role of a ground station must connect, whatever its address";
     UAV_provide(address, oldKey.data());
     EXPECT_EQ(UAV_addressOf(UAV_VEHICLE), UAV_NO_PEER);
 }
 
 TEST(Keys, AGroundWithoutTheKeyIsRefused) {
     KeyedVehicle vehicle(testSeed());
-    EXPECT_FALSE(vehicle.meets({}, 5'000'000)) << "without a key";
+    EXPECT_FALSE(vehicle.meets({}, 5'000'000)) << "a ground station without a key must be refused";
     EXPECT_FALSE(vehicle.meets({foreignKey}, 5'000'000));
-    EXPECT_FALSE(UAV_setNextKey(0, vehicle.b.link(), newKey.data())) << "without a session";
-    EXPECT_TRUE(vehicle.meets({foreignKey, oldKey})) << "one of two serves";
+    EXPECT_FALSE(UAV_setNextKey(0, vehicle.b.link(), newKey.data()))
+        << "a key change without a session must be refused";
+    EXPECT_TRUE(vehicle.meets({foreignKey, oldKey})) << "one correct key of two must be sufficient";
 }
 
 TEST(Keys, ASessionUnderTheOldKeyKeepsBoth) {

@@ -113,19 +113,20 @@ TEST_F(Provision, TakesASecondGroundWithAKeyOfItsOwn) {
     EXPECT_EQ(startAndAnswer("fellow 0007 " + other + " " + digits), "ok\r\n");
     EXPECT_EQ(chip.backup()[43], ~7u);
     EXPECT_EQ(chip.backup()[32], 0xAAAAAAAAu);
-    EXPECT_EQ(chip.backup()[27], ~0xF0u) << "the second ground stays";
+    EXPECT_EQ(chip.backup()[27], ~0xF0u) << "the second ground station must be kept";
     EXPECT_EQ(startAndAnswer("ground 00f0 " + other + " " + other).substr(0, 3), "no:")
-        << "the second ground's key proves nothing here";
+        << "the key of the second ground station must not authorise this change";
 }
 
 TEST_F(Provision, TakesTheGroupsKey) {
     startAndAnswer("key " + digits + at);
     EXPECT_EQ(startAndAnswer("group 06dacba9 " + std::string(32, 'a')).substr(0, 3), "no:");
-    EXPECT_EQ(chip.backup()[58], 0u) << "the present key is missing";
+    EXPECT_EQ(chip.backup()[58], 0u)
+        << "the command must be refused, because the present key is missing";
     EXPECT_EQ(startAndAnswer("group 06dacba9 " + std::string(32, 'a') + " " + digits), "ok\r\n");
     EXPECT_EQ(chip.backup()[58], 0x06DACBA9u);
     EXPECT_EQ(chip.backup()[48], 0xAAAAAAAAu);
-    EXPECT_EQ(chip.backup()[27], ~0xFFFFFFFFu) << "no second ground";
+    EXPECT_EQ(chip.backup()[27], ~0xFFFFFFFFu) << "the vehicle has no second ground station";
     EXPECT_TRUE(has(key));
 }
 
@@ -176,7 +177,8 @@ TEST_F(Provision, TheGroundsProgramGivesIt) {
     EXPECT_EQ(std::system(senseless.c_str()), 0);
     const std::string group = std::string("/usr/bin/python3 ") + PROVIDE_KEY + " --key " + file +
                               " --port /dev/null --group 2>&1 | grep -q 'no line.* 0xffff'";
-    EXPECT_EQ(std::system(group.c_str()), 0) << "no vehicle's line is the group's";
+    EXPECT_EQ(std::system(group.c_str()), 0)
+        << "the line of a vehicle must not be used for the group";
     const int port = posix_openpt(O_RDWR | O_NOCTTY);
     ASSERT_TRUE(port >= 0 && grantpt(port) == 0 && unlockpt(port) == 0);
     const std::string name = ptsname(port);

@@ -84,7 +84,7 @@ TEST_F(Mcb, ReadLatencyIsTheSumOfItsParts) {
     pop();
     command(read, 0, 1);
     EXPECT_EQ(waitForWord() + 1, 6u + 3 + 5)
-        << "a row hit: CL 6 + burst 4 = 10 memory clocks, 3 clocks";
+        << "a row hit takes CL 6 + burst 4 = 10 memory clocks, which are 3 clocks";
 }
 
 // AR36413, 2: the write waits until the read data has ended, and then for 2 cycles and 1 cycle at

@@ -47,7 +47,7 @@ TEST_F(TrueAir, FullPacketsLeaveAt80KilobitsASecondAndAt47WithEncryption) {
 TEST_F(TrueAir, BothDirectionsAtOnceShareWhatOneHas) {
     power({{"BD", 7}, {"RN", 3}}, {{"BD", 7}, {"RN", 3}});
     double both = throughput(true);
-    EXPECT_LT(both, 85e3) << "twice 80 kb/s would be full duplex";
+    EXPECT_LT(both, 85e3) << "the air must not be full duplex, which would give twice 80 kb/s";
     EXPECT_GT(both, 65e3);
     double heardA = static_cast<double>(lineA.received.size());
     EXPECT_NEAR(heardA / static_cast<double>(lineB.received.size()), 1, 0.15);

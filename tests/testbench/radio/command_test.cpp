@@ -110,7 +110,7 @@ TEST_F(Commands, UnknownAndMalformedAreRefused) {
     for (std::string line :
          {"ATZZ", "ATZZ1", "ATFT", "ATFT80", "ATM", "A", "", "MY", "XXMY", "ATMY0x"})
         EXPECT_EQ(command(line), "ERROR\r") << line;
-    EXPECT_EQ(command("atmy"), "1\r") << "letters may be small";
+    EXPECT_EQ(command("atmy"), "1\r") << "commands may be written in lower case";
     EXPECT_EQ(command("AT"), "OK\r");
 }
 
@@ -171,20 +171,20 @@ TEST_F(Commands, REGivesTheFactorysSettings) {
     EXPECT_EQ(command("ATRE"), "OK\r");
     EXPECT_EQ(command("ATMY"), "0\r");
     EXPECT_EQ(command("ATGT"), "3E8\r");
-    EXPECT_EQ(command("ATSL"), "A\r") << "the serial number stays";
+    EXPECT_EQ(command("ATSL"), "A\r") << "ATRE must not change the serial number";
 }
 
 TEST_F(Commands, FRAnswersAndThenBoots) {
     command("ATMY66");
     EXPECT_EQ(command("ATFR"), "OK\r");
     EXPECT_EQ(a->parameter("MY"), 1u);
-    EXPECT_EQ(across("lost", 60 * ms), "") << "deaf while it boots";
+    EXPECT_EQ(across("lost", 60 * ms), "") << "a modem must not receive while it restarts";
     EXPECT_EQ(across("data", 20 * ms), "data");
 }
 
 TEST_F(Commands, ALiteralRateIsKeptAsTheNearest) {
     EXPECT_EQ(command("ATBD3D090"), "OK\r");
-    EXPECT_EQ(command("ATBD"), "3D090\r") << "250,000 is exact";
+    EXPECT_EQ(command("ATBD"), "3D090\r") << "250,000 baud can be set exactly";
     EXPECT_EQ(command("ATBD1C200"), "OK\r"); // 115,200
     EXPECT_EQ(command("ATBD"), "1B207\r") << "111,111";
 }

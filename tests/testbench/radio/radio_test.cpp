@@ -33,7 +33,7 @@ TEST_F(Addresses, ChannelNetworkAndAddressMustAgree) {
         power({}, {{letters, value}});
         EXPECT_EQ(across("x", 30 * ms), "") << letters;
         EXPECT_EQ(packets.back().outcome, RfChannel::Outcome::Nobody);
-        EXPECT_EQ(a->parameter("EA"), 1u) << "one packet";
+        EXPECT_EQ(a->parameter("EA"), 1u) << "EA must count one packet";
     }
 }
 
@@ -151,10 +151,11 @@ TEST_F(Mac, ALostAckMakesADuplicateThatRRAndTheHeaderTell) {
 
 TEST_F(Mac, MMMustSuit) {
     power({{"MM", 2}});
-    EXPECT_EQ(across("x", 30 * ms), "") << "no header, which MM 0 wants";
+    EXPECT_EQ(across("x", 30 * ms), "")
+        << "a modem with MM 0 must ignore a packet without the header";
     power({{"MM", 0}}, {{"MM", 2}});
     send("x", 30 * ms);
-    EXPECT_EQ(heardB().size(), 3u) << "two bytes of header before the data";
+    EXPECT_EQ(heardB().size(), 3u) << "two bytes of header must precede the data";
     power({{"MM", 2}}, {{"MM", 1}});
     EXPECT_EQ(across("x", 30 * ms), "x");
 }
@@ -192,7 +193,7 @@ TEST_F(Encryption, OnTheAirItIsAesInCounterModeOf802154) {
     ASSERT_EQ(onAir.size(), 5 + plain.size());
     const Bytes counter(onAir.begin(), onAir.begin() + 4);
     EXPECT_EQ(counter, (Bytes{0, 0, 0, 1}));
-    EXPECT_EQ(onAir[4], 0) << "key sequence counter";
+    EXPECT_EQ(onAir[4], 0) << "the key sequence counter must be 0";
     for (size_t i = 0; i < plain.size(); ++i) {
         Bytes block = {0x82, 0x00, 0x13, 0xA2, 0x00, 0x00, 0x00, 0x00,
                        0x0A, 0,    0,    0,    1,    0,    0,    static_cast<uint8_t>(1 + i / 16)};

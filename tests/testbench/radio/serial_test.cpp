@@ -43,7 +43,8 @@ TEST_F(Packetizing, NinetyFiveBytesWithEncryption) {
     power({{"EE", 1}, {"RO", 0xFF}}, {{"EE", 1}});
     send(std::string(100, 'x'), 400 * ms);
     ASSERT_EQ(packets.size(), 2u);
-    EXPECT_EQ(packets[0].bytes.size(), 5 + 95u) << "on the air, with the cipher's five";
+    EXPECT_EQ(packets[0].bytes.size(), 5 + 95u)
+        << "a packet on the air has five additional bytes of the cipher";
     EXPECT_EQ(packets[1].bytes.size(), 5 + 5u);
 }
 
@@ -76,7 +77,7 @@ TEST_F(Buffers, CTSGoesOffWith17BytesLeftAndComesBackWith34Free) {
     send(std::string(202, 'y'));
     EXPECT_FALSE(lineA.cts());
     run(106 * ms);
-    EXPECT_TRUE(lineA.cts()) << "95 left: 107 held";
+    EXPECT_TRUE(lineA.cts()) << "one packet of 95 bytes was sent, so the buffer holds 107 bytes";
 }
 
 TEST_F(Buffers, TheInputBufferHolds202BytesAndCountsWhatIsLost) {
@@ -197,7 +198,7 @@ TEST_F(Wire, RepliesHaveTheModemsRateAndBDChangesAfterTheOK) {
     EXPECT_NEAR(static_cast<double>(shortest), 1e9 / 57600, 500);
     send("data", 111111);
     step(now_ + 20'000'000);
-    EXPECT_EQ(sent_, "data") << "and the new rate holds";
+    EXPECT_EQ(sent_, "data") << "the new rate must still be set";
 }
 
 TEST_F(Wire, BDChangesAfterTheOKThoughMoreComesThanTheOldRateCarries) {
@@ -238,7 +239,7 @@ TEST_F(Reset, APulseOf200NsResets) {
     command("ATCN");
     a->resetPin(true, now);
     a->resetPin(false, now + 199);
-    EXPECT_EQ(a->parameter("MY"), 0x66u) << "too short";
+    EXPECT_EQ(a->parameter("MY"), 0x66u) << "a pulse that is too short must not reset the modem";
     now += 1000;
     a->resetPin(true, now);
     a->resetPin(false, now + 200);

@@ -59,7 +59,7 @@ constexpr double enough = 3; // time limit, s; on a correct board the answer com
 TEST(BoardWires, AreStraightWhenTheFirmwaresTableHasSwitchedThePins) {
     Board kit;
     BoardWires wires(kit.wires, kit.ucf);
-    EXPECT_TRUE(wires.isStraight()) << "without pins all are switched";
+    EXPECT_TRUE(wires.isStraight()) << "without a list of pins, all pins count as switched";
     bool isAlternate = false;
     wires.follow([&](unsigned, unsigned) {
         PinSetting setting;
@@ -71,7 +71,8 @@ TEST(BoardWires, AreStraightWhenTheFirmwaresTableHasSwitchedThePins) {
     FsmcPins near;
     near.neN = 0xE; // NE1
     near.noeN = false;
-    EXPECT_EQ(wires.atChip(near).neN & 3, 3) << "the chip's pull-ups";
+    EXPECT_EQ(wires.atChip(near).neN & 3, 3)
+        << "the pull-ups of the chip must keep the other lines high";
     EXPECT_TRUE(wires.atChip(near).noeN);
     isAlternate = true;
     for (unsigned port = 0; port < 9; ++port)
@@ -185,7 +186,7 @@ TEST(BoardFlight, AnotherOscillatorIsNamed) {
     board.wires = with(board.wires, "oscillator 8000000", "oscillator 25000000");
     try {
         (void)answersACall(board, enough);
-        FAIL() << "the PLL has 3 MHz";
+        FAIL() << "a PLL with an input of 3 MHz was accepted";
     } catch (const std::exception& e) {
         EXPECT_NE(std::string(e.what()).find("PLL input of 3125 kHz"), std::string::npos)
             << e.what();

@@ -196,8 +196,9 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
                    [&] { return reported() == BOOT_STACK_OVERFLOW; }}),
           60);
     EXPECT_EQ(reported(), BOOT_STACK_OVERFLOW);
-    EXPECT_EQ(f.scratch() & 0xFF, 63u) << "the idle task's priority";
-    EXPECT_EQ(f.scratch() >> 16 & 0xFF, 4u) << "starts since power-on";
+    EXPECT_EQ(f.scratch() & 0xFF, 63u) << "the report must contain the priority of the idle task";
+    EXPECT_EQ(f.scratch() >> 16 & 0xFF, 4u)
+        << "the report must contain the number of starts since power-on";
 }
 
 // The memory does not answer, so accesses end by the time-out of the bridge. Each of them is a bus
@@ -231,8 +232,8 @@ TEST(CortexM3Firmware, AHungMemoryIsReportedAndTheFlightGoesOn) {
                    [&] { return f.ground.replies.count(100) != 0 || !f.ground.isUp(); }, ping,
                    [&] { return f.ground.replies.count(3) != 0; }}),
           60);
-    EXPECT_EQ(f.ground.replies.count(100), 1u) << "the call that was under way";
-    EXPECT_EQ(f.ground.replies.count(3), 1u) << "and the next one";
+    EXPECT_EQ(f.ground.replies.count(100), 1u) << "the call in progress must be answered";
+    EXPECT_EQ(f.ground.replies.count(3), 1u) << "the next call must be answered";
     EXPECT_EQ(f.m3->stm32().resets().watchdog + f.m3->stm32().resets().software, 0u);
     EXPECT_EQ(reasonOf(f.scratch()), BOOT_POWER_ON);
 }
@@ -254,7 +255,7 @@ TEST(CortexM3Firmware, ACorruptImageIsRefusedWithItsReason) {
         machine.run();
         EXPECT_EQ(reasonOf(f.scratch()), BOOT_IMAGE_CORRUPT)
             << "flipped a bit at 0x" << std::hex << at;
-        EXPECT_EQ(f.soc.modem().parameter("BD"), 3u) << "the firmware has started";
+        EXPECT_EQ(f.soc.modem().parameter("BD"), 3u) << "the firmware must not start";
     }
 }
 
@@ -274,7 +275,7 @@ TEST(CortexM3Firmware, WithoutAKeyItDoesNotStartAndTriesAgain) {
     machine.run();
     EXPECT_EQ(reasonOf(f.scratch()), BOOT_NO_KEY);
     EXPECT_GE(machine.stm32().resets().watchdog, 1u);
-    EXPECT_EQ(f.soc.modem().parameter("BD"), 3u) << "the firmware has started";
+    EXPECT_EQ(f.soc.modem().parameter("BD"), 3u) << "the firmware must not start";
 }
 
 } // namespace

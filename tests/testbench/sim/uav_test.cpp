@@ -102,7 +102,8 @@ public:
              },
              [this] { return soc.now() - since_ > 4'000'000'000; },
              [this] {
-                 EXPECT_FALSE(observer.isUp()) << "under the pilot's key";
+                 EXPECT_FALSE(observer.isUp())
+                     << "an observer with the pilot's key must not connect";
                  observer.key = observersKey;
                  observer.start();
                  return true;
@@ -114,8 +115,9 @@ public:
              },
              [this, both = together(5)]() mutable { return both(); },
              [this] {
-                 EXPECT_EQ(ground.statistics().sessions, 1u) << "the pilot's session went on";
-                 EXPECT_EQ(stranger.statistics().sessions, 0u) << "has the key, not the address";
+                 EXPECT_EQ(ground.statistics().sessions, 1u) << "the pilot's session must continue";
+                 EXPECT_EQ(stranger.statistics().sessions, 0u)
+                     << "a stranger with the key but another address must not connect";
                  for (const Ground* g : {&ground, &observer})
                      for (const auto& [id, status] : g->replies)
                          EXPECT_EQ(status, 0) << id;
@@ -144,7 +146,7 @@ TEST(Grounds, TwoAreServedAtOnceEachUnderItsOwnKeyAndNobodyElse) {
         machine.board.providePeers({{UAV_OBSERVER, world.observersAddress, world.observersKey}});
     }));
     EXPECT_EQ(Link_statistics(&uav_link)->bytesSkipped, 0u)
-        << "the stranger's, on the pilot's link";
+        << "bytes of the stranger reached the pilot's link";
 }
 
 TEST(Fellow, OneThatIsAwayCostsLittleOfTheAirAndTheVehicleServesItsGroundMeanwhile) {
@@ -182,7 +184,8 @@ TEST(Fellow, OneThatIsAwayCostsLittleOfTheAirAndTheVehicleServesItsGroundMeanwhi
     const double share = double(airNs) / 8e9;
     std::printf("a fellow that is away takes %.2f %% of the air\n", 100 * share);
     EXPECT_LT(share, 0.02);
-    EXPECT_GT(share, 0.004) << "it is not sought: the idle sessions take 0.0015";
+    EXPECT_GT(share, 0.004)
+        << "the vehicle does not search for its fellow: idle sessions alone take 0.0015";
 }
 
 // Boots the vehicle with these memory contents, and flies. Returns the memory contents after the

@@ -25,14 +25,15 @@ protected:
 
 TEST_F(RandomNumbers, ThereIsOneEach40PeriodsOf48MHz) {
     pass(10'000);
-    EXPECT_EQ(read(status), 0u) << "it is off";
+    EXPECT_EQ(read(status), 0u) << "the generator is off";
     write(control, enable);
     pass(832);
     EXPECT_EQ(read(status) | read(data), 0u);
     pass(1);
     EXPECT_EQ(read(status), ready);
     EXPECT_NE(read(data), 0u);
-    EXPECT_EQ(read(status) | read(data), 0u) << "the next one takes as long";
+    EXPECT_EQ(read(status) | read(data), 0u)
+        << "the next number must take as long as the first one";
 }
 
 TEST_F(RandomNumbers, NoneComesTwiceAndAnotherSeedGivesOthers) {

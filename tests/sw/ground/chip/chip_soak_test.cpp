@@ -334,7 +334,7 @@ protected:
         // A call ends without a report if the UAV reboots.
         EXPECT_LE(uavAnswered_ + uavReported_, static_cast<unsigned>(uavSent_));
         EXPECT_GE(uavAnswered_ + uavReported_ + reboots_ + 1, static_cast<unsigned>(uavSent_));
-        EXPECT_GE(2 * coreAnswers_ + 5, coreCalls_) << "cores that do not answer";
+        EXPECT_GE(2 * coreAnswers_ + 5, coreCalls_) << "too many calls of cores were not answered";
         for (auto& fault : faults_)
             ADD_FAILURE() << "a call ended with " << fault << "; SEED " << testSeed();
     }

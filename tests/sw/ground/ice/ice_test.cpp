@@ -12,7 +12,9 @@ namespace {
 
 class StockIce : public ::testing::Test {
 protected:
-    void TearDown() override { EXPECT_EQ(world_.echo->twice(), 0) << "calls executed twice"; }
+    void TearDown() override {
+        EXPECT_EQ(world_.echo->twice(), 0) << "some calls were executed twice";
+    }
     World world_{testSeed()};
 };
 
@@ -27,7 +29,7 @@ TEST_F(StockIce, MessagesUpToTheLimitPassAndALongerOneIsRefusedInTheCaller) {
                   World::pattern(1, size));
     EXPECT_THROW(echo->repeat(1, World::pattern(1, most + 1)), Ice::MemoryLimitException);
     EXPECT_EQ(echo->repeat(2, World::pattern(2, 10)), World::pattern(2, 10))
-        << "and it still works";
+        << "a call after the error must succeed";
 }
 
 TEST_F(StockIce, TheUavCallsBackOnTheSameConnectionWhileItIsCalled) {
@@ -107,7 +109,7 @@ TEST_F(StockIce, WhatCannotGoToAllVehiclesIsRefusedInTheCaller) {
         ic->stringToProxy("echo -o:" + world_.endpoint() + " -a 0xFFFF"));
     EXPECT_THROW(all->ice_twoway()->ice_ping(), Ice::UnknownLocalException);
     EXPECT_THROW(all->take(8, World::pattern(1, 79)), Ice::MemoryLimitException);
-    EXPECT_NO_THROW(all->note(9)) << "and it still works";
+    EXPECT_NO_THROW(all->note(9)) << "a call after the error must succeed";
 }
 
 TEST_F(StockIce, EndpointsKeepTheirOptionsAsTextAndWrongOnesAreRefused) {
@@ -120,7 +122,7 @@ TEST_F(StockIce, EndpointsKeepTheirOptionsAsTextAndWrongOnesAreRefused) {
     for (std::string part : {"-d \"/dev/a b\"", "-b 57600", "-a 0x12", "-s 0x3", "-c 0x14",
                              "-i 0xbeef", "-p 2", "-t 7000", "-g 30"})
         EXPECT_NE(whole.find(part), std::string::npos) << part << " in " << whole;
-    EXPECT_EQ(whole.find("0011AABB"), std::string::npos) << "the key is printed";
+    EXPECT_EQ(whole.find("0011AABB"), std::string::npos) << "the key must not be printed";
     EXPECT_EQ(ic->proxyToString(ic->stringToProxy(whole)), whole);
     const std::string wired = "x -t -e 1.1:serial -d /dev/a -b 57600 -a 0x12 -s 0x3 -p 1 -t 7000";
     EXPECT_EQ(ic->proxyToString(ic->stringToProxy(wired)), wired);

@@ -29,7 +29,7 @@ std::string cMember(const Declaration& d, const Field& member);
 // Returns the C name of a parameter. Functions, variables and the members of an asynchronous call
 // all use this name.
 std::string cParameter(const Operation& o, const Field& parameter);
-// Returns the part of a function name that stands for the operation, after the interface.
+// Returns an operation's part of a C function name, which follows the name of the interface.
 std::string cOperation(const std::string& name);
 // Returns the C type of a value.
 std::string cType(const Type& type);

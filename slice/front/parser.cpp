@@ -145,7 +145,7 @@ void Parser::metadataStrings(Metadata& found, std::string_view end) {
 
 Parser::Metadata Parser::metadata() {
     Metadata found;
-    // Ice 3.8 allows several groups before one definition.
+    // Ice 3.8 allows several groups of metadata before one definition.
     while (accept("["))
         metadataStrings(found, "]");
     return found;

@@ -21,7 +21,7 @@ extern "C" {
 
 namespace XBeeAT {
 
-// number of channels that the ground station opens, 0 to 2; the UAV opens channel 3
+// number of channels that the ground station can open (channels 0 to 2); the UAV opens channel 3
 constexpr int ownChannels = 3;
 
 // The functions for programs acquire the lock. All other functions are called by the engine, which

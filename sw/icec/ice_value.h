@@ -98,9 +98,9 @@ typedef struct Ice_InputValues {
         void* at; /* address of the pointer that is to be set */
         const Ice_ValueType* expected;
         Ice_Int number;
-    } patches[ICE_VALUES_MAX]; /* pointers to set when the instance arrives to which they refer */
+    } patches[ICE_VALUES_MAX]; /* pointers to instances that have not arrived yet */
     Ice_Int patchBegin, patchEnd;
-    /* pointers to set when the type of the instance is known to which they refer */
+    /* pointers to instances whose types are not known yet */
     struct Ice_LatePatch* late;
     /* slices of unknown types in the message, the last one first */
     Ice_UnknownSlice* unknown;

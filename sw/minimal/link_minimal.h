@@ -11,7 +11,7 @@
 /* Size of the longest frame that a header can describe, bytes. */
 #define LINK_INPUT_BYTES (0x7FU + LINK_OVERHEAD)
 
-/* Small and often used fields come first, in reach of short Cortex-M3 instructions. */
+/* Small and often used fields come first, so that short Cortex-M3 instructions can reach them. */
 struct Link {
     U8 state; /* Link_State */
     /* The following fields are 0 when a session begins. */

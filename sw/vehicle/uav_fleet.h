@@ -19,8 +19,8 @@ void UAV_usePeers(void);
 /* Starts or stops connecting to the other vehicle, depending on whether a call waits for it. */
 void UAV_dialVehicle(void);
 
-/* Passes a call to all vehicles that has been received to IceC. Returns 1 if the call must still
- * wait. */
+/* If a call to all vehicles was received, passes it to IceC. Returns 1 if IceC cannot accept the
+ * call yet. */
 int UAV_offerCall(void);
 
 /* Returns the function that is called with each packet received in API mode. */

@@ -303,7 +303,7 @@ static Ice_Status listenTo(void* context, const char* options) {
     if (self->listener < 0)
         return ICE_NO_ENDPOINT;
     (void)setsockopt(self->listener, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    /* non-blocking, because a peer may disconnect before accept is called, which would then wait */
+    /* non-blocking: a peer may disconnect before accept is called, and accept must not wait then */
     (void)fcntl(self->listener, F_SETFL, O_NONBLOCK);
     if (bind(self->listener, (struct sockaddr*)&at->at, at->size) != 0 ||
         listen(self->listener, SOMAXCONN) != 0 ||

@@ -198,7 +198,7 @@ module axis_filter #(
     reg [WORD_BITS-1:0] f_left = 0;   // number of words that npi_stream must still deliver
     // number of words that were passed to npi_stream in this operation
     reg [WORD_BITS-1:0] f_written = 0;
-    wire [3:0] f_place = given ? 4'd0 : f_count; // position in its word of the beat that arrives
+    wire [3:0] f_place = given ? 4'd0 : f_count; // position of the arriving beat in its word
     wire       f_rst   = rst_i || core_rst_i;
     integer f;
     initial assume (rst_i);

@@ -278,7 +278,8 @@
             if (t_mine && t_own_index == w_mark)
                 assert (w_have && out_word == w_value);
         end
-        for (o = 0; o < PORTS; o = o + 1) // all bits that leave, for each port
+        // the MCB gets data and byte enables of the port whose FIFO delivers a word, unchanged
+        for (o = 0; o < PORTS; o = o + 1)
             assert (!wr_pops[o] ||
                     {wr_be_o, wr_data_o} == {wr_bes[8*o +: 8], wr_datas[64*o +: 64]});
         assert (moves == |wr_pops && (!moves || all_moved != all_w));

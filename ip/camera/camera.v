@@ -13,7 +13,7 @@ module camera (
     `include "slot_ports.vh"
     `include "memory_ports.vh"
     output wire        irq_o,
-    // to the core that uses the frames
+    // signals to the core that uses the frames
     output wire        frame_valid_o,
     output wire [1:0]  frame_index_o,
     input  wire        frame_take_i,

@@ -98,7 +98,7 @@ architecture rtl of vision is
   -- number of steps since the start; it stops when the first score has left vision_suppress
   signal fill          : unsigned(3 downto 0);
   signal take, real_pixel, pixel_valid, pixel_take, last : std_logic;
-  signal streaming     : std_logic; -- state = STREAM and not stop
+  signal streaming     : std_logic; -- high while the state is STREAM and stop is low
   -- `step` is `take`, delayed by one clock. All logic after the window advances with this
   -- flip-flop; because of its high fan-out it needs a whole clock.
   signal step          : std_logic;

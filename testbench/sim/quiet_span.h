@@ -94,7 +94,7 @@ private:
     std::vector<unsigned char> image_; // state of the chip at the last full comparison
     bool hasImage_ = false;
     Counters before_{};       // counters at the last comparison
-    bool isFixed_ = false;    // true if, of the platform's state, only counters change
+    bool isFixed_ = false;    // true if only counters change in the state of the platform
     bool isAllFixed_ = false; // true if, of the whole chip's state, only counters change
     // true if, in a clock with a low stirs_o, only counters of the platform have changed
     bool isCalm_ = false;

@@ -16,7 +16,7 @@ module fsmc_bridge_tb;
     wire        nwait_n, valid, write;
     wire [9:0]  addr;
     wire [31:0] wdata;
-    reg  [31:0] word = 0; // register 5 of that project
+    reg  [31:0] word = 0; // register 5 of the user's project
     reg  [15:0] low, high;
 
     always #5 clk = !clk;

@@ -258,7 +258,8 @@ class Cases(Project):
         edit("tests/room/t.sh", '"$SEED" = 7', "! -e ../../../../bad")
         for failing, seeds, status in (("none", 2, 0), ("check_mutants", 2, 2), ("fly", 2, 2),
                                        ("check_fresh", 2, 2), ("a test", 2, 2),
-                                       # and the two failing seeds that are stored
+                                       # two random seeds, and the two stored seeds that have failed
+                                       # before
                                        ("a test", 4, 2)):
             write("done", "")
             write("failing", failing)

@@ -35,7 +35,7 @@ prints() { printf '%s\n' "$@" | cmp -s - "$work/out" || { cat "$work/out" && ech
 run 0 "$work/old" "$work/old"
 prints 'no breaking change'
 
-# All changes that are breaking.
+# Makes every change that breaks the contract.
 sed -e 's/0x4141/0x4142/' -e 's/1024/512/' -e 's/"lsb": 1, "width": 3/"lsb": 2, "width": 2/' \
     -e 's/"START"/"BEGIN"/' \
     -e 's/"width": 16/"width": 8/' -e 's/"page": 32/"page": 64/' \
@@ -56,7 +56,7 @@ prints 'breaking   a: type 0x4141 is 0x4142' \
     'breaking   gone: the block is gone' \
     '10 breaking changes'
 
-# All changes that are compatible.
+# Makes every change that is compatible with the contract.
 mkdir -p "$work/new/ip/b"
 cp "$work/old/ip/b/b.ice" "$work/new/ip/b"
 sed -e 's/"old"/"new"/' -e 's/1024/2048/' -e 's/"width": 16/"width": 17/' \

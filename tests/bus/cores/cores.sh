@@ -11,7 +11,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 data=$here/data
 rm -rf "$work"
 mkdir -p "$work/own"
-# The core led with a separate clock, as tuner.
+# Makes a core `tuner` from the core `led`, but with a separate clock.
 for f in regs.json v toml; do sed 's/\<led\>/tuner/' "$data/led.$f" >"$work/own/tuner.$f"; done
 sed -i '/^name/a clock_hz = 48000000' "$work/own/tuner.toml"
 clocked() { "$source/tools/python" -m icesoc.chip.clocked "$@"; }

@@ -27,7 +27,7 @@ for signal in valid_i write_i addr_i:4 wdata_i:32 ready_o rdata_o:32; do
     signals=$signals,u_sample_verilog.bus_$signal
 done
 cat >"$work/fresh/cores.list" <<END
-# without the vision core
+# the chip of this test does not contain the vision core
 sample_verilog
 sample_vhdl identity=newcomer slot=9
 scaler

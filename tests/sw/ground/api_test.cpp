@@ -20,7 +20,7 @@ struct Heard {
     int source = 0;
     std::string answers;
     void feed(ApiModem& modem, const Bytes& bytes) {
-        for (uint8_t byte : bytes) // one byte at a time
+        for (uint8_t byte : bytes) // the bytes arrive one at a time
             modem.feed(
                 &byte, 1,
                 [&](int from, const uint8_t* d, size_t count) {

@@ -39,7 +39,7 @@ def operation(name, self, parameters, calls, servants, responses):
     print(f"    status = {call}({', '.join(arguments)});")
     if later:
         names = [name_of(p) for p in later]
-        # not classes, because classes are pointers
+        # values that are passed by pointer; classes (two asterisks) are pointers already
         own = {name_of(p) for p in later if p.count("*") == 1}
         own &= {name_of(p) for p in responses[name].split(", ") if "*" in p}
         results = ", ".join(["&reply"] + [

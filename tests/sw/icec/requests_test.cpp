@@ -123,7 +123,7 @@ TEST_F(Wire, MalformedMessagesCloseTheConnection) {
     bad[6][good.size() - 10]++;     // the encapsulation would end after the end of the message
     bad[7][good.size() - 10] = 5;   // the encapsulation is shorter than its own header
     bad[8][good.size() - 7] = 0x80; // or negative
-    bad[9].resize(13);              // shorter than a header
+    bad[9].resize(13);              // the message is shorter than a header
     bad[10].resize(0);
     for (size_t i = 0; i < bad.size(); ++i) {
         EXPECT_TRUE(exchange(bad[i]).empty()) << i;

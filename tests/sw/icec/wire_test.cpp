@@ -70,10 +70,12 @@ TEST_F(Wire, ABatchMayNotPromiseMoreThanItHas) {
 }
 
 TEST_F(Wire, ProxiesTravelWithEndpointsOfAnyKind) {
-    const Bytes wire = {2,    'i',  'd', 1, 'c', 1, 1, 'f', 1,  1,  1, 0, 1, 1, // -f f -o -s
-                        2,                                                      // two endpoints
-                        9,    0,    8,   0, 0,   0, 1, 1,   65, 66,             // type 9
-                        0x50, 0x4C, 7,   0, 0,   0, 1, 1,   1};                 // loop -c 1
+    // options -f f -o -s
+    const Bytes wire = {2, 'i', 'd', 1, 'c', 1, 1, 'f', 1, 1, 1, 0, 1, 1,
+                        2,                              // two endpoints
+                        9, 0, 8, 0, 0, 0, 1, 1, 65, 66, // type 9
+                        // endpoint loop -c 1
+                        0x50, 0x4C, 7, 0, 0, 0, 1, 1, 1};
     Ice_InputStream is = over(wire);
     Ice_ObjectPrx prx;
     Ice_InputStream_readPrx(&is, &side_->ic, &prx);

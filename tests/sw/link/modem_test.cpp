@@ -77,7 +77,7 @@ TEST_P(LinkOverModems, WhatAModemAcknowledgesAndThenDropsIsSentAgain) {
     expectAll(60, 120, [&] {
         for (; drawn < pair_.now; drawn += ms / 4)
             for (uint64_t& at : wakesAt)
-                if (random.chance(0.002)) // eight times a second on average
+                if (random.chance(0.002)) // a host hangs eight times a second on average
                     at = drawn + random.below(200) * ms;
         a_.line.hangs = pair_.now < wakesAt[0];
         b_.line.hangs = pair_.now < wakesAt[1];
@@ -128,7 +128,7 @@ TEST_P(LinkOverModems, AnIdleSessionLastsInBadWeather) {
     const U32 before = a_.statistics().bytesSent + b_.statistics().bytesSent;
     pair_.pass(3600 * 1000 * ms);
     EXPECT_LE((a_.statistics().bytesSent + b_.statistics().bytesSent - before) / 720,
-              GetParam().first ? 44u : 11u); // bytes in five seconds
+              GetParam().first ? 44u : 11u); // number of bytes in five seconds
     auto weathers = RfWeather::published();
     weathers.emplace_back("loss", RfWeather()).second.loss = 0.3;
     for (auto& [what, weather] : weathers) {

@@ -144,7 +144,7 @@ TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
             offer(b, sentB, 3);
             return flip();
         },
-        8'000'000); // us; at least one PING is sent in this time
+        8'000'000); // time in us, in which at least one PING is sent
     b.stop();
     until([&] { return flip(); }, 100'000);
     for (int kind : {0, 1, 2, 3, 4, 5, 8})

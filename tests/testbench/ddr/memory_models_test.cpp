@@ -205,7 +205,8 @@ TEST(McbStart, NoCommandBeforeCalibration) {
     EXPECT_THROW(memory.cycle(), McbError);
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) // they write to all memory
+// the sanitizers write to the whole memory
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 // Each flight makes a memory of the board's size, of which it uses a small part.
 TEST(McbStart, TheSizeOfTheMemoryCostsNoTime) {
     const std::clock_t begin = std::clock();

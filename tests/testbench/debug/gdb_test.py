@@ -120,7 +120,7 @@ def reverse():
                         ("START", "START_AGAIN")):
         assert at[name] == at[again], (name, at[name], again, at[again])
     assert at["TICK2"][0] < at["TICK1"][0] < at["END"][0], "ticks, the later one first"
-    # The messages of GDB 13 and of GDB 16.
+    # GDB 13 prints the first of these messages, GDB 16 the second one.
     ends = re.findall("No more reverse-execution history|Reached end of recorded history", said)
     assert len(ends) == 2, "begin and end are not reported"
     assert not re.search("= 77$", said, re.M), "later data are visible earlier"

@@ -159,9 +159,9 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
     auto hangProcessor = [&] {
         EXPECT_EQ(f.variable("busErrors"), 1u);
         EXPECT_EQ(f.variable("busErrorPlace"), 33u * 16 + 5);
-        // this call is on its way when the next step ...
+        // this call is sent, and then interrupts are disabled before it is answered
         f.ground.ping(100, "hwengine1");
-        f.m3->cpu().setReg(CortexM3::Faultmask, 1); // ... disables interrupts
+        f.m3->cpu().setReg(CortexM3::Faultmask, 1); // disables interrupts
         return true;
     };
     // waits until the watchdog has reset the processor and the link is up again

@@ -31,12 +31,14 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
     auto script =
         inOrder({ground.pinging(3),
                  [&] {
-                     ground.ping(100, "hwengine1"); // while this call is on its way ...
+                     // this call is sent, and then the UAV's modem loses its settings before it is
+                     // answered
+                     ground.ping(100, "hwengine1");
                      since = soc.now();
                      return true;
                  },
                  [&] { return soc.now() - since > 8'000'000; },
-                 [&] { // ... the UAV's modem loses its settings
+                 [&] { // the UAV's modem loses its settings
                      soc.modem().resetPin(true, soc.now());
                      soc.modem().resetPin(false, soc.now() + 1000);
                      return hurry(10);

@@ -78,7 +78,8 @@ class Core:
 
     @property
     def clock_hz(self):
-        """Frequency of its separate clock, Hz; for a clock from a pin, the highest."""
+        """Returns the frequency of the core's separate clock, Hz. If the clock comes from a pin,
+        this is its highest frequency."""
         return 100e6 / self.divide * self.multiply if self.multiply else self.own_clock
 
     def fail(self, text):

@@ -16,7 +16,7 @@ from icesoc.util.errors import Stop, nearest
 
 COMMANDS = {}  # commands by name, such as "core new", in the order of their declaration
 GROUPS = {}  # help text of each group of commands, by the first word of their names
-DEFAULTS = {}  # command that the first word of a group selects when used alone
+DEFAULTS = {}  # name of a group -> the command that is run if the name stands alone
 SECTIONS = {  # sections of the overview by purpose: title -> commands and groups
     "Fly": ("run", "call", "replay", "gdb", "key", "fly"),
     "Add cores, look at the chip": ("core", "contract", "synth", "board"),

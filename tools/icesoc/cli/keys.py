@@ -49,8 +49,8 @@ def check_folder(path):
 
 def make_certificate(path):
     """Creates a PEM file with a certificate (CN: the name of the file) and its private key (P-256),
-    valid for ten years. Returns False if the file exists. The key of its authority is
-    authority.key."""
+    valid for ten years. authority.key in the same folder signs the certificate. Returns False if
+    the file exists."""
     path = Path(path)
     authority, signs = path.with_name("authority.pem"), path.with_name("authority.key")
     if os.path.lexists(path) or path == authority:

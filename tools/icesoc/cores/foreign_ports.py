@@ -56,7 +56,7 @@ def run_tool(program, verb, top, command, is_needed=True, limit=None):
 
 
 def lint_of(top, files, defines):
-    """Returns Verilator's command for a core, without the action and its files."""
+    """Returns Verilator's command for a core; the caller appends the action and the files."""
     return ["verilator", *FLAGS, "--top-module", top, *("-I" + d for d in folders_of(files)),
             *("-D" + d for d in defines)]
 

@@ -115,7 +115,7 @@ class Proof:
         made = limited("yosys -q same.ys")
         (folder / "same.log").write_text(made.stdout)
         if made.returncode:
-            return True  # Yosys 0.23 fails on some memories
+            return True  # Yosys 0.23 fails on some memories; such a mutant counts as different
         steps = "read_aiger same.aig; fold; strash; scorr -F 2; pdr; sat"
         said = limited(f"yosys-abc -c '{steps}'").stdout
         return not re.search("Property proved|UNSATISFIABLE", said)

@@ -39,7 +39,8 @@ class File:
                                              # property` in the RTL
         self.missed = []  # signals that never toggled, lines that never ran, points that were never
                           # reached
-        self.explained = collections.Counter()  # number of points by reason
+        # reason -> number of points that are not counted for this reason
+        self.explained = collections.Counter()
 
 
 def inside(path, root):

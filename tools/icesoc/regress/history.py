@@ -60,8 +60,9 @@ class History:
         return self.ends[name][-1][0][1] if self.ends[name] else None
 
     def usual(self, name):
-        """Returns the usual duration of a test, s: its longest pass, but at least the value in
-        tests/costs.txt (a reused result takes no time); None if neither is known."""
+        """Returns the usual duration of a test in s. This is its longest passing run, but at least
+        the value in tests/costs.txt, because a reused result takes no time. Returns None if neither
+        is known."""
         times = [end[1] for end, _ in self.ends[name] if end[0] == "p"]
         return max([*times, *self.costs.get(name, [])], default=None)
 

@@ -131,7 +131,8 @@ def main():
         seen = {}
         for path, (listed, written) in touched(trace).items():
             if own and path.startswith(own):
-                path = os.path.realpath(path)  # a link that the test followed
+                # if the test followed a link, the target of the link counts
+                path = os.path.realpath(path)
             if (path + "/").startswith((own or "/dev/", folder + "/", compiled + "/", "/proc/",
                                         "/dev/", "/sys/")):
                 continue

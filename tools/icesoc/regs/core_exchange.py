@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""core_exchange: writes the registers of the chip for other tools (SystemRDL, IP-XACT).
+"""core_exchange: writes the registers of the chip in formats of other tools: CMSIS-SVD 1.3,
+SystemRDL 2.0 and IP-XACT (IEEE 1685-2014).
 
-CMSIS-SVD 1.3, SystemRDL 2.0 and IP-XACT (IEEE 1685-2014). Slots are coremap.Slot.
+A slot is a coremap.Slot.
 """
 import xml.etree.ElementTree as ET
 

@@ -5,7 +5,7 @@ line.
 """
 from icesoc.regs import names
 
-# Properties that rdl.py uses. `name` and `desc` become the doc.
+# Properties that rdl.py uses. `name` and `desc` become the text `doc`.
 TAKEN = {
     "name", "desc", "ispresent", "fieldwidth", "reset", "sw", "hw", "woclr", "woset", "onwrite",
     "singlepulse", "hwclr", "hwset", "swmod", "swacc", "regwidth", "accesswidth", "alignment",

@@ -218,7 +218,7 @@ def history(source, count=30):
             designs = {name: {key: design[key] for key in KEYS}
                        for name, design in json.loads(text)["designs"].items()}
         except (ValueError, LookupError, TypeError, AttributeError):
-            continue  # another format, or the file was removed: nothing to show
+            continue  # the file has another format or was removed, so this commit is left out
         if designs:
             commits.append({"id": id, "date": date, "subject": subject, "designs": designs})
     return commits

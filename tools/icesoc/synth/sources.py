@@ -148,7 +148,7 @@ class Library:
 
     @functools.cache
     def hash_of(self, top):
-        """Returns a hash of these files; it changes if any of them changes."""
+        """Returns a hash of all files of the module; it changes if any of them changes."""
         return digest(map(read, self.all_files_of(top)))
 
     def module_at(self, top, path):

@@ -60,7 +60,7 @@ PAGE = [("tabulator-tables", "6.5.3",
         ("uplot", "1.6.32", "4b8a8191e425658e3ea8c8c1314b0fc679c861ee3a1af2b20c7b16ba50b5133d",
          ["uPlot.iife.min.js", "uPlot.min.css"])]
 ICEJS = ("3.7.110", "8477728b2fccb8ec825d432d35391df74857c4dc5c68c39dc6f96925d475fd8d")
-# Debian 13's packages and all libraries that they load
+# Debian 13's packages with GHDL 5, and with all libraries that it loads
 GHDL = ["ghdl-mcode", "ghdl-common", "libgnat-14", "libc6", "libgcc-s1", "libstdc++6", "zlib1g",
         "gcc-14-base"]
 

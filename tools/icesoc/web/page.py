@@ -28,5 +28,5 @@ def filled(page, places):
 
 
 def script_safe(data):
-    """Returns JSON for a page's script: a "</" in it does not end the script."""
+    """Returns JSON for a page's script, escaped so that a "</" in it does not end the script."""
     return json.dumps(data, separators=(",", ":"), sort_keys=True).replace("</", "<\\/")

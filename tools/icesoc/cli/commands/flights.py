@@ -76,8 +76,8 @@ def fly_mission(values):
 
 
 def simulator(values, build, held, options, ground):
-    """Starts the simulator, which starts the program of the ground station as its child. The
-    simulator replaces words such as {out}."""
+    """Starts the simulator, which starts the program of the ground station as its child. In the
+    command of this program, the simulator replaces words such as {out}."""
     flight.write(values, build)
     return start([build / "testbench/sim/icesoc-sim", "--flight", Path(values.out) / "flight.json",
                   *options, "--", "/usr/bin/python3", *ground], pass_fds=[held],
@@ -103,7 +103,8 @@ def update(values, build, held):
     if not (out / "flash.bin").exists():
         run([pack, "vehicle", build / "firmware/loader.elf", flight.firmware(values, build), 1,
              signing, out / "flash.bin"])
-    if not (out / "fpga.bin").exists():  # stands in for the golden bitstream by ISE
+    # a test bitstream replaces the golden bitstream, which only ISE could make
+    if not (out / "fpga.bin").exists():
         run([build / "testbench/stm32/stand_in_bitstream", out / "golden.bin", 1, 10000])
         run([pack, "fpga", out / "golden.bin", 1, signing, out / "fpga.bin"])
     kind = "bitstream" if values.update.endswith((".bit", ".bin")) else "image"

@@ -53,7 +53,8 @@ def test(values):
     some, tests, seed = values.folder or values.name or values.label, at_once(values), {
         "SEED": values.seed, "FRESH": "1" if values.fresh else ""}
     chosen = []
-    if values.label == "zeroc":  # CTest lists these tests only in their configuration
+    # CTest lists the tests with this label only if their configuration is selected
+    if values.label == "zeroc":
         build.ninja()
         chosen = ["-C", "zeroc", "-L", "zeroc", *(["-R", values.name] if values.name else [])]
     elif some:

@@ -3,7 +3,7 @@
 #
 # join_waves: adds the rows of wave.fst.program.vcd (program_trace.h) to wave.fst, above the rows of
 # the RTL.
-# Usage: join_waves.sh wave.fst      If one of the files is missing, nothing is changed.
+# If one of the files is missing, nothing is changed. Usage: join_waves.sh wave.fst
 set -eu
 wave=$1 program=$1.program.vcd
 [ -s "$wave" ] && [ -s "$program" ] || exit 0
@@ -16,7 +16,7 @@ function next_line() {
     more = (getline line < program) > 0
     if (more && line ~ /^#/) { time = substr(line, 2) + 0; next_line() }
 }
-# prints the lines of the program's waveform up to this time; a negative time prints all lines
+# prints the lines of the program waveform up to this time; a negative time prints all lines
 function told_until(end) {
     while (more && (end < 0 || time <= end)) {
         if (time > now) print "#" (now = time)

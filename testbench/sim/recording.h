@@ -11,8 +11,7 @@
 //   {"ns": time, "down": n}                  number of bytes that the modem gave to the program
 //   {"ns": time, "digest": "hexadecimal"}    hash of all bus accesses so far, every 100 ms
 //   {"ns": time, "end": {...}}               final state of the flight; missing if the simulator
-//   was
-//   killed
+//                                            was killed
 
 #pragma once
 
@@ -32,8 +31,8 @@
 // Writes the events of a flight, with their times, as JSON Lines, for the mission's page and other
 // tools. One object in each line:
 //   {"ns": t, "packet": bytes, "from": "ground" or "uav", "lost": bool}   end of a packet
-//   {"ns": t, "slot": n, "events": bits}   the processor has read these events of slot n; bits is
-//   not 0
+//   {"ns": t, "slot": n, "events": bits}   the processor has read these events of slot n; `bits`
+//                                          is never 0
 //   {"ns": t, "task": name}    the firmware switches to this task (Cortex-M3 only)
 //   {"ns": t, "accesses": {"n": count}}    register accesses to slots in the 10 ms after t
 class Events {

@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# kinds: source-folder ghdl work-folder   Checks the register block of kinds.regs.json, which has
-# every kind of register: it is proven, causes no warnings, and behaves the same in VHDL. If a fault
-# is put into it, the proof must fail.
+# kinds: source-folder ghdl work-folder
+# Tests the register block of kinds.regs.json, which has every kind of register: the block is
+# proven, causes no warnings, and behaves the same in VHDL. If a fault is put into the block, its
+# proof must fail.
 set -eu
 source=$1 ghdl=$2 work=$3
 here=$source/tests/regs

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# diff: source-folder slice2c work-folder   Which changes of registers are reported as breaking,
-# which as compatible.
+# diff: source-folder slice2c work-folder
+# Tests which changes of registers are reported as breaking, and which as compatible.
 set -eu
 source=$1 slice2c=$2 work=$3
 rm -rf "$work"

@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# rdl: source-folder generated-folder work-folder   The chip's SystemRDL converts back to its source
-# descriptions, and its IP-XACT has the same registers. Checks the SystemRDL that the reader
-# accepts, and its messages for the rest.
+# rdl: source-folder generated-folder work-folder
+# Tests that the chip's SystemRDL can be converted back to the register descriptions that it was
+# made from, and that the chip's IP-XACT has the same registers. Also tests which SystemRDL the
+# reader accepts, and its error messages for all other SystemRDL.
 set -eu
 source=$1 gen=$2 work=$3
 rm -rf "$work"

@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# cores: source-folder generated-folder work-folder   Lists of cores: the chip with them, lint of
-# soc.v with each, and errors. It is a shell script because a case is a list and the output of
-# programs (coremap, Verilator, GCC, xmllint, Yosys). refused.py checks all errors of lists.
+# cores: source-folder generated-folder work-folder
+# Generates chips from several lists of cores, checks each soc.v with a linter, and tests messages
+# about wrong lists (refused.py tests all of these messages). It is a shell script because a case
+# consists of a list and the output of programs (coremap, Verilator, GCC, xmllint, Yosys).
 set -eu
 source=$1 gen=$2 work=$3
 coremap() { "$source/tools/python" -m icesoc.chip.coremap "$@"; }

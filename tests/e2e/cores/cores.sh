@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# cores: source-folder build-folder work-folder TRACE|NETLIST   Builds a simulator with the cores of
-# a separate list, from traced RTL or the chip's netlist, and calls them by radio.
+# cores: source-folder build-folder work-folder TRACE|NETLIST
+# Builds a simulator with the cores of a separate list, from the RTL with tracing or from the chip's
+# netlist, and calls the cores by radio.
 set -eu
 source=$1 build=$2 work=$3 chip=$4
 mkdir -p "$work/build"

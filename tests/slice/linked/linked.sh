@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# linked: slice2c sw-folder work-folder   Checks with nm that a program for the Cortex-M3 contains
-# only those parts of an interface and of the run time that it uses. The programs are a client of
-# one operation and a server of one interface (docs/slice-mapping.md).
+# linked: slice2c sw-folder work-folder
+# Checks with nm that a program for the Cortex-M3 contains only those parts of an interface and of
+# the run time that it uses. The programs are a client of one operation and a server of one
+# interface (docs/slice-mapping.md).
 set -eu
 slice2c=$1 sw=$2 work=$3
 here=$(cd "$(dirname "$0")" && pwd)

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: MIT
 """echo: the programs with stock ZeroC Ice on both sides of generated C code, which forwards calls.
 
-echo.py generate SEED FOLDER     writes Random.ice, Hidden.ice and Definer.ice echo.py server SEED
-FOLDER       returns the values that it receives; prints its port echo.py client SEED FOLDER PORT
-sends random values of every type, in both encodings, and compares
-    them with the returned values
+echo.py generate SEED FOLDER     writes Random.ice, Hidden.ice and Definer.ice
+echo.py server SEED FOLDER       returns the values that it receives; prints its port
+echo.py client SEED FOLDER PORT  sends random values of every type, in both encodings, and compares
+                                 them with the returned values
 """
 
 import os

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 # roundtrip: slice2c sw-folder work-folder test-folder-of-IceC
 # Sends values of random Slice types (SEED) from stock ZeroC Ice through generated C proxies and
-# servants to stock Ice and back; with sanitizers. Wireshark's ICEP dissector must find nothing
-# malformed on either side of the C code.
+# servants to stock Ice and back. The C code is built with sanitizers. Wireshark's ICEP dissector
+# must find nothing malformed on either side of the C code.
 set -eu
 slice2c=$1 sw=$2 work=$3 icec=$4
 here=$(dirname "$0")

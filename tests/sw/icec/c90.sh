@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# c90: source-folder   Checks that IceC and its portable transports are C90 without warnings for
-#                      gcc, clang and the Cortex-M3's gcc, in the full and the minimal run time.
+# c90: source-folder
+# Checks that gcc, clang and the Cortex-M3's gcc compile IceC and its portable transports as C90
+# without warnings, for the full and the minimal run time.
 set -eu
 sw=$1/sw
 warnings='-std=c90 -pedantic -Wall -Wextra -Wconversion -Wno-sign-conversion -Wstrict-prototypes

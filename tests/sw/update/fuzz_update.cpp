@@ -8,9 +8,13 @@
 // If the lowest bit of the first byte is 1, slot 0 is golden, as for the FPGA. Then each step has
 // two bytes, its kind (mod 8) and its argument n:
 //   0 the first n bytes of the input are written into slots or log, at offset 64 n
-//   1 an image of version n exists    2 an update to version n begins, or (n > 127) new keys
-//   3 a piece of 4 n bytes arrives (n, if n is odd)    4 the update is finished    5 the image is
-//   confirmed 6 the receiver works    7 the power was cut
+//   1 an image of version n exists
+//   2 an update to version n begins; if n > 127, a new list of keys arrives
+//   3 a piece of the update arrives, with 4 n bytes if n is even, or n bytes if n is odd
+//   4 the update is finished
+//   5 the image is confirmed
+//   6 the receiver works
+//   7 the power was cut
 // The header of steps 1 and 2 is correct except for n / 8 % 4 bytes: for each of these, the next
 // two bytes of the input are its position and its value. The header is signed after this change if
 // n / 32 is even.

@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# hang: simulator work-folder   Checks a flight with firmware that hangs: the simulator prints the
-# time and the function after 10 s of CPU time, and then ends at once when it is interrupted.
+# hang: simulator work-folder
+# Checks a flight with firmware that hangs: the simulator prints the time and the function after 10
+# s of CPU time, and then ends at once when it is interrupted.
 set -eu
 mkdir -p "$2"
 cd "$2"

@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# memories: slice2c source-folder work-folder   In every order of ip/cores.list three cores get
-# separate buffers, each aligned to its size. Includes the proof that then, whatever is written to
-# two generated wrappers, their buffers never overlap.
+# memories: slice2c source-folder work-folder
+# Tests that three cores get separate buffers, each aligned to its size, in every order of
+# ip/cores.list. Also proves that the buffers of two generated wrappers with such addresses never
+# overlap, whatever is written to the wrappers.
 set -eu
 slice2c=$1 source=$2 work=$3
 here=$(cd "$(dirname "$0")" && pwd)

@@ -5,10 +5,12 @@
 // message may be wrong, duplicated or out of order, and each call must be answered or reported with
 // a status.
 //
-//   SOAK_SECONDS=600 build/main/tests/sw/ground/chip/test_chip_soak (simulated seconds; default 5)
-// SOAK_REST=10 makes each caller pause for this number of seconds on average, and faults rarer by
-// the same factor. This is a flight (make fly), in which most clocks are skipped. The camera's
-// sensor then sends one picture per second, and the cores are called in turn.
+//   SOAK_SECONDS=600 build/main/tests/sw/ground/chip/test_chip_soak
+//
+// SOAK_SECONDS is the number of simulated seconds; the default is 5. SOAK_REST=10 makes each caller
+// pause for ten seconds on average, and makes faults rarer by the same factor. With SOAK_REST the
+// test is a flight (make fly), in which most clocks are skipped; the camera's sensor then sends one
+// picture per second, and the cores are called one after the other.
 
 #include "../../../support/delivery_check.h"
 #include "../../../support/environment.h"

@@ -3,8 +3,8 @@
  * board: set-up of the STM32F2 (RM0033), and its interrupt routines.
  *
  * The FPGA's interrupt is a level on a pin of EXTI0, but EXTI only detects its rising edge. The
- * routine therefore repeats its work until the pin is low. Interrupts that call the kernel have
- * priorities of 0x40 or more: the port of uC/OS-II masks these, and no priority below 0x40.
+ * routine therefore repeats its work until the pin is low. The port of uC/OS-II masks interrupts
+ * with priorities from 0x40 upwards. Interrupts that call the kernel must have such a priority.
  */
 #include "board.h"
 #include "board_pins.h"
@@ -114,9 +114,9 @@ void Board_serveWatchdog(void) {
 void EXTI0_Handler(void) {
     OSIntEnter();
     EXTI_PR = 1UL << BOARD_IRQ_PIN;
-    /* The register is read back, so that the edge is cleared before the pin is read. If it were
-     * cleared later, it could clear the edge of an interrupt that rises in between; that interrupt
-     * would be lost. */
+    /* Reads the register back, so that the edge is cleared before the pin is read. If the
+     * clear took effect later, it could also clear the edge of a new interrupt, which would
+     * then be lost. */
     (void)EXTI_PR;
     while (GPIO_IDR(BOARD_IRQ_PORT) >> BOARD_IRQ_PIN & 1UL)
         Program_onFpgaInterrupt();

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * boot: determines the reason of the start, checks the image's checksum, and records faults.
+ * boot: determines why the firmware was started, checks the image's checksum, and records faults.
  */
 #include "boot.h"
 #include "board.h"

@@ -11,7 +11,7 @@
  * states. Does nothing if this was done before. Uses no RAM. */
 static void Clock_start(void) {
     if ((RCC_CFGR & RCC_CFGR_SWS_MASK) == RCC_CFGR_SWS_PLL)
-        return; /* the boot loader has already done it */
+        return; /* the boot loader has already set the clock */
     RCC_CR |= BOARD_HSE_ON;
     while (!(RCC_CR & RCC_CR_HSERDY))
         ;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * flash: unlocks the flash only during an operation.
+ * flash: erases and programs the flash, which is unlocked only during an operation.
  */
 #include "flash.h"
 #include "stm32f2.h"
@@ -12,7 +12,7 @@ static void unlock(void) {
         FLASH_KEYR = FLASH_KEY1;
         FLASH_KEYR = FLASH_KEY2;
     }
-    FLASH_SR = FLASH_SR_ERRORS; /* clears error flags, some of which may be set after reset */
+    FLASH_SR = FLASH_SR_ERRORS; /* clears error flags, because some may be set after a reset */
 }
 
 static int done(void) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * own_kernel: implements the functions of the board that depend on the kernel, for sw/os.
+ * own_kernel: implements those functions of the board that depend on the kernel, for the kernel in
+ * sw/os.
  */
 #include "board.h"
 #include "boot.h"

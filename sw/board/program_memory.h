@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * program_memory: symbols that firmware.ld defines, and the first step of a program, which
- * initialises its variables.
+ * program_memory: symbols that firmware.ld defines, and the first step of a program: initialising
+ * its variables.
  */
 #pragma once
 

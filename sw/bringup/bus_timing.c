@@ -4,9 +4,9 @@
  * fail.
  *
  * Read path: the chip answers a read of a fetched block combinationally. In an access of mode A
- * with ADDSET 0, NE1, NOE, address and data together may take (DATAST - 1) HCLK - 4 ns. With ADDSET
- * 3 the time for NOE is the same; NE1 and the address have 3 HCLK more. NWAIT: in mode 1, NWAIT
- * must be valid ADDSET HCLK after the start of an access.
+ * with ADDSET 0, the delays of NE1, NOE, address and data together may be (DATAST - 1) HCLK - 4 ns.
+ * With ADDSET 3, the limit for NOE is the same; NE1 and the address have 3 HCLK more. NWAIT: in
+ * mode 1, NWAIT must be valid ADDSET HCLK after the start of an access.
  */
 #include "bringup.h"
 #include "bus.h"

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * ucos2_kernel: implements the functions of the board that depend on the kernel, for the original
+ * ucos2_kernel: implements those functions of the board that depend on the kernel, for the original
  * uC/OS-II.
  */
 #include "board.h"

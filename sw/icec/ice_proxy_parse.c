@@ -108,7 +108,7 @@ static void decodeBase64(const char* text, Ice_Int size, Ice_OutputStreamPtr os)
     }
 }
 
-/* Parses a version such as "1.1". Returns 0 for other text. */
+/* Parses a version such as "1.1", from 1.0 to 255.255. Returns 0 for other text. */
 static int parseVersion(Ice_String text, Ice_Byte* version) {
     int part;
     Ice_Int i = 0;
@@ -123,7 +123,7 @@ static int parseVersion(Ice_String text, Ice_Byte* version) {
             return 0;
         version[part] = (Ice_Byte)number;
     }
-    return i == text.size + 1;
+    return i == text.size + 1 && version[0] != 0;
 }
 
 /* Returns how often an option with this letter occurs. */
@@ -145,7 +145,7 @@ static Ice_Status parseOpaque(const char* options, Ice_ObjectPrxPtr prx) {
     value.data = Ice_findOption(options, 'v', &value.size);
     version.data = Ice_findOption(options, 'e', &version.size);
     if (!Ice_areOptions(options, "tev") || !value.data || countOptions(options, 't') != 1 ||
-        countOptions(options, 'v') != 1 || !Ice_integerOption(options, 't', 0xFFFF, &type) ||
+        countOptions(options, 'v') != 1 || !Ice_integerOption(options, 't', 0x7FFF, &type) ||
         (version.data && !parseVersion(version, encoding)))
         return ICE_PARSE;
     Ice_OutputStream_init(&os, prx->endpoints, ICE_ENDPOINT_MAX);

@@ -156,10 +156,12 @@ static Ice_Call* waitingCall(Ice_CommunicatorPtr ic, int connection, Ice_Int id)
     return 0;
 }
 
-void icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is) {
+Ice_Status icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is) {
     Ice_Int id = Ice_InputStream_readInt(is);
     Ice_Call* call;
     int isAsynchronous = 0;
+    if (is->failed)
+        return ICE_CONNECTION_LOST;
     icec_lock(ic, ICE_LOCK_STATE); /* while this lock is held, the call cannot time out */
     call = waitingCall(ic, connection, id);
     if (call && call->callback) {
@@ -176,4 +178,5 @@ void icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr i
         icec_giveArena(ic, is);
         finish(ic, call, id, readReply(call, is), is);
     }
+    return ICE_OK;
 }

@@ -27,8 +27,7 @@ static Ice_Status takeMessage(Ice_CommunicatorPtr ic, int connection, const Ice_
     case ICEC_BATCH:
         return icec_dispatchBatch(ic, connection, &is);
     case ICEC_REPLY:
-        icec_takeReply(ic, connection, &is);
-        return ICE_OK;
+        return icec_takeReply(ic, connection, &is);
     case ICEC_VALIDATE:
         validate(ic, connection);
         return ICE_OK;

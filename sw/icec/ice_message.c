@@ -12,7 +12,6 @@
 /* offset of the compression byte; 0 and 1 mean not compressed, 2 means compressed */
 #define COMPRESSION_AT 9
 #define SIZE_AT 10
-#define MAGIC_BYTES 4
 
 /* Template of a message header: "IceP", version of the protocol, version of the encoding, type,
  * compression, size. */
@@ -34,7 +33,7 @@ Ice_Int icec_messageSize(const Ice_Byte* header, int* isCompressed) {
     Ice_InputStream_init(&is, header + COMPRESSION_AT, ICEC_HEADER - COMPRESSION_AT);
     *isCompressed = Ice_InputStream_readByte(&is) == 2;
     size = Ice_InputStream_readInt(&is);
-    return memcmp(header, head, MAGIC_BYTES) == 0 && size >= ICEC_HEADER ? size : -1;
+    return memcmp(header, head, TYPE_AT) == 0 && size >= ICEC_HEADER ? size : -1;
 }
 
 Ice_Int icec_readHead(Ice_InputStreamPtr is) {
@@ -128,7 +127,7 @@ Ice_Status Ice_Object_dispatch(const Ice_Interface* interface, const void* table
     const Ice_Base* base;
     for (o = interface->operations; o->name; ++o)
         if (Ice_String_is(&current->operation, o->name)) {
-            if (!(o->modes >> (current->mode & 7U) & 1))
+            if (current->mode > 7 || !(o->modes >> current->mode & 1))
                 return ICE_PROTOCOL;
             return o->dispatch(self, table, current, is, os);
         }

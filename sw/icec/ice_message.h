@@ -18,8 +18,8 @@ enum { ICEC_REQUEST, ICEC_BATCH, ICEC_REPLY, ICEC_VALIDATE, ICEC_CLOSE };
 void icec_beginMessage(Ice_OutputStreamPtr os, Ice_Byte type);
 void icec_endMessage(Ice_OutputStreamPtr os);
 /* Returns the size of a message from its header (ICEC_HEADER bytes), and whether the message is
- * compressed. Returns -1 if the header does not begin with Ice's magic bytes, or if the size is too
- * small. */
+ * compressed. Returns -1 if magic bytes or versions of the header are not those of Ice 3, or if the
+ * size is too small. */
 Ice_Int icec_messageSize(const Ice_Byte* header, int* isCompressed);
 /* Checks and skips the header of a message of is->size bytes. Returns the type of the message; a
  * value above 0xFF means that the message is compressed. Returns -1 if this is not a message of

@@ -77,8 +77,9 @@ void icec_giveArena(Ice_CommunicatorPtr ic, Ice_InputStreamPtr is);
 int icec_takeCall(Ice_CommunicatorPtr ic);
 Ice_CallState icec_callState(Ice_CommunicatorPtr ic, int slot);
 
-/* Passes a reply to the call that waits for it. `is` is at the start of the reply's body. */
-void icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
+/* Passes a reply to the call that waits for it. `is` is at the start of the reply's body.
+ * Returns ICE_CONNECTION_LOST if the reply ends within its id. */
+Ice_Status icec_takeReply(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is);
 /* Finds an asynchronous call that has timed out, and sets `id` to its id; returns 0 if no
  * call has timed out. Reduces `waitMs` to the time until the next time-out. The caller holds
  * the state lock. */

@@ -70,6 +70,16 @@ CASES = {
     "a batch of 2^31-1": message(1, number(2**31 - 1) + one("hit") * 2),
     "a batch of -1": message(1, number(-1) + one("hit") * 2),
     "a batch of 0": message(1, number(0)),
+    "a batch of -2^31": message(1, number(-2**31) + one("hit")) + COUNT,
+    "a batch and more bytes": message(1, number(2) + one("hit") * 2 + b"zz") + COUNT,
+    "a batch with an unknown object": message(1, number(3) + one("hit") + target("hit", "no")
+                                              + encapsulation(b"") + one("hit")) + COUNT,
+    "a batch with an unknown operation": message(1, number(3) + one("hit") + one("no")
+                                                 + one("hit")) + COUNT,
+    "a batch with a wrong parameter": message(1, number(3) + one("hit") + one("count", b"\xff")
+                                              + one("hit")) + COUNT,
+    "a batch with encoding 2.0": message(1, number(3) + one("hit") + target("hit")
+                                         + encapsulation(b"", (2, 0)) + one("hit")) + COUNT,
     "a batch with a cut second request": message(1, number(2) + one("hit") + one("hit")[:-3]),
     "no optional": request("say", N7),
     "an optional": request("say", N7 + HI),
@@ -114,6 +124,7 @@ CASES = {
     "no instance": request("walk", b"\0"),
     "an instance": request("walk", NODE),
     "an instance and more": request("walk", NODE + b"z"),
+    "an instance without the mark of its last slice": request("walk", b"\1\1" + NODE[2:]),
     "an index of an instance in a compact value": request("walk", b"\5"),
     "an instance of an unknown class": request("walk", b"\1\x21" + string("::No") + N7 + b"\0"),
     "an instance in 1.0 that is missing": request("walk", number(-1), version=(1, 0)),
@@ -129,15 +140,32 @@ CASES = {
     "a message size of -1": HEAD + b"\0\0" + number(-1),
     "a message size of 14, a request": HEAD + b"\0\0" + number(14),
     "a request that is cut in its identity": message(0, number(1) + b"\7ec"),
+    "a request that is cut in its context": message(0, COUNT[14:32]) + COUNT,
+    "a request that is cut in its encapsulation": message(0, COUNT[14:-3]) + COUNT,
+    "a request without an encapsulation": message(0, number(1) + target("hit")) + COUNT,
     "another magic": b"IceQ" + COUNT[4:],
     "protocol 1.1": message(0, COUNT[14:], head=b"IceP\1\1\1\0"),
     "protocol 2.0": message(0, COUNT[14:], head=b"IceP\2\0\1\0"),
+    "protocol 2.0 and a size of 2^24": b"IceP\2\0\1\0\0\0" + number(2**24) + COUNT[14:],
     "encoding 1.1 of the protocol": message(0, COUNT[14:], head=b"IceP\1\0\1\1"),
     "compression offered": message(0, COUNT[14:], 1),
+    "compression of 3": message(0, COUNT[14:], 3),
+    "compression of 255": message(0, COUNT[14:], 255),
+    "a message size of 0": HEAD + b"\0\0" + number(0) + COUNT,
+    "a message size of 2^31-1": HEAD + b"\0\0" + number(2**31 - 1) + COUNT[14:],
+    "a message that never ends": HEAD + b"\0\0" + number(200) + COUNT[14:],
+    "half a head": COUNT[:9],
+    "a line of HTTP": b"GET / HTTP/1.1\r\n\r\n",
+    "zeros": b"\0" * 100,
     "a validation with a body": message(3, b"xx") + COUNT,
     "a validation, then a call": message(3, b"") + COUNT,
     "an unexpected reply": message(2, number(77) + b"\0" + encapsulation(b"")) + COUNT,
+    "a reply without an id": message(2, b"") + COUNT,
+    "a reply that is cut in its id": message(2, b"\1\0\0") + COUNT,
+    "a reply that is cut after its id": message(2, number(77)) + COUNT,
+    "a reply of an unknown status": message(2, number(77) + b"\x09") + COUNT,
     "a type of 9": message(9, b"") + COUNT,
+    "a type of 128": message(128, b"") + COUNT,
     "a mode of 3": request("count", string("ab"), mode=3),
     "an idempotent call of another operation": request("count", string("ab"), mode=2),
     "a nonmutating call of another operation": request("count", string("ab"), mode=1),
@@ -166,6 +194,24 @@ CASES = {
     "ice_ping as idempotent": request("ice_ping", mode=2),
     "ice_ping of a missing facet": request("ice_ping", facet=b"\1" + string("f")),
     "a one-way call that is missing": request("nothing", rid=0) + COUNT,
+    "a one-way call of a missing object": request("hit", rid=0, name="missing") + COUNT,
+    "a one-way call of a missing facet": request("hit", rid=0, facet=b"\1" + string("f")) + COUNT,
+    "a one-way call of two facets": request("hit", rid=0, facet=b"\2" + string("a") * 2) + COUNT,
+    "a one-way call in encoding 2.0": request("hit", rid=0, version=(2, 0)) + COUNT,
+    "a facet of size -1": request("hit", facet=b"\xff" + number(-1)) + COUNT,
+    "a context of size -1": request("hit", context=b"\xff" + number(-1)) + COUNT,
+    "a context of size 2^31-1": request("hit", context=b"\xff" + number(2**31 - 1)) + COUNT,
+    "an encapsulation as a parameter": request("count", encapsulation(string("ab"))),
+    "an identity with a zero": request("hit", name=b"echo\0") + COUNT,
+    "an operation with a zero": request("hit\0") + COUNT,
+    "a missing operation in encoding 2.0": request("no", version=(2, 0)),
+    "a missing object in encoding 2.0": request("hit", name="no", version=(2, 0)),
+    "encoding 0.0": request("hit", version=(0, 0)),
+    "encoding 1.255": request("count", string("ab"), version=(1, 255)),
+    "a mode of 8": request("hit", mode=8),
+    "a mode of 128": request("hit", mode=128),
+    "a mode of 130": request("same", b"\1", mode=130),
+    "a mode of 255": request("hit", mode=255),
     "a one-way call with too much": request("count", string("ab") + b"z", rid=0) + COUNT,
     "a negative request id": request("hit", rid=-5),
     "two calls with one id": request("hit") + request("hit"),
@@ -176,9 +222,20 @@ CASES = {
 # Ice: (replies of IceC, number of executed operations, reason).
 FAILED = [(2, b"\x01\0\0\0\x05"), "open"], 0  # UnknownLocalException
 CLOSED = [""], 0
+ANSWERED = [(2, number(1) + b"\0" + encapsulation(number(2))), "open"],  # by COUNT
 IN_PYTHON = "stock Ice in Python has another exception, or none; in C++ it has this one"
 MALFORMED = "a malformed message closes the connection: nothing after it can be trusted"
+LIMIT = "IceC answers a request that is too long, and skips it; stock Ice closes the connection"
+ENCODING = "IceC checks the encoding of every request, before it looks for object and operation"
+COMPRESSED = "IceC refuses all values but 0 and 1, so that the caller may repeat the call"
 DIFFERENT = {
+    "a request that is cut in its context": (*CLOSED, MALFORMED),
+    "a request that is cut in its encapsulation": (*CLOSED, MALFORMED),
+    "a request without an encapsulation": (*CLOSED, MALFORMED),
+    "a message size of 2^31-1": ([(2, b"\x01\0\0\0\x05"), "open"], 0, LIMIT),
+    "compression of 3": ([(4, b""), ""], 0, COMPRESSED),
+    "compression of 255": ([(4, b""), ""], 0, COMPRESSED),
+    "an instance without the mark of its last slice": (*FAILED, "IceC checks the mark"),
     "a batch with a cut second request": ([""], 1, MALFORMED),
     "a size of the encapsulation beyond the message": (*CLOSED, MALFORMED),
     "a size of the encapsulation of 5": (*CLOSED, MALFORMED),
@@ -189,6 +246,13 @@ DIFFERENT = {
     "an index of an instance in a compact value": (*FAILED, "stock Ice in Python dies"),
     "an instance of an unknown class": (*FAILED, "stock Ice in Python dies"),
     "encoding 1.2 without parameters": (*FAILED, "stock Ice executes it, and fails to answer"),
+    "encoding 0.0": (*FAILED, "stock Ice executes it, and fails to answer"),
+    "a one-way call in encoding 2.0": (*ANSWERED, 1, ENCODING),
+    "a batch with encoding 2.0": (*ANSWERED, 3, ENCODING),
+    "a missing operation in encoding 2.0": (*FAILED, ENCODING),
+    "a missing object in encoding 2.0": (*FAILED, ENCODING),
+    "an operation with a zero": ([(2, b"\x01\0\0\0\x04\4echo\0\0\4hit\0"), *ANSWERED[0]], 1,
+                                 "stock Ice in Python reads a name up to the zero"),
 }
 
 

@@ -16,7 +16,7 @@ namespace {
 
 const char* const modes[] = {"in the clear", "with a key"}; // index: hasKey
 // Limit for one direction, in bytes per second: full packets through the modem with RN 2
-// (docs/simulation.md).
+// (4.688 ms is the modem's assumed processing time: docs/simulation.md).
 constexpr double mostBytesPerSecond = 100 / (4.688 + 1.5 * 0.320 + 5.312) * 1000;
 // size: number of bytes of the sequence in each message; a message may have up to 8192
 constexpr int size = 7900, messages = 6;

@@ -8,9 +8,10 @@
 MAKEFLAGS += --no-builtin-rules
 unexport MAKEFILES
 # GNU make expands a variable of its command line when it exports the variable, so a $(shell ...) in
-# the value would run. The lines below first turn each value into literal text.
-$(foreach v,$(.VARIABLES),$(if $(filter command,$(firstword $(origin $v))),\
-    $(eval export override $v := $$(value $v))))
+# the value would run. The lines below first turn each value into literal text. The command line
+# cannot set a variable with the name of the loop's variable, which is "each=".
+$(foreach each=,$(.VARIABLES),$(if $(filter command,$(firstword $(origin $(each=)))),\
+    $(eval export override $(each=) := $$(value $(each=)))))
 export ICESOC_GOALS := $(MAKECMDGOALS)
 %: export ICESOC_GOAL = $@
 

@@ -63,6 +63,13 @@ class Values(Work):
                 *([evil] if option.positional else [f"--{option.name}", evil]), **tree)
             self.assertFalse(hit.exists(), f"{verb} {name}")
 
+    def test_no_name_of_a_variable_lets_its_value_run(self):
+        hit = self.work / "hit"
+        for name in ("v", "each", "each=", "a.b-c", "é", "MAKEOVERRIDES", "MAKELEVEL", "value",
+                     "eval", "origin", "VPATH", "CURDIR", "ICESOC_GOALS"):
+            ask("make", "-s", "rm-ip", f"{name}=$(shell touch {hit})")
+            self.assertFalse(hit.exists(), name)
+
     def test_a_value_arrives_as_it_is(self):
         odd = "a'b \"c\" {device} `d` $(e) $$ # \\ f=g -- h"
         said = ask("make", "-s", "rm-ip", f"NAME={odd}")[1]

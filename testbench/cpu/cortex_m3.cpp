@@ -176,6 +176,10 @@ void CortexM3::execute(uint32_t address, const Instruction& i) {
     case Instruction::Refused:
         failure_ = std::make_exception_ptr(NotModelled("WFE, SEV and YIELD"));
         break;
+    case Instruction::Unprivileged:
+        failure_ = std::make_exception_ptr(
+            NotModelled("an unprivileged access (LDRT, STRT and similar instructions)"));
+        break;
     case Instruction::Plain:
         break;
     }
@@ -243,9 +247,16 @@ void CortexM3::fixBasepri() {
         setReg(Basepri, kept || special_ != basepriMax ? kept : exceptions_.basepri());
 }
 
+// FAULTMASK cannot be set in the handlers of hard faults and NMI (B5.2.3).
+void CortexM3::fixFaultmask() {
+    if (reg(Faultmask) && !exceptions_.faultmask() && exceptions_.runningPriority() <= -1)
+        setReg(Faultmask, 0);
+}
+
 void CortexM3::updateMasks(uint32_t address) {
     masksChanged_ = false;
     fixBasepri();
+    fixFaultmask();
     if (reg(Control) & 1)
         failure_ = std::make_exception_ptr(NotModelled("unprivileged code (CONTROL.nPRIV)"));
     exceptions_.setMasks(reg(Primask), reg(Basepri), reg(Faultmask));

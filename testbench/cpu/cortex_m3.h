@@ -171,6 +171,7 @@ private:
     void setSynchronous(uint32_t address, unsigned number, uint32_t cfsrBits, const char* text);
     void clearExclusive();
     void fixBasepri();
+    void fixFaultmask();
     // Returns true in the handlers of HardFault and NMI, and while FAULTMASK is set. The MPU does
     // not check accesses of such code (B3.5.1).
     bool isMpuOff() const { return exceptions_.runningPriority() < 0; }

@@ -147,9 +147,14 @@ void CortexM3::reset() {
     setReg(Xpsr, thumb);
     for (int r : {Primask, Basepri, Faultmask, Control})
         setReg(r, 0);
-    setReg(Msp, word(0));
+    setReg(Msp, word(0) & ~3u);
     setReg(Lr, 0xFFFFFFFF);
     pc_ = word(4) & ~1u;
+    if (!(word(4) & 1)) {
+        executing_ = pc_;
+        synchronous_ = {UsageFault, SystemControl::invalidState,
+                        "a reset vector without its lowest bit"};
+    }
     updateAttention();
 }
 

@@ -106,6 +106,9 @@ Instruction decodeInstruction(uint16_t first, uint16_t second) {
         i.kind = (second & 0xFF) == 3                      ? Instruction::Sleep
                  : (second & 0xFF) && (second & 0xFF) <= 4 ? Instruction::Refused
                                                            : Instruction::Plain;
+    // LDRT, STRT and similar instructions; with PC as base the same bits are a literal's offset
+    if ((first & 0xFE80) == 0xF800 && (second & 0x0F00) == 0x0E00 && (first & 0xF) != 15)
+        i.kind = Instruction::Unprivileged;
     if ((first & 0xFE00) == 0xE800)
         decodeAligned(i, first, second);
     if (first == 0xF3BF && (second & 0xFFE0) == 0x8F40)

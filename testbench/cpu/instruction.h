@@ -16,11 +16,12 @@ struct Instruction {
         // IT; the model executes IT together with the next `conditional` instructions, without an
         // interruption
         If,
-        Sleep,     // WFI
-        Barrier,   // DSB or DMB; waits until the write buffer is empty
-        Masks,     // CPS or MSR; may change PRIMASK, BASEPRI, FAULTMASK or CONTROL
-        Exclusive, // LDREX; opens the exclusive monitor
-        Refused    // WFE, SEV, YIELD: not supported, because the model has no event register
+        Sleep,       // WFI
+        Barrier,     // DSB or DMB; waits until the write buffer is empty
+        Masks,       // CPS or MSR; may change PRIMASK, BASEPRI, FAULTMASK or CONTROL
+        Exclusive,   // LDREX; opens the exclusive monitor
+        Refused,     // WFE, SEV, YIELD: not supported, because the model has no event register
+        Unprivileged // LDRT, STRT and similar instructions: not supported
     };
     static constexpr uint8_t noBase = 15;
     uint8_t bytes = 2; // length, bytes: 2 or 4

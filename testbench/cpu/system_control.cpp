@@ -36,9 +36,9 @@ std::string hex(uint32_t value) {
     return text;
 }
 
-constexpr uint32_t traceEnabled = 1u << 24,
-                   // TRCENA in DEMCR, and the number of comparators in DWT_CTRL
-    comparators = 4u << 28;
+constexpr uint32_t traceEnabled = 1u << 24; // TRCENA in DEMCR
+constexpr uint32_t comparators = 4u << 28;  // number of comparators in DWT_CTRL
+constexpr uint32_t rasrBits = 0x173FFF3F;   // bits of RASR that are not reserved
 
 // Returns true if RASR.AP forbids the access to privileged code: AP 0 forbids every access, AP 5 to
 // 7 forbid writes.
@@ -50,6 +50,18 @@ bool forbids(uint32_t rasr, bool write) {
 // Returns true if RASR forbids execution, either by XN or because the region cannot be read.
 bool forbidsToExecute(uint32_t rasr) {
     return (rasr >> 28 & 1) || forbids(rasr, false);
+}
+
+// Returns whether an address is in CFSR.
+bool isStatus(uint32_t address) {
+    return address >= scs + 0xD28 && address < scs + 0xD2C;
+}
+
+// Returns whether a register can be accessed by bytes and halfwords: the priority registers and
+// CFSR (B3.1.1, B3.2.15).
+bool hasBytes(uint32_t address) {
+    return (address >= scs + 0x400 && address < scs + 0x4F0) ||
+           (address >= scs + 0xD18 && address < scs + 0xD24) || isStatus(address);
 }
 
 } // namespace
@@ -108,6 +120,9 @@ uint32_t SystemControl::read(uint32_t address, unsigned size) {
     uint32_t word = 0;
     if (address % size)
         throw NotModelled("an unaligned access to the system register " + hex(address));
+    if (size < 4 && !hasBytes(address))
+        throw NotModelled("reading the system register " + hex(address) + " in " +
+                          std::to_string(size) + " bytes");
     if (!accessWord(address & ~3u, false, word))
         throw NotModelled("reading the system register " + hex(address & ~3u));
     word >>= 8 * (address & 3);
@@ -126,16 +141,11 @@ void SystemControl::write(uint32_t address, unsigned size, uint32_t value) {
             refuse();
         return;
     }
-    // Only the priority registers and CFSR can also be written in parts of 8 or 16 bits (B3.1.1,
-    // B3.2.15).
-    const uint32_t at = address - scs;
-    const bool priorities = (at >= 0x400 && at < 0x4F0) || (at >= 0xD18 && at < 0xD24);
-    const bool status = at >= 0xD28 && at < 0xD2C;
     uint32_t word = 0;
-    if (address < scs || !(priorities || status) || !accessWord(address & ~3u, false, word))
+    if (!hasBytes(address) || !accessWord(address & ~3u, false, word))
         refuse();
     const uint32_t mask = ((1u << 8 * size) - 1) << 8 * (address & 3);
-    word = ((status ? 0 : word) & ~mask) | (value << 8 * (address & 3) & mask);
+    word = ((isStatus(address) ? 0 : word) & ~mask) | (value << 8 * (address & 3) & mask);
     accessWord(address & ~3u, true, word);
 }
 
@@ -390,7 +400,7 @@ bool SystemControl::accessMpu(uint32_t at, bool write, uint32_t& value) {
             value = region_[mpuRegion_].rbar | mpuRegion_;
         break;
     case 0x10:
-        write ? region_[mpuRegion_].rasr = value : value = region_[mpuRegion_].rasr;
+        write ? region_[mpuRegion_].rasr = value& rasrBits : value = region_[mpuRegion_].rasr;
         if (write && (mpuControl_ & 1) && (value & 1))
             checkRegion(region_[mpuRegion_]);
         break;

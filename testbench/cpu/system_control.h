@@ -114,6 +114,7 @@ public:
     }
 
     uint32_t basepri() const { return basepri_; }
+    uint32_t faultmask() const { return faultmask_; }
 
     // Returns the number of the exception that must be entered now; 0 if there is no such
     // exception.

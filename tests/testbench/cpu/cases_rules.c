@@ -187,7 +187,43 @@ void Case_stackedState(void) { /* Returns from an exception to ARM state, which 
     Case_say('.');
 }
 
+static void setFaultmask(void) {
+    __asm__ volatile("cpsid f\n\tmrs %0, faultmask\n\tmsr faultmask, %2\n\tmrs %1, faultmask"
+                     : "=&r"(value[0]), "=&r"(value[1])
+                     : "r"(1));
+}
+
+void Case_faultmaskIgnored(void) { /* in the handler of an NMI */
+    Case_action[2] = setFaultmask;
+    Case_priority(0, 0x80);
+    SCB_ICSR = 1UL << 31;
+    __asm__ volatile("dsb\n\tisb\n\tmrs %0, faultmask" : "=r"(value[2]));
+    Case_pend(0);
+    __asm__ volatile("cpsid f\n\tmrs %0, faultmask\n\tmsr faultmask, %1"
+                     : "=&r"(value[3])
+                     : "r"(0));
+}
+
+void Case_regionBits(void) { /* reserved bits of the MPU's registers are zero */
+    MPU_RBAR = 0x20000015UL; /* VALID, region 5 */
+    MPU_RASR = 0xFFFFFFFEUL;
+    value[0] = MPU_RASR;
+    value[1] = MPU_RBAR;
+}
+
 /* Uses features that the model does not have. */
+void Case_byteOfRegister(void) {
+    value[0] = *(volatile U8*)0xE000E010UL;
+    Case_say('!');
+}
+void Case_unprivilegedLoad(void) {
+    __asm__ volatile("ldrt r0, [%0]" : : "r"(word) : "r0");
+    Case_say('!');
+}
+void Case_unprivilegedStore(void) {
+    __asm__ volatile("strbt r0, [%0, #4]" : : "r"(word) : "memory");
+    Case_say('!');
+}
 void Case_unprivileged(void) {
     __asm__ volatile("msr control, %0\n\tisb" : : "r"(1));
     Case_say('!');

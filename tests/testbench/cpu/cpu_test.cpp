@@ -112,6 +112,12 @@ const Case cases[] = {
      "Case_basepriBits",
      "",
      {{0, 0}, {1, 0x50}, {2, 0x50}, {3, 0x50}, {4, 0x30}, {5, 0}}},
+    // B5.2.3: at priority -1 or -2 FAULTMASK cannot be set.
+    {"FaultmaskCannotBeSetInAnNmi",
+     "Case_faultmaskIgnored",
+     "naA",
+     {{0, 0}, {1, 0}, {2, 0}, {3, 1}}},
+    {"ReservedBitsOfTheMpuAreZero", "Case_regionBits", "", {{0, 0x173FFF3E}, {1, 0x20000005}}},
     {"TheCycleCounterCountsWhileItIsEnabled",
      "Case_cycleCounter",
      "",
@@ -149,13 +155,15 @@ TEST_P(NotModelledParts, StopTheProgramWithAMessage) {
 }
 INSTANTIATE_TEST_SUITE_P(
     Cpu, NotModelledParts,
-    ::testing::Values(Refusal{"Case_unprivileged", "unprivileged code (CONTROL.nPRIV)"},
-                      Refusal{"Case_sleepOnExit",
-                              "writing 0x00000002 to the system register 0xE000ED10"},
-                      Refusal{"Case_waitForEvent", "WFE"},
-                      Refusal{"Case_unknownRegister", "reading the system register 0xE000EDF0"},
-                      Refusal{"Case_noBackground", "0xE000ED94"},
-                      Refusal{"Case_alignmentTrap", "0xE000ED14"}));
+    ::testing::Values(
+        Refusal{"Case_unprivileged", "unprivileged code (CONTROL.nPRIV)"},
+        Refusal{"Case_sleepOnExit", "writing 0x00000002 to the system register 0xE000ED10"},
+        Refusal{"Case_waitForEvent", "WFE"},
+        Refusal{"Case_unknownRegister", "reading the system register 0xE000EDF0"},
+        Refusal{"Case_noBackground", "0xE000ED94"}, Refusal{"Case_alignmentTrap", "0xE000ED14"},
+        Refusal{"Case_byteOfRegister", "reading the system register 0xE000E010 in 1 bytes"},
+        Refusal{"Case_unprivilegedLoad", "unprivileged access (LDRT"},
+        Refusal{"Case_unprivilegedStore", "unprivileged access (LDRT"}));
 
 TEST_F(Cpu, ALineThatStaysHighPendsAgainWhenItsPendingBitIsCleared) {
     m3.cpu.setInterrupt(2, true);
@@ -192,6 +200,16 @@ TEST_F(Cpu, AFaultInTheHardFaultHandlerLocksUpUntilReset) {
     EXPECT_TRUE(m3.cpu.isLockedUp());
     m3.cpu.reset();
     EXPECT_EQ(run("Case_nesting"), "abBA");
+}
+
+// B1.5.5: the lowest bit of the reset vector sets the Thumb state; SP is a multiple of four.
+TEST_F(Cpu, AResetVectorWithoutItsLowestBitFaults) {
+    const uint32_t vectors[] = {m3.cpu.word(0) | 3, m3.cpu.word(4) & ~1u};
+    m3.cpu.writeMemory(0, vectors, sizeof vectors);
+    m3.cpu.reset();
+    EXPECT_EQ(m3.cpu.reg(CortexM3::Msp), vectors[0] & ~3u);
+    m3.run(1000);
+    EXPECT_NE(m3.cpu.lastFault.find("reset vector"), std::string::npos) << m3.cpu.lastFault;
 }
 
 TEST_F(Cpu, TheMpuForbidsWritingToAGuardAndNothingBesides) {

@@ -310,6 +310,20 @@ for value in FAST '"FAST"'; do
 done
 refused "PARAMS: INIT: expected a number such as .*, got '2[*]1'" typed own PARAM:INIT='2*1' \
     write=we wdata=d rdata=q typed.v
+while read -r value words; do
+    refused "PARAMS: INIT: $words, got '$value'" typed own PARAM:INIT="$value" \
+        write=we wdata=d rdata=q typed.v
+done <<'END'
+4'hFF expected a number of at most 4 bits
+8'd256 expected a number of at most 8 bits
+0'h1 expected a number of at most 0 bits
+8'b12 expected digits of base 2
+8'o8 expected digits of base 8
+8'd1F expected digits of base 10
+99999999999 expected a number of at most 32 bits
+-2147483649 expected a number of at most 32 bits
+0x_ expected a number such as .*
+END
 # The same command by make, and a core whose name already exists.
 mkdir -p "$work/tree/ip"
 made() { "$source/tests/regress/make_in.sh" "$source" "$work/tree" build \

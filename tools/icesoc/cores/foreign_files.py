@@ -49,6 +49,24 @@ def has_mark(file):
         return f.read(3) == codecs.BOM_UTF8
 
 
+def check_number(name, value):
+    """Ends the program if a number of Verilog has a digit that its base does not have, or needs
+    more bits than it has. Tools read such numbers differently, and some without a message."""
+    m = re.fullmatch(r"([-+]?)(\d*)'?([sS]?)([bodhBODH]?)([\w?]+)", value)
+    if not m or not (m[4] or m[5].replace("_", "").isdigit()):
+        return  # a text, or a number with a fraction
+    base = {"b": 2, "o": 8, "h": 16}.get(m[4].lower(), 10)
+    digits = (m[5] if m[4] else m[2] + m[5]).replace("_", "").lower()
+    bits = int(m[2]) if m[4] and m[2] else 32
+    known = re.sub("[xz?]", "0", digits)
+    try:
+        number = int(known, base)
+    except ValueError:
+        fail(f"PARAMS: {name}: expected digits of base {base}, got '{value}'")
+    if number > 2**(bits - 1) if m[1] == "-" and not m[4] else number >= 2**bits:
+        fail(f"PARAMS: {name}: expected a number of at most {bits} bits, got '{value}'")
+
+
 def verilog_params(params):
     """Returns parameters with values in Verilog's notation. Each is NAME=value as a user types it:
     a number such as -3 or 8'hFF, a number in C's notation such as 0xFF, or a text with or without
@@ -57,7 +75,7 @@ def verilog_params(params):
     found = []
     for param in params:
         name, _, value = param.partition("=")
-        if m := re.fullmatch(r"0[xX]([0-9a-fA-F_]+)", value):
+        if m := re.fullmatch(r"0[xX]([0-9a-fA-F]+[0-9a-fA-F_]*)", value):
             value = f"{max(32, 4 * len(m[1].replace('_', '')))}'h{m[1]}"
         elif re.fullmatch(r"[A-Za-z_][\w .-]*", value):
             value = f'"{value}"'
@@ -66,6 +84,7 @@ def verilog_params(params):
                               r'|"[^"\\\n]*"', value):
             fail(f"PARAMS: {name}: expected a number such as -3, 8'hFF or 0xFF, or a text, got "
                  f"'{value}'")
+        check_number(name, value)
         found.append(f"{name}={value}")
     return found
 

@@ -12,8 +12,8 @@ namespace {
 
 #include "board_wires.inc"
 
-// The two names of a signal. `end`: the function of the microcontroller, or the pin of the modem;
-// `port`: the port of the chip.
+// Both names of a signal: `end` is the function of the microcontroller's pin, or the name of the
+// modem's pin; `port` is the port of the chip.
 struct Name {
     const char *end, *port;
     unsigned line, count;

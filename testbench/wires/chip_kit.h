@@ -17,7 +17,8 @@ public:
     explicit ChipKit(const std::vector<WireFault>& faults, XBee::Options modem = {});
 
     // Loads the self-test, calls `change`, and runs the self-test until it prints a line that
-    // begins with END or `limitMs` has passed. Returns what it has printed.
+    // begins with END, or until `limitMs` has passed. Returns the text that the self-test has
+    // printed.
     std::string run(const std::string& elf, unsigned limitMs,
                     const std::function<void(Stm32F2&)>& change);
 

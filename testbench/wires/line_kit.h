@@ -19,13 +19,13 @@ public:
     struct Options {
         std::vector<WireFault> faults;
         double fpgaMhz = BOARD_FPGA_HZ / 1e6; // frequency of the FPGA's clock, MHz
-        // true if line_tester is loaded; if not, the FPGA has pull-ups on its pins
+        // true if line_tester is loaded; without it, the FPGA has pull-ups on its pins
         bool isConfigured = true;
     };
     explicit LineKit(const Options& options);
 
     // Loads the self-test into RAM or flash, and runs it until it prints a line that begins with
-    // END or `limitMs` has passed. Returns what it has printed.
+    // END, or until `limitMs` has passed. Returns the text that the self-test has printed.
     std::string run(const std::string& elf, unsigned limitMs);
     // Sets a function that changes the microcontroller before the program runs, for example one of
     // its variables.

@@ -38,7 +38,7 @@ std::string report(const std::string& fault, uint32_t steps, const char* elf = B
     return text;
 }
 
-// Returns "wire kind" of each failure.
+// Returns the name of the wire and the kind of each failure, as in "D3 open".
 std::vector<std::string> failures(const std::string& text) {
     std::vector<std::string> found;
     std::istringstream lines(text);
@@ -154,7 +154,8 @@ TEST(Bringup, NamesALateStrobe) {
         expectNamedWithChip(memory | timing, line + ":late=20ns", line + " late");
 }
 
-// Tests only some of the data and address lines, because a chip takes half a second.
+// Tests only some of the data and address lines, because each test of a board with the chip takes
+// half a second.
 TEST(Bringup, NamesLinesOfTheMemory) {
     for (unsigned line : {0, 7, 8, 15}) {
         const std::string name = "DDR_DQ" + std::to_string(line);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * ice_proxy: reads and writes proxies, and makes changed copies of proxies. * Identity, facet and
- * endpoints are stored in their encoded form, because sending is the most frequent use of a proxy.
+ * ice_proxy: reads and writes proxies, and makes changed copies of proxies.
+ *
+ * Identity, facet and endpoints are stored in their encoded form, because sending is the most
+ * frequent use of a proxy.
  */
 #include "ice_message.h"
 

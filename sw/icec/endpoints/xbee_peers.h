@@ -2,8 +2,9 @@
  *
  * xbee_peers: all peers of the endpoint except the first ground station. It stores their addresses
  * and manages calls to other vehicles, for which this side starts the session. Only xbee_endpoint.c
- * uses these functions. * A program with a single ground station is linked with xbee_one_peer.c
- * instead of xbee_peers.c.
+ * uses these functions.
+ *
+ * A program with a single ground station is linked with xbee_one_peer.c instead of xbee_peers.c.
  */
 #pragma once
 

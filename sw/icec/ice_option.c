@@ -2,8 +2,8 @@
  *
  * ice_option: reads options in endpoint strings, such as "-h host -p 10000 -v 'a b'".
  *
- * As in Ice, the value of an option does not begin with '-', and if an option occurs twice, the last
- * one counts. Quotes must enclose a whole word.
+ * As in Ice, the value of an option does not begin with '-', and if an option occurs twice, the
+ * last one counts. Quotes must enclose a whole word.
  */
 #include "ice_private.h"
 

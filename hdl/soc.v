@@ -59,6 +59,9 @@ module soc #(
     // no FIFO.
     localparam [31:0] NO_READ_FIFO = 1 << MAP_NPI_PORT_FSMC | 1 << MODEM_PORT;
     localparam [PORTS-1:0] READ_FIFO = ~NO_READ_FIFO[PORTS-1:0];
+    // The modem writes single bytes, so its write FIFO stores one lane.
+    localparam [31:0] WRITES_BYTES = 1 << MODEM_PORT;
+    localparam [PORTS-1:0] BYTES = WRITES_BYTES[PORTS-1:0];
 
     // A flip-flop drives the reset of all blocks, so that no path leads from the reset pin through
     // their logic. Otherwise a simulator would have to evaluate this logic at each change of an
@@ -85,7 +88,9 @@ module soc #(
     wire [64*PORTS-1:64] npi_wr_data, npi_rd_data;
     wire [8*PORTS-1:8]   npi_wr_be;
 
-    platform #(.SLOTS(SLOTS), .PORTS(PORTS), .READ_FIFO(READ_FIFO)) u_platform (
+    platform #(
+        .SLOTS(SLOTS), .PORTS(PORTS), .READ_FIFO(READ_FIFO), .BYTES(BYTES)
+    ) u_platform (
         .clk_i(clk_i), .rst_i(rst),
         .slot_valid_o(slot_valid), .slot_write_o(slot_write), .slot_addr_o(slot_addr),
         .slot_wdata_o(slot_wdata), .slot_ready_i(slot_ready), .slot_rdata_i(slot_rdata),

@@ -56,7 +56,7 @@ module table1 #(
     // interrupt to the processor
     output reg         irq_o
 );
-    localparam SLOTS = 2, PORTS = 2, READ_FIFO = 2'b00;
+    localparam SLOTS = 2, PORTS = 2, READ_FIFO = 2'b00, BYTES = 2'b10;
 
     // register bus of all slots
     wire [SLOTS-1:0]     slot_valid, slot_ready, slot_error;
@@ -74,7 +74,9 @@ module table1 #(
     wire [64*PORTS-1:64] npi_wr_data, npi_rd_data;
     wire [8*PORTS-1:8]   npi_wr_be;
 
-    platform #(.SLOTS(SLOTS), .PORTS(PORTS), .READ_FIFO(READ_FIFO)) u_platform (
+    platform #(
+        .SLOTS(SLOTS), .PORTS(PORTS), .READ_FIFO(READ_FIFO), .BYTES(BYTES)
+    ) u_platform (
         .clk_i(clk_i), .rst_i(rst_i),
         .slot_valid_o(slot_valid), .slot_write_o(slot_write), .slot_addr_o(slot_addr),
         .slot_wdata_o(slot_wdata), .slot_ready_i(slot_ready), .slot_rdata_i(slot_rdata),

@@ -82,7 +82,8 @@ function(in_folder variable folder)
   set(${variable} ${ARGN} PARENT_SCOPE)
 endfunction()
 
-in_folder(files cdc cdc_skew.v cdc_bit.v cdc_bus.v cdc_copy.v cdc_pulse.v cdc_reset.v async_fifo.v)
+in_folder(files cdc cdc_skew.v cdc_bit.v cdc_bus.v cdc_copy.v cdc_pending.v cdc_pulse.v
+  cdc_reset.v async_fifo.v)
 icesoc_hdl_core(cdc TOP async_fifo FILES ${files} INCLUDES cdc/cdc_random.vh
   CONSTRAINTS cdc.tcl PURPOSE "Clock-domain crossings, synchronisers, pulses, buses and a FIFO")
 
@@ -91,7 +92,8 @@ in_folder(files bus bus_decoder.v bus_registers.v bus_wrapper.v bus_window.v
 icesoc_hdl_core(bus TOP bus_decoder FILES ${files} INCLUDES bus/slot_ports.vh bus/slot_connect.vh
   DEPENDS cdc PURPOSE "Register bus, its decoder, slots, and adapters to Wishbone and AXI4-Lite")
 
-in_folder(files ddr npi_fifo.v npi_queue.v npi_select.v npi_arbiter.v npi_stream.v)
+in_folder(files ddr npi_fifo.v npi_write_fifo.v npi_queue.v npi_select.v npi_arbiter.v
+  npi_stream.v)
 in_folder(includes ddr shift_order.vh npi_ports.vh memory_ports.vh memory_connect.vh)
 icesoc_hdl_core(npi_arbiter TOP npi_arbiter FILES ${files} INCLUDES ${includes}
   PURPOSE "Arbiter between 64-bit memory ports (NPI)")
@@ -100,7 +102,8 @@ in_folder(files ddr mcb_backend.v memory_mcb.v)
 icesoc_hdl_core(memory_mcb TOP memory_mcb FILES ${files} INCLUDES ddr/mcb_ports.vh
   DEPENDS npi_arbiter PURPOSE "Memory controller of several ports on the Spartan-6 memory block")
 
-in_folder(files fsmc fsmc_post.v fsmc_memory.v fsmc_registers.v fsmc_bridge.v)
+in_folder(files fsmc fsmc_nwait.v fsmc_found.v fsmc_post.v fsmc_memory.v fsmc_registers.v
+  fsmc_bridge.v)
 in_folder(includes ddr shift_order.vh memory_ports.vh)
 icesoc_hdl_core(fsmc_bridge TOP fsmc_bridge FILES ${files} INCLUDES ${includes}
   DEPENDS cdc CONSTRAINTS platform.ucf

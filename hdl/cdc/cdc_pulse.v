@@ -36,5 +36,8 @@ module cdc_pulse (
     end
     assign dst_valid_o     = turned_sync != last;
     assign pending_sync_o  = {turned_sync, last} != {2{earlier}};
-    assign pending_async_o = {turned, turned_sync, last} != {3{earlier}};
+    cdc_pending u_cdc_pending (
+        .turned_i(turned), .turned_sync_i(turned_sync), .last_i(last), .earlier_i(earlier),
+        .pending_o(pending_async_o)
+    );
 endmodule

@@ -17,6 +17,9 @@ module npi_arbiter #(
     // one bit per port: 1 if the port has a read FIFO. A port without a read FIFO must take each
     // word at once; otherwise all ports wait.
     parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}},
+    // one bit per port: the port writes one byte per word and puts it on all eight lanes, so that
+    // its write FIFO needs to store only one lane (npi_write_fifo)
+    parameter [PORTS-1:0] BYTES      = 0,
     parameter             BLOCK_RAM  = 1,  // 1: FIFOs in block RAM; 0: in LUT RAM, which is one
                                            // clock faster
     parameter             ADDR_WIDTH = 27, // width of a byte address, 9..32 (27 for 128 MiB)
@@ -118,12 +121,14 @@ module npi_arbiter #(
         for (p = 0; p < PORTS; p = p + 1) begin : g_port
             localparam [PORT_BITS-1:0] ME = p;
             assign back_at[p] = back_valid && back_port == ME;
-            npi_fifo #(.WIDTH(72), .LOG2(FIFO_LOG2), .BLOCK(BLOCK_RAM)) u_write (
+            npi_write_fifo #(
+                .BYTES(BYTES[p]), .LOG2(FIFO_LOG2), .BLOCK(BLOCK_RAM)
+            ) u_write (
                 .clk_i(clk_i), .rst_i(rst_i || npi_wr_flush_i[p]),
                 .push_i(npi_wr_push_i[p]),
-                .data_i({npi_wr_be_i[8*p +: 8], npi_wr_data_i[64*p +: 64]}),
+                .data_i(npi_wr_data_i[64*p +: 64]), .be_i(npi_wr_be_i[8*p +: 8]),
                 .pop_i(move_at[p] && wr_valid_o && wr_ready_i),
-                .data_o({wr_bes[8*p +: 8], wr_datas[64*p +: 64]}),
+                .data_o(wr_datas[64*p +: 64]), .be_o(wr_bes[8*p +: 8]),
                 .empty_o(npi_wr_empty_o[p]), .full_o(npi_wr_almost_full_o[p])
             );
             if (READ_FIFO[p]) begin : g_fifo
@@ -152,11 +157,15 @@ module npi_arbiter #(
     always @* begin
         wr_data = wr_datas[63:0];
         wr_be   = wr_bes[7:0];
-        for (k = 1; k < PORTS; k = k + 1)
-            if (move_port == k[PORT_BITS-1:0]) begin
-                wr_data = wr_datas[64*k +: 64];
-                wr_be   = wr_bes[8*k +: 8];
+        // Two select signals, each with half of the loads.
+        for (k = 1; k < PORTS; k = k + 1) begin
+            if (move_port == k[PORT_BITS-1:0])
+                wr_data[31:0] = wr_datas[64*k +: 32];
+            if (move_at[k]) begin
+                wr_data[63:32] = wr_datas[64*k+32 +: 32];
+                wr_be          = wr_bes[8*k +: 8];
             end
+        end
     end
     assign wr_valid_o = |(move_at[PORTS-1:0] & ~npi_wr_empty_o);
     assign wr_data_o  = wr_data;

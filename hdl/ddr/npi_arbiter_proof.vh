@@ -32,20 +32,21 @@
     (* hierconn *) wire [4:0]                       \u_queue.f_moved ;
     // words of a request are being transferred; the kind of this request
     (* hierconn *) wire [KIND:0]                    \u_queue.f_moving ;
-    (* hierconn *) wire [(72<<FIFO_LOG2)-1:0]       \g_port[0].u_write.f_words ,
-        \g_port[1].u_write.f_words ;
-    (* hierconn *) wire [X-1:0]                     \g_port[0].u_write.f_indexes ,
-        \g_port[1].u_write.f_indexes ;
+    (* hierconn *) wire [(72<<FIFO_LOG2)-1:0]       \g_port[0].u_write.u_fifo.f_words ,
+        \g_port[1].u_write.u_fifo.f_words ;
+    (* hierconn *) wire [X-1:0]                     \g_port[0].u_write.u_fifo.f_indexes ,
+        \g_port[1].u_write.u_fifo.f_indexes ;
     (* hierconn *) wire [(68<<FIFO_LOG2)-1:0]       \g_port[0].g_fifo.u_read.f_words ,
         \g_port[1].g_fifo.u_read.f_words ;
     (* hierconn *) wire [X-1:0]                     \g_port[0].g_fifo.u_read.f_indexes ,
         \g_port[1].g_fifo.u_read.f_indexes ;
     // write, read
-    wire [2*X-1:0] wr_indexes = {\g_port[1].u_write.f_indexes , \g_port[0].u_write.f_indexes };
+    wire [2*X-1:0] wr_indexes =
+        {\g_port[1].u_write.u_fifo.f_indexes , \g_port[0].u_write.u_fifo.f_indexes };
     wire [2*X-1:0] rd_indexes =
         {\g_port[1].g_fifo.u_read.f_indexes , \g_port[0].g_fifo.u_read.f_indexes };
     wire [2*(72<<FIFO_LOG2)-1:0] wr_words =
-        {\g_port[1].u_write.f_words , \g_port[0].u_write.f_words };
+        {\g_port[1].u_write.u_fifo.f_words , \g_port[0].u_write.u_fifo.f_words };
     wire [2*(68<<FIFO_LOG2)-1:0] rd_words =
         {\g_port[1].g_fifo.u_read.f_words , \g_port[0].g_fifo.u_read.f_words };
     wire [PORTS-1:0] wr_pops   = move_at[PORTS-1:0] & {PORTS{wr_valid_o && wr_ready_i}};

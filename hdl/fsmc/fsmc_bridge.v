@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 //
 // fsmc_bridge: connects the 16-bit FSMC bus of an STM32 to DDR3 (NE1) and to the register bus
-// (NE2); docs/fsmc.md.
+// (NE2). The bus cycles are described in docs/fsmc.md.
 //
 // The bridge supports asynchronous accesses in modes 1, A, 2, B, C and D. NWAIT depends on the pins
-// combinationally. It is low while the data of a read is not available, or a write has no room.
-// Every access waits until the previous write has been transferred to clk_i, and until a previous
-// register write has taken effect. An access that has waited for 2**TIMEOUT_LOG2 clocks is released
-// with access_error_o, so that NWAIT is never low for ever.
+// combinationally. NWAIT is low while the data of a read is not available, or while a write finds
+// no room. Every access waits until the previous write has been transferred to clk_i, and until a
+// previous register write has taken effect. If an access has waited for 2**TIMEOUT_LOG2 clocks, the
+// bridge ends the wait and raises access_error_o, so that NWAIT is never low for ever.
 
 `default_nettype none
 `include "shift_order.vh"
@@ -16,18 +16,18 @@ module fsmc_bridge #(
     parameter MUXED        = 0, // 1: the data pins carry address bits 15..0 while NADV is low
     parameter WAIT_HIGH    = 0, // 1: NWAIT is active high (WAITPOL = 1)
     parameter TIMEOUT_LOG2 = 12,
-    parameter POST_LOG2    = 4, // this and the next: see fsmc_memory
+    parameter POST_LOG2    = 4, // POST_LOG2 and BLOCK_LOG2: see fsmc_memory
     parameter BLOCK_LOG2   = 3
 ) (
     `include "memory_ports.vh"
     input  wire        clk_i,
     input  wire        rst_i,
     // FSMC pins
-    input  wire [24:0] fsmc_a_i,     // halfword address: byte address bits 25..1
+    input  wire [24:0] fsmc_a_i,     // halfword address, which is bits 25..1 of the byte address
     input  wire [15:0] fsmc_d_i,
     output wire [15:0] fsmc_d_o,
     output wire        fsmc_d_oe_o,
-    input  wire [1:0]  fsmc_ne_n_i,  // bit 0 NE1, bit 1 NE2
+    input  wire [1:0]  fsmc_ne_n_i,  // bit 0 is NE1, bit 1 is NE2
     input  wire        fsmc_noe_n_i,
     input  wire        fsmc_nwe_n_i,
     input  wire [1:0]  fsmc_nbl_n_i,
@@ -35,11 +35,14 @@ module fsmc_bridge #(
     output wire        fsmc_nwait_n_o,
     // system slot
     input  wire [5:0]  page_i,
-    output wire        access_error_o, // an access ended with an error, one cycle
-    output wire        error_memory_o, // 1: the error occurred in an access to memory
-    output wire [9:0]  error_addr_o,   // address of the register, if the error is not in memory
+    output wire        access_error_o, // high for one cycle: an access ended with an error
+    // 1: the error occurred in an access to memory; 0: in an access to a register
+    output wire        error_memory_o,
+    // word address of the register, if the access was to a register
+    output wire [9:0]  error_addr_o,
     output wire        error_write_o,
-    output wire        late_o,         // one cycle: an access came too early and ignored NWAIT
+    // high for one cycle: the processor ended an access while NWAIT was active
+    output wire        late_o,
     // register bus
     output wire        bus_valid_o,
     output wire        bus_write_o,
@@ -49,8 +52,8 @@ module fsmc_bridge #(
     input  wire [31:0] bus_rdata_i,
     input  wire        bus_error_i
 );
-    // $error as a module item is SystemVerilog; for Icarus and XST, the name of an undefined module
-    // serves as the message.
+    // Reports a wrong parameter at elaboration. $error as a module item is SystemVerilog, so for
+    // Icarus and XST the name of an undefined module serves as the message.
 `ifdef VERILATOR
     `define TELLS_ERRORS
 `endif
@@ -89,24 +92,29 @@ module fsmc_bridge #(
     wire [1:0]  taken_ne, taken_be, seen;
     wire [24:0] taken_addr, at;
     wire [15:0] taken_data;
-    wire        hit, hit_safe, room, more_room, busy, reg_done, hit_seen, safe_seen, excuse;
+    wire        hit_safe, room, more_room, busy, reg_done, hit_seen, safe_seen, excuse;
     wire [15:0] mem_data, reg_data;
     wire        mem_reading = seen[0];
-    reg         excused_read, excused_write; // the current access was released by the time-out
+    // high after the time-out has ended the wait of the current access
+    reg         excused_read, excused_write;
 
-    // The previous write has been transferred and registers are idle: `clear` for NWAIT,
-    // `clear_sync` for decisions in clk_i.
+    wire        same, found, counts, holds1, holds2; // inputs of the gate that drives NWAIT
+    wire        hit = same && found;
+
+    // Both are high when the previous write has been transferred and no register access is in
+    // progress. `clear` is used for NWAIT, `clear_sync` for decisions in clk_i.
     wire clear      = !wr_async && !busy;
     wire clear_sync = !wr_sync && !busy;
 
     // A write happens when NWE rises while NE is low, as in an SRAM. This edge registers address,
-    // data and byte lanes (the STM32 holds them for one more HCLK). An access that the processor
-    // abandons (NE rises first) therefore writes nothing, and NWE has no minimum high time. `taken`
-    // follows two to three clocks later, for one cycle. The next edge may come when cdc_bus has
-    // copied the write, two clocks plus the skew of the paths later; 33.3 ns leave 13 ns for
-    // delays.
+    // data and byte lanes, which the STM32 holds for one more HCLK. If the processor aborts an
+    // access, NE rises before NWE, and nothing is written. NWE has no minimum high time. `taken`
+    // follows the edge two to three clocks later, for one cycle. The next edge may arrive after
+    // cdc_bus has copied the write, which takes two clocks plus the skew of the paths. The FSMC
+    // needs at least 33.3 ns from edge to edge, so 13 ns are left for delays.
     wire [1:0]  ne = ~fsmc_ne_n_i;
-    // write registered by the edge of NWE; wr_async is high until a clock after taken
+    // write that the last edge of NWE has registered; wr_async is high from this edge until a clock
+    // after `taken`
     wire [44:0] held;
     cdc_bus #(.WIDTH(45)) u_write (
         .src_clk_i(fsmc_nwe_n_i), .src_valid_i(|ne),
@@ -117,16 +125,16 @@ module fsmc_bridge #(
     );
     wire wr_ne2_async = wr_async && held[44];
 
-    // A register read is hidden until the previous write has been transferred; otherwise a late
-    // synchroniser could let the read overtake the write. Memory reads are not hidden, since a
-    // write discards the read buffer.
+    // A register read is not synchronised until the previous write has been transferred; otherwise
+    // a late synchroniser could let the read overtake the write. A memory read does not wait,
+    // because a write discards the read buffer.
     wire [1:0] reads = ne & {!fsmc_noe_n_i && !wr_async, !fsmc_noe_n_i};
     cdc_bit #(.WIDTH(5), .TOGETHER(3)) u_access (
         .clk_i(clk_i),
         .bit_async_i({reads, ne[0] && !fsmc_nwe_n_i, hit && clear, hit_safe && clear}),
         .bit_sync_o({seen, writing, hit_seen, safe_seen})
     );
-    // a clock later than seen
+    // copy of the address, which is valid one clock after `seen`
     cdc_copy #(.WIDTH(25)) u_at (.clk_i(clk_i), .bus_async_i(address), .bus_sync_o(at));
 
     always @(posedge clk_i or posedge fsmc_noe_n_i)
@@ -140,8 +148,9 @@ module fsmc_bridge #(
         else if (excuse)
             excused_write <= 1'b1;
 
-    // ---- Time-out: an access to memory that has waited too long is released, until its strobe
-    // rises; fsmc_registers does this for registers.
+    // ---- Time-out of accesses to memory. After the time-out, excused_read or excused_write ends
+    // the wait of the access, until the strobe of the access rises. fsmc_registers handles the
+    // time-out of accesses to registers.
     localparam PATIENCE = TIMEOUT_LOG2 > 1 ? TIMEOUT_LOG2 : 2;
     `SHIFT_ORDER(after, PATIENCE)
     localparam [PATIENCE-1:0] LAST = 1 << (TIMEOUT_LOG2 - 1);
@@ -161,17 +170,36 @@ module fsmc_bridge #(
         end
     end
 
-    // ---- NWAIT follows NE and NOE: an access counts as a write until NOE falls, so that NWAIT is
-    // valid one address phase before the data phase of a write begins. No access waits while reset
-    // is active, even without a clock. A write that follows one still in transfer needs room for
-    // both, as counted before the first was posted.
-    reg [1:0] room_for_both;
-    always @(posedge clk_i) room_for_both <= {room_for_both[0], more_room};
-    wire write_room = wr_async ? room_for_both[1] : room;
-    wire read_ok  = ne2 ? reg_done : (hit || excused_read) && clear;
-    wire write_ok = ne2 ? clear : !busy && !wr_ne2_async && (write_room || excused_write);
-    wire waits    = (ne1 || ne2) && !rst_i && !(fsmc_noe_n_i ? write_ok : read_ok);
-    assign fsmc_nwait_n_o = (WAIT_HIGH != 0) ^ !waits;
+    // ---- NWAIT depends on NE and NOE. Until NOE falls, an access counts as a write, so that NWAIT
+    // is valid one address phase before the data phase of a write begins. No access waits while
+    // reset is active, even without a clock.
+    //
+    // The processor samples NWAIT asynchronously, so NWAIT must not glitch while the pins are
+    // stable. While they are stable, NWAIT depends on flip-flops, on `hit` and on `wr_async`. The
+    // last two are functions of flip-flops, and do not glitch (fsmc_memory, cdc_pending). If
+    // several of these signals change at one clock edge, they change in the same direction, or have
+    // no effect on the access (fsmc_bridge_proof). The last gate is one LUT.
+    // tests/hdl/fsmc/nwait_test.py simulates the netlist with random delays.
+    //
+    // If the previous write is still in transfer, a write needs room for both; this room was
+    // counted before the previous write was posted. `roomy` is 0 in the clock after a write, until
+    // `room` includes this write. `roomy` therefore does not fall in the clock in which the
+    // transfer ends.
+    reg       roomy;
+    reg [1:0] roomy_for_both;
+    always @(posedge clk_i) begin
+        roomy          <= room && !taken;
+        roomy_for_both <= {roomy_for_both[0], more_room};
+    end
+    wire write_room = (roomy && !wr_async) || roomy_for_both[1];
+    wire write_ok1  = !busy && !wr_ne2_async && (write_room || excused_write);
+    assign holds1 = !rst_i && !(fsmc_noe_n_i ? write_ok1 : excused_read && clear);
+    assign holds2 = ne2 && !rst_i && !(fsmc_noe_n_i ? clear : reg_done);
+    assign counts = !fsmc_noe_n_i && clear; // a hit in the read buffer ends the wait
+    fsmc_nwait #(.WAIT_HIGH(WAIT_HIGH)) u_fsmc_nwait (
+        .ne1_i(ne1), .holds1_i(holds1), .counts_i(counts), .same_i(same), .found_i(found),
+        .holds2_i(holds2), .nwait_n_o(fsmc_nwait_n_o)
+    );
     assign fsmc_d_o       = ne2 ? reg_data : mem_data;
     assign fsmc_d_oe_o    = (ne1 || ne2) && !fsmc_noe_n_i;
 
@@ -200,9 +228,9 @@ module fsmc_bridge #(
         .wr_be_i(taken_be),
         .wr_lost_o(wr_lost), .room_o(room), .more_room_o(more_room),
         .rd_addr_async_i(address), .rd_at_i(at), .rd_used_i(mem_reading && hit_seen),
-        // not during a register access, which may not have been answered yet
+        // A fetch may not begin during a register access, which may not have been answered yet.
         .rd_miss_i(mem_reading && !hit_seen && !wr_sync && !reg_flush && !bus_valid_o),
-        .rd_hit_o(hit), .rd_safe_o(hit_safe), .rd_data_o(mem_data),
+        .rd_same_o(same), .rd_found_o(found), .rd_safe_o(hit_safe), .rd_data_o(mem_data),
         .flush_i(reg_flush), .drop_i(reg_access), .idle_o(mem_idle),
         .npi_addr_o(npi_addr_o), .npi_addr_req_o(npi_addr_req_o), .npi_addr_ack_i(npi_addr_ack_i),
         .npi_rnw_o(npi_rnw_o), .npi_size_o(npi_size_o), .npi_wr_data_o(npi_wr_data_o),
@@ -216,17 +244,18 @@ module fsmc_bridge #(
     assign npi_rd_flush_o = 1'b0;
 
     // ---- Errors
-    reg reading_d, excuse_was; // one clock later, because `excuse` arrives late in its clock
+    reg reading_d, excuse_was; // `excuse` is registered, because it arrives late in its clock
     always @(posedge clk_i) excuse_was <= excuse;
     assign access_error_o = reg_error || reg_error_memory || excuse_was;
     assign error_memory_o = !reg_error;
     assign error_addr_o   = bus_addr_o;
     assign error_write_o  = reg_error ? reg_write : !reading_d;
 
-    // ---- late_o detects a master that ignores NWAIT: a write without room, or a read that ends
-    // although its data was neither safe (rd_safe_o) in the second clock of its address nor valid
-    // for two clocks since. In the first clock the pins may still have changed. Reads of other
-    // addresses may follow one another without a pause that is visible to the clock.
+    // ---- late_o detects a processor that ignores NWAIT. It reports a write without room, and a
+    // read that ended too early. A read is not too early if its data was safe (rd_safe_o) in the
+    // second clock of its address, or has been valid for two clocks since then. The first clock of
+    // an address is not used, because the pins may still have changed. Reads of different addresses
+    // may follow each other without a pause that the clock can detect.
     reg [1:0] at_was, at_before, good;
     reg       second, early;
     wire moved  = at_was != at_before;
@@ -242,6 +271,7 @@ module fsmc_bridge #(
 
     wire unused = &{1'b0, held[43:0], npi_wr_empty_i, npi_wr_almost_full_i, npi_rd_word_i, 1'b0};
 `ifdef COVER_POINTS
+    wire waits = fsmc_nwait_n_o == (WAIT_HIGH != 0);
     read_excused: cover property (@(posedge clk_i) excuse && mem_reading);
     write_excused: cover property (@(posedge clk_i) excuse && !mem_reading);
     does_not_look_at_nwait: cover property (@(posedge clk_i) late_o);

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_bridge_proof: properties at the pins of fsmc_bridge that the processor relies on; for formal
-// verification only.
+// fsmc_bridge_proof: proves the properties at the pins of fsmc_bridge that the processor relies on;
+// for formal verification only.
 //
-// Time advances in steps; clock and pins may change in each, so that every ratio and phase is
-// covered. The memory (fsmc_memory, which is proven separately) and the slave of the register bus
-// are unconstrained: they answer at any time with any value, or never.
+// Time advances in steps. The clock and the pins may change in each step, so that every ratio and
+// phase is covered. The memory (fsmc_memory, which is proven separately) and the slave of the
+// register bus are unconstrained: they may answer at any time with any value, or never.
 //
 // - NWAIT ends within two time-outs plus the delay of the synchronisers.
 // - Once NWAIT is inactive during a register access, it stays inactive and the data stays stable.
-// - A register write proceeds only when the previous write is transferred and registers are idle.
-//   The time-out of the bridge releases only accesses to memory, however short it is.
-// WORDS = 1 proves instead that 32-bit register words are atomic (fsmc_words_proof). With LATE the
-// proof is bounded; without it the proof is inductive, with an invariant that counts the
-// synchronisers' clocks.
+// - NWAIT does not glitch while the pins are stable: g_nwait.
+// - A register write continues only after the previous write has been transferred and no register
+//   access is in progress. The time-out of the bridge ends only the waits of accesses to memory,
+//   however short the time-out is.
+// With WORDS = 1 the module proves instead that 32-bit register words are atomic
+// (fsmc_words_proof). With LATE = 1 this proof is bounded. With LATE = 0 it is inductive, and its
+// invariant counts the clocks of the synchronisers.
 
 `default_nettype none
 
@@ -27,12 +29,13 @@ module fsmc_bridge_proof #(
     parameter LATE         = WORDS == 0
 ) (
     input wire        clk_i,
-    // pins: addresses are 8 halfwords, and one beyond the slots; a halfword has two bits of data
+    // pins: the address selects one of 8 halfwords or, with beyond_i, a halfword after the last
+    // slot; a halfword has two bits of data
     input wire        ne1_i,
     input wire        ne2_i,
     input wire        noe_n_i,
     input wire        nwe_n_i,
-    input wire        nadv_n_i, // used with MUXED
+    input wire        nadv_n_i, // used only if MUXED is 1
     input wire        beyond_i,
     input wire [2:0]  a_i,
     input wire [1:0]  d_i,
@@ -69,8 +72,16 @@ module fsmc_bridge_proof #(
         .npi_rd_data_i(64'd0), .npi_rd_word_i(4'd0), .npi_rd_empty_i(1'b1), .npi_init_done_i(1'b1)
     );
 
-    // Registers of the bridge: flatten joins these wires with the signals of the same names.
-    (* hierconn *) wire \u_fsmc_bridge.clear , \u_fsmc_bridge.excuse ;
+    // Internal signals of the bridge. The command flatten joins these wires with the signals of the
+    // same names.
+    (* hierconn *) wire \u_fsmc_bridge.clear , \u_fsmc_bridge.excuse , \u_fsmc_bridge.same ,
+        \u_fsmc_bridge.found , \u_fsmc_bridge.wr_async , \u_fsmc_bridge.busy ,
+        \u_fsmc_bridge.roomy , \u_fsmc_bridge.excused_read , \u_fsmc_bridge.excused_write ,
+        \u_fsmc_bridge.reg_access , \u_fsmc_bridge.taken , \u_fsmc_bridge.room ,
+        \u_fsmc_bridge.more_room ,
+        \u_fsmc_bridge.u_fsmc_registers.done_ne ,
+        \u_fsmc_bridge.u_fsmc_registers.done_noe ;
+    (* hierconn *) wire [1:0] \u_fsmc_bridge.roomy_for_both ;
     (* hierconn *) wire [1:0] \u_fsmc_bridge.taken_ne ;
     (* hierconn *) wire [24:0] \u_fsmc_bridge.taken_addr ;
     (* hierconn *) wire [15:0] \u_fsmc_bridge.taken_data ;
@@ -102,38 +113,39 @@ module fsmc_bridge_proof #(
     assign \u_fsmc_bridge.u_fsmc_registers.u_done.late = late_done && LATE != 0;
     assign \u_fsmc_bridge.u_access.late = {5{late_access && LATE != 0}};
     wire clear = \u_fsmc_bridge.clear , excuse = \u_fsmc_bridge.excuse ;
-    // `turns` is the toggle of a write on its way through cdc_pulse: first the source's flip-flop,
-    // then the flip-flops in clk_i up to the last.
+    // `turns` contains the flip-flops through which the toggle of a write moves in cdc_pulse: first
+    // the flip-flop of the source, then those in clk_i, in order.
     wire [4:0]  turns = {\u_fsmc_bridge.u_write.u_cdc_pulse.turned ,
         \u_fsmc_bridge.u_write.u_cdc_pulse.u_cdc_bit.bit_meta ,
         \u_fsmc_bridge.u_write.u_cdc_pulse.turned_sync ,
         \u_fsmc_bridge.u_write.u_cdc_pulse.last ,
         \u_fsmc_bridge.u_write.u_cdc_pulse.earlier };
-    wire [44:0] taken = \u_fsmc_bridge.held ; // registered by NWE's edge
+    wire [44:0] taken = \u_fsmc_bridge.held ; // write that the last edge of NWE has registered
     wire [42:0] copy  =
         {\u_fsmc_bridge.taken_ne , \u_fsmc_bridge.taken_addr , \u_fsmc_bridge.taken_data };
 
-    // ---- Pins in the previous step, and the history of the access
+    // ---- Pins in the previous step, and what has happened in the current access
     reg        past = 1'b0, was_clk = 1'b1, was_ne1 = 1'b0, was_ne2 = 1'b0, was_noe = 1'b1,
         was_nwe = 1'b1;
     reg        was_beyond = 1'b0, was_nwait = 1'b1;
     reg [2:0]  was_a = 3'd0;
     reg [1:0]  was_d = 2'd0, was_nbl = 2'd0, was_out = 2'd0;
-    reg [2:0]  resets = 3'd0; // clocks of reset so far, up to 2
-    reg        let_go = 1'b0; // NWAIT has been seen inactive in this access
+    reg [2:0]  resets = 3'd0; // clocks of reset so far, counted up to 2
+    reg        let_go = 1'b0; // NWAIT was inactive in an earlier step of this access
     reg [2:0]  rest = 3'd0;   // clocks since the last edge of NWE, or since an access was aborted
-    reg [1:0]  calm = 2'd0;   // clocks since NWAIT was seen inactive
-    // clocks in which a synchroniser is sure to see a level
+    reg [1:0]  calm = 2'd0;   // clocks since NWAIT became inactive in this access
+    // number of clocks after which a synchroniser has certainly sampled a stable level
     localparam [1:0] CALM = LATE != 0 ? 2'd3 : 2'd2;
-    reg        latched = 1'b0; // NADV has been low in this access
-    reg        held = 1'b0;   // the strobe of a write has risen, NE has not yet
+    reg        latched = 1'b0; // NADV was low in an earlier step of this access
+    reg        held = 1'b0;   // the strobe of a write has risen, and NE has not risen yet
     reg        given_up = 1'b0; // the previous access was aborted
     wire clock    = past && clk_i && !was_clk;
     wire selected = ne1_i || ne2_i, was_selected = was_ne1 || was_ne2;
     wire strobe   = !noe_n_i || !nwe_n_i, was_strobe = !was_noe || !was_nwe;
     wire access   = selected && strobe, was_access = was_selected && was_strobe;
     wire same     = {ne1_i, ne2_i, beyond_i, a_i} == {was_ne1, was_ne2, was_beyond, was_a};
-    wire ended    = was_access && !strobe && selected; // the strobe rises before NE, as in a write
+    // the strobe rises before NE, as at the end of a write
+    wire ended    = was_access && !strobe && selected;
     wire wrote    = was_access && !was_nwe && ended;
     wire gives_up = was_access && !selected && (was_noe || calm != CALM);
 
@@ -163,11 +175,11 @@ module fsmc_bridge_proof #(
     end
 
     always @* begin
-        // Reset lasts some clocks, with the pins idle.
+        // Reset lasts two clocks. Meanwhile the pins are idle.
         assume (past || (clk_i && !selected));
         assume (!rst || (!selected && !strobe));
-        // The processor uses one bank and one strobe; strobes fall while selected or together with
-        // NE; the address is stable.
+        // The processor uses one bank and one strobe at a time. A strobe falls while its bank is
+        // selected, or in the same step as NE. The address is stable.
         assume (!(ne1_i && ne2_i) && (noe_n_i || nwe_n_i));
         assume (!(was_selected && selected) || same);
         assume (!(was_access && strobe) || {noe_n_i, nwe_n_i} == {was_noe, was_nwe});
@@ -177,15 +189,16 @@ module fsmc_bridge_proof #(
         // A multiplexed address is latched before the strobe falls.
         assume (!strobe || nadv_n_i);
         assume (MUXED == 0 || !access || latched);
-        // A strobe rises when NWAIT was inactive, or after NE: then the access is aborted, and the
-        // strobe is inactive for some clocks.
+        // A write strobe may rise only after NWAIT was inactive. If NE rises first, the access is
+        // aborted, and the strobe stays inactive for some clocks.
         assume (!wrote || let_go);
         assume (!(was_strobe && !was_selected) || !strobe || !selected);
         assume (!held || !strobe);
-        // a read ends with NE and NOE together, at least two clocks after NWAIT (FSMC: 4 HCLK)
+        // In a read, NE and NOE rise together, at least two clocks after NWAIT became inactive (4
+        // HCLK in the FSMC).
         assume (!ended || wrote);
-        // Edges of NWE are at least three clocks apart (fsmc_bridge), and four after an aborted
-        // access.
+        // Two edges of NWE are at least three clocks apart (fsmc_bridge). After an aborted access,
+        // the distance is at least four clocks.
         assume (!wrote || rest >= 3'd3);
         assume (!(given_up && access) || rest >= 3'd4);
     end
@@ -202,12 +215,71 @@ module fsmc_bridge_proof #(
                     waited <= waited + 8'd1;
                 assert (waited < BOUND);
             end
-            reg [2:0] since_ne1 = 3'd7; // clocks since an access to memory (a late synchroniser)
+            // clocks since the last access to memory, because a synchroniser may be late
+            reg [2:0] since_ne1 = 3'd7;
             always @(posedge step)
                 if (ne1_i && strobe)
                     since_ne1 <= 3'd0;
                 else if (clock && since_ne1 != 3'd7)
                     since_ne1 <= since_ne1 + 3'd1;
+            // While the pins are stable, NWAIT is a monotonic function of these levels: a level
+            // that is 1 contributes to the end of the wait, or has no effect. Several levels may
+            // change at one clock edge, and their changes arrive in any order. NWAIT does not
+            // glitch if all of them rise, or all of them fall. It also does not glitch if the
+            // rising levels alone and the falling levels alone lead to the same NWAIT.
+            wire [2:0] rooms = {\u_fsmc_bridge.roomy && !\u_fsmc_bridge.wr_async ,
+                \u_fsmc_bridge.roomy_for_both [1], \u_fsmc_bridge.excused_write };
+            wire [7:0] levels = {\u_fsmc_bridge.same && \u_fsmc_bridge.found ,
+                \u_fsmc_bridge.excused_read ,
+                !\u_fsmc_bridge.wr_async , !(\u_fsmc_bridge.wr_async && taken[44]),
+                !\u_fsmc_bridge.busy , |rooms,
+                \u_fsmc_bridge.u_fsmc_registers.done_ne ,
+                \u_fsmc_bridge.u_fsmc_registers.done_noe };
+            reg  [7:0] was_levels = 8'd0;
+            reg  [2:0] was_rooms = 3'd0;
+            reg        was_rst = 1'b1, was_drops = 1'b0, was_writes = 1'b0, was_room = 1'b0,
+                was_more = 1'b0, dropped = 1'b0;
+            function ends_wait(input [7:0] l, input ne2, input noe_n);
+                ends_wait = noe_n ? (ne2 ? l[5] && l[3] : l[4] && l[3] && l[2]) :
+                            ne2 ? l[1] && l[0] : (l[7] || l[6]) && l[5] && l[3];
+            endfunction
+            wire [7:0] both = levels & was_levels, either = levels | was_levels;
+            // the levels that have an effect on this access
+            wire [7:0] mask = noe_n_i ? (ne2_i ? 8'b00101000 : 8'b00011100) :
+                              ne2_i ? 8'b00000011 : 8'b11101000;
+            wire [7:0] rise = levels & ~was_levels & mask, fall = was_levels & ~levels & mask;
+            // an access that was in progress in the previous step, with the same pins
+            wire still = past && !rst && !was_rst && access && was_access && same &&
+                {noe_n_i, nwe_n_i} == {was_noe, was_nwe};
+            always @(posedge step) begin
+                {was_levels, was_rooms, was_rst} <= {levels, rooms, rst};
+                // These assumptions are proven in fsmc_memory: while the address is stable, only a
+                // write or a register access discards data. They are proven in fsmc_post as well:
+                // only a write uses room, and if there was room for three halfwords, there is room
+                // for two in the next clock.
+                was_writes <= \u_fsmc_bridge.taken && \u_fsmc_bridge.taken_ne [0];
+                was_drops  <= \u_fsmc_bridge.reg_access || \u_fsmc_bridge.taken ;
+                was_room   <= \u_fsmc_bridge.room ;
+                was_more   <= \u_fsmc_bridge.more_room ;
+                assume (!still || !(was_levels[7] && !levels[7]) || was_drops);
+                if (clock)
+                    dropped <= was_drops;
+                assume (!levels[7] || !(clock ? was_drops : dropped));
+                assume (!was_room || \u_fsmc_bridge.room || (clock && was_writes));
+                assume (!was_more || \u_fsmc_bridge.more_room || (clock && was_writes));
+                assume (\u_fsmc_bridge.room || !(was_more || \u_fsmc_bridge.more_room ));
+            end
+            always @* if (past) begin
+                assert (rst || !selected || nwait_n == ends_wait(levels, ne2_i, noe_n_i));
+                // The OR of `rooms` does not glitch, for the same reason.
+                if (still && ne1_i && noe_n_i)
+                    assert ((rooms & ~was_rooms) == 3'd0 || (was_rooms & ~rooms) == 3'd0 ||
+                            (rooms & was_rooms) != 3'd0);
+                if (still)
+                    assert (rise == 8'd0 || fall == 8'd0 || ends_wait(both, ne2_i, noe_n_i) ==
+                            ends_wait(either, ne2_i, noe_n_i));
+                cover (still && !was_nwait && nwait_n && !noe_n_i && ne1_i);
+            end
             always @(posedge step) if (past) begin
                 if (ne2_i && access && let_go)
                     assert (nwait_n);

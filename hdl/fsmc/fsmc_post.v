@@ -1,38 +1,41 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_post: merges halfword writes into words of four, pushes closed words to the memory port and
-// queues their addresses.
+// fsmc_post: merges halfword writes into words of four halfwords, pushes complete words into the
+// write FIFO of the memory port, and queues their addresses.
 //
-// A halfword that belongs to the open word is merged into it. A word is closed when it is complete,
-// when a write to another word arrives, or by flush_i. The data then goes into the write FIFO of
-// the port, while the address waits here for its request. Only one word is therefore in flip-flops;
-// the others are in the RAM of the FIFO.
+// A halfword that belongs to the open word is merged into this word. A word is closed when it is
+// complete, when a write to another word arrives, or if flush_i is high. Its data then moves into
+// the write FIFO of the port, while its address waits in this module for the request. Therefore
+// only the open word occupies flip-flops; the closed words are in the RAM of the FIFO.
 
 `default_nettype none
 
 module fsmc_post #(
     parameter ADDR_BITS = 25, // width of a halfword address
     parameter WIDTH     = 16, // width of a halfword
-    // closed words that can wait: 2**LOG2 - 1, at most the depth of the port's FIFO
+    // number of closed words that can wait: 2**LOG2 - 1, which must not exceed the depth of the
+    // FIFO
     parameter LOG2      = 4
 ) (
     input  wire                 clk_i,
     input  wire                 rst_i,
-    // writes: one cycle each
+    // writes: one per cycle of wr_i
     input  wire                 wr_i,
     input  wire [ADDR_BITS-1:0] wr_addr_i, // halfword address
     input  wire [WIDTH-1:0]     wr_data_i,
     input  wire [1:0]           wr_be_i,
-    output wire                 wr_lost_o, // high in the cycle of a wr_i without room
+    // high in the cycle of a write that is lost, because there is no room for it
+    output wire                 wr_lost_o,
     output wire                 room_o,    // room for at least two halfwords
     output wire                 more_room_o, // room for at least three halfwords
     input  wire                 flush_i,
-    output wire                 idle_o,    // no word is open and none waits
-    // a word is closed
-    output wire                 push_o,    // high for one cycle
+    output wire                 idle_o,    // no word is open, and no closed word waits
+    // write FIFO of the port
+    // high for one cycle: the word is closed and its data moves to the FIFO
+    output wire                 push_o,
     output reg  [4*WIDTH-1:0]   push_data_o,
     output wire [7:0]           push_be_o,
-    // oldest closed word
+    // closed word that has waited longest
     output wire                 word_valid_o,
     output wire [ADDR_BITS-3:0] word_addr_o,
     input  wire                 word_taken_i
@@ -40,8 +43,8 @@ module fsmc_post #(
     localparam WORD = ADDR_BITS - 2;
 
     reg [WORD-1:0] addrs [0:(1<<LOG2)-1];
-    // `count` closed words start at `head`. The initial value prevents Yosys from duplicating the
-    // register head (as in npi_queue).
+    // The `count` entries that start at `head` are the addresses of the closed words. The initial
+    // value prevents Yosys from duplicating the register head (as in npi_queue).
     reg [LOG2-1:0] head = 0, count;
     reg            open, none; // none: count == 0
     reg [WORD-1:0] open_addr;
@@ -49,12 +52,12 @@ module fsmc_post #(
 
     wire       joins = open_addr == wr_addr_i[ADDR_BITS-1:2];
     wire [LOG2-1:0] tail = head + count;
-    wire full   = &count; // no room for another closed word, so the open one stays open
+    wire full   = &count; // no further word can be closed, so the open word stays open
     wire close  = open && !full && (&open_be || flush_i || (wr_i && !joins));
     wire accept = wr_i && !(full && open && !joins);
 
     assign wr_lost_o    = wr_i && !accept;
-    // The open word counts as closed, so that room only shrinks with a write.
+    // The open word is counted as a closed word, so that room becomes smaller only by a write.
     assign room_o       = !(&count[LOG2-1:1] || (open && count == (1 << LOG2) - 3));
     localparam [LOG2-1:0] LOW = 3;
     assign more_room_o  = !(&(count | LOW) && (count[0] || count[1] || open));
@@ -80,7 +83,8 @@ module fsmc_post #(
         if (close)
             addrs[tail] <= open_addr;
         if (close != word_taken_i)
-            count <= word_taken_i ? count - 1'b1 : count + 1'b1; // `close` arrives late
+            // the adder does not depend on `close`, which arrives late
+            count <= word_taken_i ? count - 1'b1 : count + 1'b1;
         if (close || word_taken_i)
             none <= !close && count == 1;
         if (close || accept)
@@ -99,17 +103,19 @@ module fsmc_post #(
     end
 
 `ifdef FORMAL
-    // Every accepted halfword reaches the memory, in order. `place` is the halfword under
-    // observation, which the prover chooses. Other masters may write it while nothing waits.
+    // Proves that every accepted halfword reaches the memory, in order. `place` is the address of
+    // the halfword under observation, which the prover chooses. Other masters may write this
+    // halfword while no word of this module waits.
     (* anyconst *) reg [ADDR_BITS-1:0] place;
     (* anyseq *) reg foreign;
     (* anyseq *) reg [WIDTH-1:0] foreign_data;
-    reg [WIDTH-1:0] memory, newest; // value at `place`: in memory; written last
+    // values of the halfword at `place`: in memory, and written last
+    reg [WIDTH-1:0] memory, newest;
     localparam HALF = WIDTH / 2, DEPTH = 1 << LOG2;
     reg past = 1'b0;
     wire [1:0] place_lane = place[1:0];
-    // The model of the port's write FIFO stores, for each word, the halfword under observation and
-    // its byte enables.
+    // Model of the write FIFO of the port. For each word it stores the halfword under observation
+    // and the byte enables of this halfword.
     reg [WIDTH+1:0] fifo [0:DEPTH-1];
     wire [WIDTH+1:0] open_half =
         {push_be_o[2*place_lane +: 2], push_data_o[WIDTH*place_lane +: WIDTH]};
@@ -117,8 +123,8 @@ module fsmc_post #(
         if (push_o)
             fifo[tail] <= open_half;
 
-    // `after` is the memory's value after each waiting word has been written, oldest first; the
-    // open word is the last.
+    // Part n of `after` is the value that the halfword will have in memory when the n oldest
+    // waiting words have been written. The open word is the last of them.
     wire [WIDTH*(DEPTH+1)-1:0] after;
     assign after[WIDTH-1:0] = memory;
     genvar q;
@@ -170,13 +176,20 @@ module fsmc_post #(
 
         if (past && !rst_i) begin
             assert (final_value == newest);
-            // Two writes may arrive before the processor can see the lack of room.
+            // Two writes may arrive before the processor can react to the lack of room.
             assert (!wr_lost_o || !$past(room_o));
-            assert (!(wr_lost_o && more)); // the same for three writes
+            // After room for three halfwords, three writes may arrive.
+            assert (!(wr_lost_o && more));
+            // Only a write uses room. If there was room for three halfwords, there is room for two
+            // after a write.
+            assert (room_o || !$past(room_o && !wr_i));
+            assert (more_room_o || !$past(more_room_o && !wr_i));
+            assert (room_o || !(more_room_o || $past(more_room_o)));
             assert (none == (count == 0));
-            // A complete word does not wait for another word or a flush.
+            // A complete word is closed at once; it does not wait for a write to another word, or
+            // for a flush.
             assert (push_o || !(open && push_be_o == 8'hFF && count != DEPTH - 1));
-            // The oldest word is stable until it is taken.
+            // The word that has waited longest is stable until it is taken.
             if ($past(word_valid_o && !word_taken_i && !rst_i))
                 assert (word_valid_o && $stable(word_addr_o));
         end

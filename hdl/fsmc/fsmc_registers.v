@@ -1,40 +1,45 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_registers: reads and writes 32-bit words of the register bus in two 16-bit halves, low half
-// first; each word is atomic.
+// fsmc_registers: transfers 32-bit words of the register bus in two 16-bit halves, low half first.
+// Each word is atomic.
 //
-// A read of the low half reads the word and stores its high half for the next read. A write of the
-// low half is stored, and a write of the high half writes the word. A high half that is read alone
-// is read again; written alone it is an error. Writes are posted: busy_o is high from the cycle
-// after wr_i until the word has been written, and every other access waits for that. All memory
-// writes are flushed before a transfer. expired_i ends the wait for a slave with an error; a memory
-// that does not take the writes in time is reported, and the transfer continues.
+// A read of the low half transfers the word, and stores its high half for the next read. A write of
+// the low half is only stored; the write of the high half that follows transfers the word. If a
+// high half is read without its low half, the word is transferred again. A high half that is
+// written without its low half is an error. Writes are posted: busy_o is high from the cycle after
+// wr_i until the word has been written, and every other access waits until busy_o is low. All
+// memory writes are flushed before a transfer. expired_i ends the wait for a slave with an error.
+// If the memory does not accept the writes in time, an error is reported, and the transfer
+// continues.
 
 `default_nettype none
 
 module fsmc_registers (
     input  wire        clk_i,
     input  wire        rst_i,
-    // writes: one cycle; address and data stay until the next
+    // writes: wr_i is high for one cycle; address and data are stable until the next write
     input  wire        wr_i,
     input  wire [24:0] wr_addr_i, // halfword address
     input  wire [15:0] wr_data_i,
-    // reads: held until the pin ends the access
+    // reads: reading_i is high until the access ends at the pins
     input  wire        reading_i,
     input  wire [24:0] rd_addr_i,
-    input  wire        rd_high_async_i, // pins: the high half is being read
-    input  wire        ne_n_async_i,    // pins: either one high ends the access
+    input  wire        rd_high_async_i, // pin: the processor reads the high half
+    input  wire        ne_n_async_i,    // pins: the access ends when one of them is high
     input  wire        noe_n_async_i,
-    output wire        rd_done_o, // rd_data_o is the data of this access; falls with the access
+    // rd_data_o is the data of this access; low again when the access ends
+    output wire        rd_done_o,
     output wire [15:0] rd_data_o,
-    // time-out: the bridge counts while busy, from zero with each cycle of restart_o
+    // time-out: the bridge counts clocks while busy_o is high, and starts from zero when restart_o
+    // is high
     output wire        restart_o,
     input  wire        expired_i,
-    // order with memory
+    // order of registers and memory: flush_o requests that all memory writes are completed; idle_i
+    // is high when they are
     output wire        busy_o,
     output wire        flush_o,
     input  wire        idle_i,
-    // errors, one cycle
+    // errors: high for one cycle
     output reg         error_o,
     output reg         error_memory_o,
     output wire        error_write_o,
@@ -47,42 +52,48 @@ module fsmc_registers (
     input  wire [31:0] bus_rdata_i,
     input  wire        bus_error_i
 );
-    // At most one of these is active: flushing, until memory has taken all posted writes;
-    // bus_valid_o, until the slave answers; answering, until the processor ends its read. Without
-    // them, and without give, the module is idle.
-    reg        flushing, answering;
-    reg [31:0] word;       // word read last
-    reg [15:0] low;        // low half written last
-    // the high half of bus_addr_o's word is stored from a read; the low half from a write
+    // At most one of these four flags is high. flushing: the memory has not yet taken all posted
+    // writes. bus_valid_o: the slave has not answered yet. give: for one clock, the answer is
+    // ready. answering: the processor has not ended its read yet. busy is the OR of the four; it is
+    // a separate flip-flop, because NWAIT depends on it.
+    reg        flushing, answering, busy;
+    reg [31:0] word;       // word that was read last
+    reg [15:0] low;        // low half that was written last
+    // half_read: `word` contains the high half of the word at bus_addr_o, for the next read.
+    // half_write: `low` contains its low half, for the next write.
     reg        half_read, half_write;
-    reg        asked_high; // this read is of the high half, whatever the pins say now
-    reg        given_up;   // the read has ended early; its answer is dropped
+    // the current transfer is for a read of the high half, even if the pins have changed since
+    reg        asked_high;
+    reg        given_up;   // the processor has ended the read early, so the answer is discarded
     reg        give, seen, done_ne, done_noe;
     wire       done_sync;
 
-    wire idle     = !flushing && !bus_valid_o && !give && !answering;
+    wire idle     = !busy;
     wire begins   = idle && (wr_i || reading_i);
     wire high     = wr_i ? wr_addr_i[0] : rd_addr_i[0];
     wire in_range = wr_i ? wr_addr_i[24:11] == 14'd0 : rd_addr_i[24:11] == 14'd0;
     wire [9:0] addr = wr_i ? wr_addr_i[10:1] : rd_addr_i[10:1];
     wire same     = in_range && addr == bus_addr_o;
-    wire keep     = wr_i && !high && in_range;           // a low half to be written
-    wire kept     = !wr_i && high && half_read && same;  // a stored high half
+    // this write is of a low half, which is only stored
+    wire keep     = wr_i && !high && in_range;
+    // this read is of the high half that is stored
+    wire kept     = !wr_i && high && half_read && same;
     wire wrong    = !in_range || (wr_i && !(half_write && same));
     wire transfer = begins && !keep && !kept && !wrong;
-    wire at_once  = begins && !wr_i && (kept || wrong);  // a read without a transfer
+    wire at_once  = begins && !wr_i && (kept || wrong);  // this read is answered without a transfer
     wire flushed  = flushing && (idle_i || expired_i);
     wire ends     = bus_valid_o && (bus_ready_i || expired_i);
+    wire forgets  = answering && (given_up || (seen && !done_sync));
 
     assign rd_data_o     = rd_high_async_i ? word[31:16] : word[15:0];
-    assign busy_o        = !idle;
+    assign busy_o        = busy;
     assign restart_o     = idle || flushed;
     assign flush_o       = flushing;
     assign bus_wdata_o   = {wr_data_i, low};
     assign error_write_o = bus_write_o;
 
-    // The clock sets these flip-flops and the pins clear them, because the next read may begin a
-    // few nanoseconds later.
+    // The clock sets these flip-flops. The pins clear them asynchronously, because the next read
+    // may begin a few nanoseconds later.
     always @(posedge clk_i or posedge ne_n_async_i)
         if (ne_n_async_i)
             done_ne <= 1'b0;
@@ -115,7 +126,7 @@ module fsmc_registers (
             low <= wr_data_i;
         if (ends && !bus_write_o)
             word <= bus_rdata_i;
-        // directly, not through `wrong`: a short path to 32 resets
+        // Repeats a part of `wrong`, because the path to the resets of 32 flip-flops must be short.
         if (idle && reading_i && |rd_addr_i[24:11])
             word <= 32'd0;
 
@@ -123,17 +134,20 @@ module fsmc_registers (
             flushing <= transfer;
         if (flushed || ends)
             bus_valid_o <= flushed;
-        if (give || (answering && (given_up || (seen && !done_sync))))
+        if (give || forgets)
             answering <= give;
+        if (begins || forgets || (ends && bus_write_o))
+            busy <= transfer || at_once;
 
-        // A write while busy, from a master that ignores NWAIT, is lost and reported: the word in
-        // progress may get its data.
+        // If the processor ignores NWAIT and writes while busy_o is high, the write is lost, and an
+        // error is reported. The data of this write may then be part of the word in progress.
         error_o <= (begins && !keep && !kept && wrong) || (ends && (bus_error_i || !bus_ready_i)) ||
                    (wr_i && !idle);
         error_memory_o <= flushing && expired_i && !idle_i;
 
         if (rst_i) begin
             flushing    <= 1'b0;
+            busy        <= 1'b0;
             bus_valid_o <= 1'b0;
             answering   <= 1'b0;
             give        <= 1'b0;
@@ -145,28 +159,28 @@ module fsmc_registers (
     end
 
 `ifdef FORMAL
-    // An access makes at most one transfer, of a whole word.
-    // A hung slave is abandoned as soon as expired_i is high, which bus_rules allows with PATIENCE
-    // = 1.
+    // Proves that an access makes at most one transfer, of a whole word. A slave that does not
+    // answer is abandoned as soon as expired_i is high, which bus_rules allows if PATIENCE is 1.
     bus_rules #(.MASTER(1), .PATIENCE(1)) u_bus_rules (
         .clk_i(clk_i), .rst_i(rst_i), .valid_i(bus_valid_o), .write_i(bus_write_o),
         .addr_i(bus_addr_o), .wdata_i(bus_wdata_o), .ready_i(bus_ready_i), .rdata_i(bus_rdata_i),
         .error_i(bus_error_i)
     );
     reg        past = 1'b0;
-    reg [3:0]  patience;  // time-out count, shorter than in the bridge
-    reg [4:0]  stuck;     // clocks of this access without an answer
-    reg [31:0] last_read; // the last word from the bus
-    reg [15:0] last_low;  // low half written last
-    reg        low_word;  // the low half of bus_addr_o's word was the last write
-    reg        low_read;  // the access begun last reads a low half
+    reg [3:0]  patience;  // count of the time-out, which is shorter than in the bridge
+    reg [4:0]  stuck;     // clocks for which the current access has waited for an answer
+    reg [31:0] last_read; // word that the bus returned last
+    reg [15:0] last_low;  // low half that was written last
+    reg        low_word;  // the last access was a write of the low half of the word at bus_addr_o
+    reg        low_read;  // the last access that began was a read of a low half
     reg        was_busy = 1'b0;
     reg [40:0] write_was;
     always @* begin
-        // NWAIT holds back the next write and its data until the previous one is done.
+        // NWAIT prevents the next write, and a change of its data, until the previous write is
+        // finished.
         assume (!(busy_o && wr_i));
         assume (!(was_busy && busy_o) || write_was == {wr_addr_i, wr_data_i});
-        // Time-outs as the bridge counts them.
+        // The time-out is counted as in the bridge.
         assume (expired_i == patience[3]);
     end
     always @(posedge clk_i) begin
@@ -189,16 +203,16 @@ module fsmc_registers (
             low_read <= !wr_i && !rd_addr_i[0];
 
         if (past && !rst_i) begin
-            // An access makes at most one transfer at a time, and no transfer happens without an
+            // An access makes at most one transfer at a time. A transfer happens only for an
             // access.
             assert ({2'd0, flushing} + {2'd0, bus_valid_o} + {2'd0, give} +
-                    {2'd0, answering} <= 3'd1);
+                    {2'd0, answering} == {2'd0, busy});
             if (bus_valid_o && !$past(bus_valid_o))
                 assert ($past(flushing));
             if (flushing && !$past(flushing))
                 assert ($past(idle && (wr_i || reading_i)));
-            // Words are atomic: a stored high half belongs to the word read last, and a written
-            // word has the low half of the previous write.
+            // Words are atomic: the stored high half belongs to the word that was read last, and a
+            // word that is written contains the low half of the previous write.
             assert (!half_read || (word == last_read && low_read));
             assert (!half_read || $past(half_read) || $past(reading_i));
             assert (half_write == low_word);
@@ -207,15 +221,15 @@ module fsmc_registers (
             assert (!half_write || low == last_low);
             if ((flushing || bus_valid_o) && bus_write_o)
                 assert (low == last_low);
-            // Waiting ends after two time-outs and the steps between them.
+            // An access waits for at most two time-outs, plus the clocks between them.
             assert (!flushing || stuck <= patience);
             assert (!bus_valid_o || stuck <= patience + 5'd9);
             assert (stuck <= 5'd18);
-            // Memory writes are flushed first, unless the memory hangs.
+            // Memory writes are flushed before a transfer, unless the memory does not answer.
             if (bus_valid_o && !$past(bus_valid_o))
                 assert ($past(idle_i) || $past(expired_i));
-            // An answer goes only to the access that requested it, and is withdrawn with either
-            // pin.
+            // An answer is given only to the access that requested it, and ends when one of the two
+            // pins rises.
             assert (!done || !(ne_n_async_i || noe_n_async_i));
             assert (!$past(given_up && !begins) || !(done && !$past(done)));
         end

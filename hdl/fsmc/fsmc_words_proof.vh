@@ -1,26 +1,28 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_words_proof: 32-bit register words are atomic at the pins of fsmc_bridge; a part of
-// fsmc_bridge_proof.
+// fsmc_words_proof: proves that 32-bit register words are atomic at the pins of fsmc_bridge; this
+// file is a part of fsmc_bridge_proof.
 //
-// These hold for any sequence of completed or aborted accesses to registers, to addresses beyond
-// them and to memory:
+// These properties hold for any sequence of accesses, each of them completed or aborted, to
+// registers, to addresses after the last slot and to memory:
 // - A word written to the bus consists of the last two completed register accesses of the
-//   processor: low half, then high half of the same word. An aborted access writes nothing.
-// - A write of a high half, or beyond the slots, causes exactly one transfer or one error report,
-//   before the next register access continues: a transfer if the write of its low half was the
-//   access just before, without even an attempted read between; otherwise an error. A write of a
-//   low half causes neither.
-// - A read returns half of the word that the bus returned last, and that word has the address of
-//   the read. Its transfer began in this access or, for a high half, in the read of its low half
-//   just before. If there was nothing at all between those two, it is always the latter: both
-//   halves are from one transfer. Otherwise there may be aborted reads between, including one of
-//   the low half. A read beyond the slots returns 0.
-// - Each read, also an aborted one, makes at most one transfer, and no transfer happens without a
-//   read.
+//   processor: the low half, then the high half of the same word. An aborted access writes nothing.
+// - A write of a high half, or to an address after the last slot, causes exactly one transfer or
+//   one
+//   error report, before the next register access continues. It causes a transfer if the access
+//   immediately before was the write of the low half of the word, and no read was attempted between
+//   the two. Otherwise it causes an error report. A write of a low half causes neither.
+// - A read returns a half of the word that the bus returned last, and that word has the address of
+//   the read. The transfer of this word began in this access or, for a high half, in the previous
+//   read of its low half. If no access was attempted between these two reads, the transfer was
+//   always that of the low half, so both halves are from one transfer. Otherwise aborted reads may
+//   lie between them, also reads of the low half. A read after the last slot returns 0.
+// - Each read, even if it is aborted, makes at most one transfer. A transfer happens only for an
+//   access.
 //
-// The second half relates the notes in the harness to the registers of the bridge: with it all
-// assertions together are inductive over two steps, so runs of any length are proven.
+// The second part of the file states how the registers of this proof depend on the registers of the
+// bridge. With these invariants, all assertions together are inductive over two steps, so they are
+// proven for sequences of any length.
 
     wire up = resets > 3'd1;
 
@@ -38,14 +40,16 @@
     wire ends      = was_valid && !bus_valid;
     // no transfer
     wire reports   = clock && access_error && !error_memory && error_write && !(ends && was_write);
-    // NWE rises before NE (RM0033), or after it if the access is aborted; never in the same step.
+    // NWE rises before NE (RM0033). If the access is aborted, NWE rises after NE, never in the same
+    // step.
     always @* assume (!(was_access && !selected && !was_nwe) || !nwe_n_i);
 
     // ---- Writes
-    // the bridge holds the low half written last: possibly, certainly
+    // The bridge stores the low half that was written last: low_may, perhaps; low_sure, certainly.
     reg       low_may = 1'b0, low_sure = 1'b0;
     reg [1:0] low_at = 2'd0, low = 2'd0;
-    // a transfer or an error is due; it may be a transfer, must be one
+    // owed: the bridge owes a transfer or an error report. may: a transfer is allowed; sure: a
+    // transfer is required.
     reg       owed = 1'b0, may = 1'b0, sure = 1'b0;
     reg [1:0] word_at = 2'd0;
     reg [3:0] word = 4'd0;
@@ -80,7 +84,8 @@
     end
 
     // ---- Reads: transfers
-    // a transfer for this access, or for an aborted one, has yet to begin
+    // unread: the transfer of the current access has not begun yet. forgotten: that of an aborted
+    // access has not begun yet.
     reg  unread = 1'b0, forgotten = 1'b0;
     wire fetches     = begins && !bus_write;
     wire unread_n    = reads && (!was_reads || (unread && !(fetches && !forgotten)));
@@ -91,16 +96,16 @@
     always @* if (up && fetches)
         assert (unread || forgotten);
 
-    // ---- Reads: data of any word `its`
+    // ---- Reads: data. `its` is the address of any word, which the prover chooses
     (* anyconst *) reg [1:0] its;
-    // a transfer has begun in this access; it has ended
+    // asked: a transfer has begun in this access; got: this transfer has ended
     reg       asked = 1'b0, got = 1'b0;
-    // the high half of `its` is there: perhaps, for certain
+    // The bridge stores the high half of the word `its`: half_may, perhaps; half_sure, certainly.
     reg       half_may = 1'b0, half_sure = 1'b0;
     reg [1:0] answer_at = 2'd0;
     reg [3:0] answer = 4'd0;
     wire answered = ends && !was_write;
-    // the ending access reads the low half of `its`
+    // the access that ends reads the low half of the word `its`
     wire mine     = !was_beyond && was_a == {its, 1'b0};
     wire asked_n  = access && (asked || (fetches && reads));
     wire got_n    = access && (got || (answered && was_reads && asked && was_addr == a_i[2:1]));
@@ -131,7 +136,8 @@
         cover (a_i == {its, 1'b1} && !beyond_i && half_may && !half_sure && !got_n);
     end
 
-    // ---- The harness's notes agree with the bridge registers, all of this step
+    // ---- The registers of this proof agree with the registers of the bridge. All values are those
+    // of the current step
     wire [3:0]  turn = turns[4:1] ^ turns[3:0];
     wire        s0 = \u_fsmc_bridge.u_access.bit_meta [4],
         s1 = \u_fsmc_bridge.u_access.bit_sync [4];
@@ -150,11 +156,11 @@
     wire idle     = !flushing && !bus_valid && !give && !answering;
     wire done     = reads && nwait_n;
     wire writing  = (flushing || bus_valid) && bus_write;
-    // the access may still be in progress
+    // the access that requested the transfer may still be in progress
     wire fetching = (flushing || bus_valid || give) && !bus_write && !read_given_up;
 
-    // `since` counts clocks since a write's strobe rose, by2 is its bank; gone2: the access given
-    // up last read a register.
+    // since: clocks since the strobe of the last write rose. by2: this write was to a register.
+    // gone2: the last aborted access read a register.
     reg  [2:0] since = 3'd5;
     reg        by2 = 1'b0, gone2 = 1'b0;
     reg  [5:0] last = 6'd0;
@@ -187,7 +193,7 @@
         assert (!gone2_n || (!half_sure_n && !low_sure_n));
     end
     always @* if (up) begin
-        // A write's toggle moves through cdc_pulse by one flip-flop a clock.
+        // In each clock, the toggle of a write moves to the next flip-flop of cdc_pulse.
         case (since_n)
             3'd0:    assert (turn == 4'b1000 || turn == 4'b1001);
             3'd1:    assert (turn == 4'b0100);
@@ -199,17 +205,19 @@
         if (pending)
             assert ({taken[44:43], taken[40:0]} ==
                     {by2_n, !by2_n, 13'd0, last_n[5], 8'd0, last_n[4:2], 14'd0, last_n[1:0]});
-        // The copy of a write stays for fsmc_registers until the next write.
+        // fsmc_registers uses the copy of a write, which is stable until the next write.
         if (since_n == 3'd2 || (since_n != 3'd0 && !idle && bus_write))
             assert (copy == {taken[44:43], taken[40:0]});
 
-        // fsmc_registers does one thing at a time.
+        // fsmc_registers does only one of these at a time.
+        assert (\u_fsmc_bridge.busy == !idle);
         assert ({2'd0, flushing} + {2'd0, bus_valid} + {2'd0, give} + {2'd0, answering} <= 3'd1);
         assert (!pending || idle);
         assert (idle || bus_addr[9:2] == 8'd0);
         assert (!(ne2_i && access && let_go) || nwait_n);
 
-        // The synchronised strobe of a register read, s0 and s1, follows the pins two clocks late.
+        // s0 and s1 are the two flip-flops that synchronise the strobe of a register read. s1
+        // follows the pins two clocks later.
         assert (since_n != 3'd0 || (!s0 && !s1));
         assert (since_n != 3'd1 || !s1);
         assert (!done_s[0] || (s0 && s1));
@@ -231,7 +239,7 @@
                  (!seen || done_s == 2'b11)));
         assert (!done || calm_n != 2'd2 || done_s[0]);
 
-        // The read in progress belongs to the pins, or was aborted just now.
+        // The read in progress is the one at the pins, or one that was aborted a few clocks ago.
         if (fetching && reads)
             assert (s0 && s1 && bus_addr == {8'd0, a_i[2:1]} && asked_high == a_i[0] &&
                     (give || !beyond_i));
@@ -252,7 +260,7 @@
                     ((give || answering) && s1 && !read_given_up && (!seen || done_s[1]) &&
                      (!s0 || done_s != 2'b10)));
 
-        // The stored word is the word read last.
+        // The stored high half belongs to the word that was read last.
         if (half_read) begin
             assert (!flushing && !bus_valid && !bus_write);
             assert (kept[31:16] == {14'd0, answer_n[3:2]} && bus_addr == {8'd0, answer_at_n});
@@ -280,8 +288,8 @@
                      ((give && !read_given_up) || done)));
         end
 
-        // The low half written last is stored for the write of its high half, which is a transfer
-        // only then.
+        // The low half that was written last is stored until its high half is written. Only then is
+        // the word transferred.
         assert (!half_write || idle);
         if (!pending2) begin
             assert (!half_write ||

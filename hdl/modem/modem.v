@@ -1,20 +1,22 @@
 // SPDX-License-Identifier: MIT
 //
-// modem: controls an XBee modem: AT set-up, packets from and to rings in DDR3, interrupts.
+// modem: controls an XBee modem: sets it up with AT commands, sends packets from a ring in DDR3,
+// stores received packets in another ring, and raises interrupts.
 //
-// Registers: hdl/modem/modem.regs.json. Behaviour: docs/modem.md.
+// The registers are described in hdl/modem/modem.regs.json, the behaviour in docs/modem.md.
 
 `default_nettype none
 
 module modem #(
-    parameter CLK_HZ = 100000000, // Hz, a multiple of 16000, at least 2 MHz
-    parameter API    = 0          // 1: NET.API may select API frames; 0: only a transparent modem
+    parameter CLK_HZ = 100000000, // frequency of clk_i in Hz, a multiple of 16000, at least 2 MHz
+    // 1: software may select API frames (NET.API); 0: the modem is always in transparent mode
+    parameter API    = 0
 ) (
     `include "slot_ports.vh"
     `include "memory_ports.vh"
     output wire        irq_o,
     // modem pins
-    input  wire        modem_rxd_i, // from the modem
+    input  wire        modem_rxd_i, // pins of the modem
     output wire        modem_txd_o,
     input  wire        modem_cts_n_i,
     output wire        modem_rts_n_o,
@@ -22,15 +24,16 @@ module modem #(
 );
     `include "modem_regs.vh"
 
-    // An access waits a cycle, so that no path beyond it begins in the bus's address decoder.
+    // A bus access is answered one cycle later, so that no long path begins in the address decoder
+    // of the bus.
     reg         turn;
     wire        set_configure, set_reset_modem, baud_write, net_write, settings_write;
-    // A cycle after the write, because their paths are long.
+    // Registered one cycle after the write, because the paths from here are long.
     reg         configure, reset_modem, rings_reset;
 
-    // Settings are stored in block RAM: words 0..15 are the registers with the ID, 28..31 the key.
-    // A word is available one clock after its index. It is invalid after an index used by the
-    // processor, which may have written it in that clock.
+    // Block RAM with the settings. Words 0..15 are the registers, including the ID; words 28..31
+    // are the key. A word is available one clock after its index. It is not valid if the index was
+    // that of a processor access, because the processor may have written the word in that clock.
     (* ram_style = "block", no_rw_check *)
     reg  [31:0] words [0:31];
     reg  [1:0]  key_index;
@@ -52,13 +55,14 @@ module modem #(
     // Time
     wire        ms_tick, at_clear;
     wire [11:0] waited;
-    wire        bit_tick; // eight a bit time
+    wire        bit_tick; // eight ticks per bit time
     wire [3:0]  bd_now;
 
     reg         ready, reset_n, pulse_ends, encrypt, by_wire, frames;
     wire        api = API != 0 && frames;
     reg  [7:0]  framing_errors, overruns, retries;
-    reg         framing_waits, retry_waits; // pending events; counted one per clock
+    // events that have not been counted yet; one is counted per clock
+    reg         framing_waits, retry_waits;
     wire        counts_retry = retry_waits && !rx_overrun;
     wire        counts_framing = framing_waits && !rx_overrun && !retry_waits;
     wire [8:0]  counted = {1'b0, rx_overrun  ? overruns :
@@ -78,10 +82,11 @@ module modem #(
     wire        tx_ready, uart_valid, rx_valid, rx_error, rx_idle;
     wire [7:0]  uart_data, rx_data;
 
-    // Rings and packets
+    // Rings and packet blocks
     wire        packet_tx_valid, tx_sent, rx_push, rx_overrun;
     wire [7:0]  packet_tx_data;
-    // Bytes between the packet blocks and the API frames, in transparent mode the UART.
+    // Bytes between the packet blocks and the blocks for API frames. In transparent mode these
+    // bytes come from the UART, and go to the UART.
     wire        body_valid, body_last, body_ready, in_valid, in_error, in_end, in_bad, silent;
     wire [7:0]  body_data;
     wire [4:0]  tx_free, rx_free;
@@ -89,9 +94,13 @@ module modem #(
     wire [6:0]  tx_bytes, rx_bytes;
     wire        tx_waits = !tx_free[4];
     wire        rx_waits = !rx_free[4];
-    // One clock after the ring: a waiting byte is taken two clocks after the end of a packet
-    // (`writes`). A register, because it is on the path to the word that is read.
+    // The ring is full, registered one clock later. The delay is allowed, because a waiting byte is
+    // taken two clocks after the end of a packet (`writes`). The register shortens the path to the
+    // word that is read.
     reg         rx_full;
+    // RTS is a flip-flop, because the modem may sample the pin at any time, and the output of a LUT
+    // may glitch
+    reg         rts_n;
     wire [7:0]  put_bytes;
     wire        put, rx_release;
     wire        put_ok   = put && ready && tx_free != 5'd0 && put_bytes != 8'd0 &&
@@ -104,13 +113,14 @@ module modem #(
     wire [7:0]  rd_data, wr_data, wr_be;
 
     assign bus_ready_o     = turn;
-    assign modem_rts_n_o   = rx_free <= 5'd2;
+    assign modem_rts_n_o   = rts_n;
     assign modem_reset_n_o = reset_n;
-    // Never both: packets are not ready while the set-up runs.
+    // Both are never high together: no packet is ready while the set-up runs.
     assign uart_valid = at_tx_valid || packet_tx_valid;
     assign uart_data  = at_tx_data | packet_tx_data;
-    // `writes` is a register because it also addresses the word that the processor reads: a change
-    // of ring waits one clock.
+    // `writes` selects the setting with the base address of the receive ring or of the transmit
+    // ring. It is a register, because the index of the setting is on a long path. After a change of
+    // ring, a memory access waits for one clock.
     reg writes;
     always @(posedge clk_i)
         writes <= wr_valid;
@@ -202,7 +212,8 @@ module modem #(
                 .valid_o(frame_valid), .end_o(in_end), .bad_o(frame_bad)
             );
             assign in_valid = api ? frame_valid : rx_valid && ready;
-            assign in_bad   = frame_bad || (api && !ready); // a set-up aborts the current frame
+            // the set-up of the modem aborts the frame in progress
+            assign in_bad   = frame_bad || (api && !ready);
         end else begin : g_transparent
             assign packet_tx_valid = body_valid;
             assign packet_tx_data  = body_data;
@@ -227,7 +238,7 @@ module modem #(
         .clk_i(clk_i), .rst_i(rings_reset), .tick_i(bit_tick), .api_i(api),
         .rx_valid_i(in_valid), .rx_data_i(rx_data), .rx_error_i(in_error),
         .rx_end_i(in_end), .rx_bad_i(in_bad), .silent_o(silent),
-        .rx_idle_i(rx_idle && !modem_rts_n_o), // a pause caused by RTS does not end a packet
+        .rx_idle_i(rx_idle && !modem_rts_n_o), // a pause that RTS causes does not end a packet
         .wr_valid_o(wr_valid), .wr_data_o(wr_data), .wr_index_o(wr_index), .wr_be_o(wr_be),
         .wr_ready_i(wr_ready), .wr_busy_i(wr_busy),
         .full_i(rx_full), .push_o(rx_push), .overrun_o(rx_overrun)
@@ -261,6 +272,7 @@ module modem #(
         reset_modem <= set_reset_modem && !rst_i;
         rings_reset <= set_reset_modem || rst_i;
         rx_full  <= rx_free == 5'd0;
+        rts_n    <= rx_free <= 5'd2;
 
         if (key_write || settings_write)
             words[{key_write, bus_addr_i[3:2], key_write ? key_index : bus_addr_i[1:0]}] <=
@@ -276,7 +288,7 @@ module modem #(
         if (at_done)
             ready <= 1'b1;
 
-        // The pulse lasts one to two milliseconds; the modem needs 200 ns.
+        // The reset pulse lasts one to two milliseconds. The modem needs 200 ns.
         if (ms_tick) begin
             pulse_ends <= !reset_n;
             if (pulse_ends)

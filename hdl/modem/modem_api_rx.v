@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_api_rx: extracts the contents of API frames: 1..111 bytes, starting with the type byte.
-// Frames of other lengths are skipped; silence ends any frame.
+// modem_api_rx: extracts the contents of API frames. Contents have 1..111 bytes and start with the
+// type byte. Frames of other lengths are skipped. A frame also ends if the line is silent.
 //
 //   7E length(2), the contents, checksum
 
@@ -16,14 +16,14 @@ module modem_api_rx (
     input  wire       error_i,  // a byte was lost
     input  wire       silent_i, // the line has been idle for three characters
     // contents out
-    output wire       valid_o,  // data_i is a byte of the contents
+    output wire       valid_o,  // data_i is a byte of the contents of a frame
     output reg        end_o,    // one cycle: the contents are complete and valid
-    output reg        bad_o     // one cycle: discard the bytes so far
+    output reg        bad_o     // high for one cycle: the bytes received so far must be discarded
 );
     localparam [2:0] DELIMITER = 3'd0, HIGH = 3'd1, LOW = 3'd2, DATA = 3'd3, CHECKSUM = 3'd4;
 
     reg [2:0] state;
-    reg [6:0] left; // bytes left before the checksum arrives
+    reg [6:0] left; // number of bytes before the checksum
     reg [7:0] sum;
 
     // the byte is a valid low byte of the length
@@ -61,8 +61,8 @@ module modem_api_rx (
     end
 
 `ifdef FORMAL
-    // Proves that the contents end once, complete or bad, and have as many bytes as the frame's
-    // length field states.
+    // Proves that the contents end once, as complete or as bad, and have as many bytes as the
+    // length field of the frame states.
     reg past = 1'b0;
     initial assume (rst_i);
     reg       open = 1'b0;  // the contents of a frame have begun and have not ended
@@ -78,8 +78,8 @@ module modem_api_rx (
             given <= given + valid_o;
         if (past && !$past(rst_i)) begin
             assert (!(end_o && bad_o));
-            // Bytes are delivered only inside a frame, and a frame that delivered any ends good or
-            // bad.
+            // Bytes are delivered only inside a frame. If a frame has delivered bytes, it ends with
+            // end_o or bad_o.
             if (open && !end_o && !bad_o)
                 assert (state == DATA || state == CHECKSUM);
             assert (!(end_o || bad_o) || state == DELIMITER);

@@ -9,8 +9,8 @@
 module modem_api_tx (
     input  wire       clk_i,
     input  wire       rst_i,
-    input  wire       api_i,   // 1: API frames; 0: the packet passes unchanged. May change only
-                               // during reset
+    // 1: API frames; 0: packets pass unchanged. May change only during reset
+    input  wire       api_i,
     // packet to send; valid only while the modem accepts bytes
     input  wire       valid_i,
     input  wire [7:0] data_i,
@@ -25,7 +25,8 @@ module modem_api_tx (
 );
     localparam [2:0] DATA = 3'd3, CHECKSUM = 3'd4;
 
-    reg [2:0] place; // position in the frame: 0..2 head, DATA, CHECKSUM
+    // position in the frame: 0..2 for the first three bytes, then DATA, then CHECKSUM
+    reg [2:0] place;
     reg [7:0] sum;
 
     wire taken = valid_o && ready_i;
@@ -56,8 +57,8 @@ module modem_api_tx (
     end
 
 `ifdef FORMAL
-    // Proves that every frame carries its length and its checksum. Without frames, only the packet
-    // is sent.
+    // Proves that every frame has a correct length and a correct checksum, and that without frames
+    // only the packet is sent.
     reg past = 1'b0;
     initial assume (rst_i);
     reg [7:0] total = 8'd0; // sum of all bytes after the length, including the checksum
@@ -69,7 +70,8 @@ module modem_api_tx (
             total <= place < DATA ? 8'd0 : total + data_o;
         if (past && !$past(rst_i)) begin
             assert (place <= CHECKSUM);
-            // Each position follows its predecessor; CHECKSUM follows the last byte of the packet.
+            // Each position follows the one before it. CHECKSUM follows the last byte of the
+            // packet.
             if ($past(api_i) && api_i)
                 assert (place == $past(!taken || (place == DATA && !last_i) ? place :
                                        place == CHECKSUM ? 3'd0 : place + 3'd1));

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_at: finds the modem's baud rate and configures the modem by AT commands, checking each
-// reply.
+// modem_at: finds the baud rate of the modem, and configures the modem with AT commands. It checks
+// the reply to each command.
 //
 // Steps (STATUS.STEP): 1 +++  2 MY  3 DH  4 DL  5 CH  6 ID  7 EE  8 KY (only with EE)  9 RN  10 RO
-// 11 D6  12 D7  13 AP  14 BD  15 CN  0 the modem changes its rate. modem_at_rows contains the
-// actions of each step; this block executes them. Step 1 is tried at the target rate, at 9600 (the
-// factory setting), then at all rates from BD 7 down and at 250,000. The wait for an answer at one
-// rate is also the guard time before the next attempt. Any other command is repeated twice if it is
-// rejected or not answered.
+// 11 D6  12 D7  13 AP  14 BD  15 CN  0 the modem changes its rate. The table modem_at_rows contains
+// the actions of each step, and this block executes them. Step 1 is tried at the target rate, then
+// at 9600 (the factory setting), then at all rates from BD 7 down, and at last at 250,000. After an
+// attempt, the wait for the answer is also the guard time of the next attempt. Any other command
+// that is rejected or not answered is repeated up to twice.
 
 `default_nettype none
 `include "shift_order.vh"
@@ -18,26 +18,26 @@ module modem_at #(
 ) (
     input  wire        clk_i,
     input  wire        rst_i,
-    // time since clear_o, in units of 17/16 ms
+    // time since clear_o was high, in units of 17/16 ms
     output wire        clear_o,
     input  wire [11:0] time_i,
     // control
-    input  wire        start_i,    // allowed only while not busy
-    // with start_i: no modem is connected; the target rate is used at once
+    input  wire        start_i,    // starts the set-up; allowed only while busy_o is low
+    // high with start_i if no modem is connected: the target rate is then used without a set-up
     input  wire        wire_i,
     output reg         busy_o,
     output reg         done_o,     // one cycle
     output reg         failed_o,   // one cycle
     output reg         retried_o,  // one cycle
     output reg  [3:0]  step_o,
-    output reg  [3:0]  bd_o,       // baud rate in use
-    // settings: word_i is the word with index word_o, valid as soon as it is available
+    output reg  [3:0]  bd_o,       // baud rate in use, as a code of modem_baud
+    // settings: word_i is the word with index word_o, one clock later
     output wire [4:0]  word_o,
     input  wire [31:0] word_i,
     input  wire        word_valid_i,
     // bytes to and from the modem
     output wire        tx_valid_o,
-    output wire [7:0]  tx_data_o,  // 0 while not busy
+    output wire [7:0]  tx_data_o,  // character to send; 0 while busy_o is low
     input  wire        tx_ready_i,
     input  wire        rx_valid_i,
     input  wire [7:0]  rx_data_i
@@ -47,18 +47,21 @@ module modem_at #(
     localparam [3:0] SETTLES = 4'd0, ENTER = 4'd1;
     localparam [3:0] FACTORY_BD = 4'd3, HIGHEST_BD = 4'd7;
 
-    reg [5:0] place;    // row of the table in the current step
+    reg [5:0] place;    // row of the current step in the table modem_at_rows
     `SHIFT_ORDER(after, 6)
-    reg       fresh;    // the line was not idle yet, so the time does not advance
+    reg       fresh;    // the line has not been idle yet, so the time has not started
     reg       steady;   // the character to send is available
     reg [3:0] value;    // last digit
-    // tried: a command has failed once; walks: it has failed twice. In step 1, tried: the next rate
-    // is 9600; walks: the next rate is the next lower one
+    // tried: a command has failed once; walks: it has failed twice. In step 1 they select the next
+    // rate: with tried it is 9600, with walks the next lower rate
     reg       tried, walks;
     reg       heard_o, heard_k; // heard_o: the reply ends with "O"; heard_k: it ends with "OK"
-    reg       ok, refused;      // one cycle: a complete reply was "OK"; was something else
-    reg [3:0] same;             // bit i: bits 3i+2..3i of the time equal those of the guard time
-    reg       counts;           // the time runs and the guard time is available, so `same` is valid
+    // high for one cycle after a complete reply: ok if it was "OK", refused otherwise
+    reg       ok, refused;
+    // bit i: bits 3i+2..3i of the time are equal to the same bits of the guard time
+    reg [3:0] same;
+    // the time is running and the guard time has been read, so `same` is valid
+    reg       counts;
 
     wire       send, digit, rate, guard, hear, limit, refuse, skip, settle;
     wire [7:0] data;
@@ -69,7 +72,7 @@ module modem_at #(
     wire passed = hear && ok;
     wire missed = !passed && ((limit && time_i[9]) || (refuse && refused));
     wire ended  = settle && time_i[4];
-    wire enters = limit && !refuse; // step 1: +++
+    wire enters = limit && !refuse; // the current step is step 1 (+++)
     wire gives_up = missed && walks && (!enters || bd_o[3]);
     wire goes   = next || passed || missed || ended;
 
@@ -79,7 +82,7 @@ module modem_at #(
         .limit_o(limit), .refuse_o(refuse), .skip_o(skip), .settle_o(settle), .data_o(data)
     );
 
-    // the next lower rate; the rate after the lowest one is 250,000
+    // next lower rate; after the lowest rate, 250,000
     wire [3:0] lower =
         {bd_o[2:0] == 3'd0, bd_o[2] ^ (bd_o[1:0] == 2'd0), bd_o[1] ~^ bd_o[0], ~bd_o[0]};
 
@@ -133,7 +136,7 @@ module modem_at #(
             place <= after(place);
         if (passed || missed || start)
             place <= {5'd0, missed && enters};
-        if (passed) // after EE without encryption: no KY
+        if (passed) // step EE without encryption skips step KY
             step_o <= step_o + (skip && !value[0] ? 4'd2 : 4'd1);
         if (passed || start) begin
             tried <= 1'b0;
@@ -145,7 +148,8 @@ module modem_at #(
         if (missed && enters)
             bd_o <= walks ? lower : tried ? HIGHEST_BD : FACTORY_BD;
         if (rate && word_valid_i)
-            bd_o <= {word_i[4], word_i[2:0]}; // codes 0..7; 8 is 0x3D090
+            // rates 0..7 have the codes 0..7; code 8 stands for the value 0x3D090
+            bd_o <= {word_i[4], word_i[2:0]};
 
         if (start) begin
             step_o <= wire_i ? SETTLES : ENTER;
@@ -165,11 +169,12 @@ module modem_at #(
     end
 
 `ifdef FORMAL
-    // Proves that each step needs an OK from the modem, and that the set-up then ends.
+    // Proves that each step ends only after an OK from the modem, and that the set-up ends after
+    // the last step.
     localparam [3:0] EE = 4'd7, RN = 4'd9;
     reg past = 1'b0;
     initial assume (rst_i);
-    reg [23:0] heard = 24'd0; // last three characters received since the command
+    reg [23:0] heard = 24'd0; // last three characters received since the command was sent
     always @(posedge clk_i) begin
         past <= 1'b1;
         if (send)
@@ -177,14 +182,16 @@ module modem_at #(
         else if (rx_valid_i)
             heard <= {heard[15:0], rx_data_i};
         if (past && !rst_i && !$past(rst_i)) begin
-            // A row is carried out only while busy, and never after the step has moved on.
+            // An action is performed only while busy_o is high, and never after the next step has
+            // begun.
             assert (busy_o || !(send || rate || guard || hear || limit || settle));
             if ($past(goes || start))
                 assert (!(send || rate || guard || hear || limit || settle) && fresh);
-            // A step follows its predecessor, and only after "OK" and a carriage return.
+            // The steps follow each other in order. Each step ends only after "OK" and a carriage
+            // return.
             if (passed)
                 assert (heard == {"OK", 8'h0D});
-            // A carriage return without "OK" is a rejection, unless it ends an earlier reply.
+            // A carriage return without "OK" is a rejection, unless it belongs to an earlier reply.
             assert (refused == $past(rx_valid_i && rx_data_i == 8'h0D && !heard_k && !fresh));
             if (hear) begin
                 assert (!send);

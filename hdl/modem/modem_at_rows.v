@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_at_rows: table of the AT set-up in block RAM: one action of modem_at for each row of each
-// step.
+// modem_at_rows: table of the AT set-up, in block RAM. Each row of a step is one action of
+// modem_at.
 //
-// A row contains flags and eight bits of data: a character, or {word of the settings, nibble in
-// it}. A row without flags does nothing.
+// A row contains flags and eight bits of data. The data is a character, or {word of the settings,
+// nibble in the word}. A row without flags has no effect.
 
 `default_nettype none
 `include "shift_order.vh"
@@ -13,29 +13,32 @@ module modem_at_rows #(
     parameter API = 1
 ) (
     input  wire       clk_i,
-    input  wire       clear_i, // the next row is row 0 of the step
+    input  wire       clear_i, // the next row is row 0 of the current step
     input  wire [3:0] step_i,
-    input  wire [5:0] place_i, // row in the step, counted in the order of a shift register
-    // flags of the row, one cycle later
-    output wire       send_o,   // the row sends a character
-    output wire       digit_o,  // the character is the hex digit of a nibble
-    output wire       rate_o,   // switches to the target rate
+    // row in the step; the rows are in the order of the states of a shift register
+    input  wire [5:0] place_i,
+    // flags of the row, valid one cycle later
+    output wire       send_o,   // the action sends a character
+    output wire       digit_o,  // the character is the hex digit of a nibble of the settings
+    output wire       rate_o,   // changes to the target rate
     output wire       guard_o,  // waits for the guard time
-    output wire       hear_o,   // "OK" ends the step
-    output wire       limit_o,  // half a second without an answer is a failure
-    output wire       refuse_o, // any other answer is also a failure
+    output wire       hear_o,   // waits for the answer: "OK" ends the step
+    output wire       limit_o,  // half a second without an answer counts as a failure
+    output wire       refuse_o, // any answer except "OK" also counts as a failure
     output wire       skip_o,   // skips the next step if the last digit was even
-    output wire       settle_o, // waits until the modem has changed its rate, and ends the set-up
+    output wire       settle_o, // waits until the modem has changed its rate, then ends the set-up
     output wire [7:0] data_o
 );
     `include "modem_regs.vh"
 
     localparam [8:0] SEND = 9'd1,  DIGIT = 9'd2,  RATE   = 9'd4,  GUARD = 9'd8,
                      HEAR = 9'd16, LIMIT = 9'd32, REFUSE = 9'd64, SKIP  = 9'd128, SETTLE = 9'd256;
-    localparam KEY = 8, RATE_OF = 14, LEAVE = 15; // steps; step 0 follows LEAVE
-    localparam [7:0] SETTINGS = {1'b0, MODEM_BAUD, 3'd0}; // setting word with rate and guard time
+    localparam KEY = 8, RATE_OF = 14, LEAVE = 15; // numbers of steps; step 0 follows LEAVE
+    // settings word that contains the rate and the guard time
+    localparam [7:0] SETTINGS = {1'b0, MODEM_BAUD, 3'd0};
 
-    // The letters after "AT" of a command: two or, with a constant value, three.
+    // Returns the letters of the command after "AT": two letters, or three characters if the value
+    // is constant.
     function [23:0] letters(input integer step);
         case (step)
             2:       letters = {8'd0, "MY"};
@@ -45,7 +48,8 @@ module modem_at_rows #(
             6:       letters = {8'd0, "ID"};
             7:       letters = {8'd0, "EE"};
             KEY:     letters = {8'd0, "KY"};
-            9:       letters = "RN2"; // a random wait of up to three units before each attempt
+            // the modem waits up to three units of random time before each attempt
+            9:       letters = "RN2";
             10:      letters = "RO3";
             11:      letters = "D61"; // the modem observes RTS
             12:      letters = "D71"; // the modem drives CTS
@@ -57,8 +61,8 @@ module modem_at_rows #(
     function integer letter_count(input integer step);
         letter_count = letters(step) < 24'h10000 ? 2 : 3;
     endfunction
-    function [7:0] letter(input [23:0] text, input integer left); // Returns the character that has
-                                                                  // `left` characters after it.
+    // Returns the character of `text` that is followed by `left` characters.
+    function [7:0] letter(input [23:0] text, input integer left);
         case (left)
             0:       letter = text[7:0];
             1:       letter = text[15:8];
@@ -66,8 +70,8 @@ module modem_at_rows #(
         endcase
     endfunction
 
-    // The value of a command consists of digit_count digits of a word, starting at the nibble that
-    // the next function returns; the key has four words.
+    // Returns the number of hex digits in the value of a command. The digits are nibbles of the
+    // settings, starting with the nibble that digit() returns. The key has four words.
     function integer digit_count(input integer step);
         case (step)
             2, 4, 6: digit_count = 4;
@@ -79,7 +83,7 @@ module modem_at_rows #(
             default: digit_count = 0;
         endcase
     endfunction
-    // Returns {word, nibble} of the digit that has `left` digits after it.
+    // Returns {word, nibble} of the digit that is followed by `left` digits.
     function [7:0] digit(input integer step, input [4:0] left);
         case (step)
             2:       digit = {1'b0, MODEM_ADDR, left[2:0]};
@@ -102,7 +106,7 @@ module modem_at_rows #(
     initial begin
         for (i = 0; i < 1024; i = i + 1)
             rows[i] = 17'd0;
-        // "+++" between two guard times
+        // "+++" with a guard time before and after
         rows[64] = {GUARD | RATE, SETTINGS};
         at = after(6'd0);
         for (k = 0; k < 3; k = k + 1) begin
@@ -112,7 +116,7 @@ module modem_at_rows #(
         rows[{4'd1, at}] = {GUARD | HEAR, SETTINGS};
         at = after(at);
         rows[{4'd1, at}] = {HEAR | LIMIT, 8'd0};
-        // "AT", letters, digits, carriage return; then the wait for the answer
+        // "AT", letters, digits and carriage return, then the wait for the answer
         for (i = 2; i <= LEAVE; i = i + 1) begin
             rows[64*i] = {SEND, "A"};
             rows[64*i + 1] = {SEND, "T"};

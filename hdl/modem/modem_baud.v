@@ -20,8 +20,10 @@ module modem_baud #(
     input  wire [3:0] bd_i,
     output reg        tick_o
 );
-    localparam WIDTH = 18; // 38400 baud at 100 MHz is 805 / 2**18 within 0.04 %
-    // Phase steps: 8 * rate * 2**18 / CLK_HZ, rounded.
+    // width of the phase, bits; 38400 baud at 100 MHz is a step of 805 / 2**18, which has an error
+    // below 0.04 %
+    localparam WIDTH = 18;
+    // Steps of the phase per clock: 8 * rate * 2**18 / CLK_HZ, rounded.
     localparam [31:0] KHZ   = CLK_HZ / 1000,
                       BASE  = (32'd80530637 + KHZ / 2) / KHZ,
                       BD6   = (32'd120795955 + KHZ / 2) / KHZ,
@@ -29,16 +31,16 @@ module modem_baud #(
                       EXACT = (32'd524288000 + KHZ / 2) / KHZ,
                       BD8   = EXACT >> WIDTH != 32'd0 ? (32'd1 << WIDTH) - 32'd1 : EXACT;
 
-    reg  [WIDTH:0]   phase; // its highest bit is the carry
-    reg  [4:0]       count; // ticks of 38400 baud
+    reg  [WIDTH:0]   phase; // phase; the highest bit is the carry
+    reg  [4:0]       count; // counts ticks of 38400 baud
 
-    // The step is selected by a chain of conditions, because Yosys turns a case into a ROM with
-    // registers in front. The step is negative: only in a difference is `phase` certain to be the
-    // operand that enters the carry chain without a LUT.
+    // A chain of conditions selects the step, because Yosys turns a case into a ROM with registers
+    // before it. The step is subtracted, because only in a subtraction Yosys always connects
+    // `phase` to the input of the carry chain that needs no LUT.
     localparam [WIDTH:0] FULL = 0;
     wire [WIDTH:0] minus = bd_i[3] ? FULL - BD8[WIDTH:0] : bd_i == 4'd7 ? FULL - BD7[WIDTH:0]
                          : bd_i == 4'd6 ? FULL - BD6[WIDTH:0] : FULL - BASE[WIDTH:0];
-    // Bits of count that must be 0 for a tick.
+    // These bits of `count` must be 0 for a tick.
     wire [4:0] hide = {bd_i < 4'd1, bd_i < 4'd2, bd_i < 4'd3, bd_i < 4'd4, bd_i < 4'd5};
 
     always @(posedge clk_i) begin
@@ -53,19 +55,19 @@ module modem_baud #(
     end
 
 `ifdef FORMAL
-    // Proves that n clocks equal one step of n, which the simulator adds at once
-    // (testbench/sim/quiet_span.cpp). A span may begin in any clock in which no carry and no tick
-    // is in progress.
+    // Proves that n clocks have the same effect as one step of n, which the simulator computes at
+    // once (testbench/sim/quiet_span.cpp). Such a span may begin in any clock without a carry and
+    // without a tick.
     (* anyseq *) reg begins;
     reg        past = 1'b0, spans = 1'b0;
     reg [17:0] phase_then;
     reg [4:0]  count_then;
     reg [3:0]  rate;
     reg [8:0]  n;       // clocks since the span began
-    reg [27:0] product; // n times the step
+    reg [27:0] product; // n times the step of the phase
     wire [18:0] step   = FULL - minus;
     wire [27:0] sum    = {10'd0, phase_then} + product;
-    wire [27:0] before = sum - {10'd0, step[17:0]}; // the sum one clock ago
+    wire [27:0] before = sum - {10'd0, step[17:0]}; // the sum in the previous clock
     wire [27:0] older  = before - {10'd0, step[17:0]};
     initial assume (rst_i);
     always @(posedge clk_i) begin

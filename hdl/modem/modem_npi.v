@@ -1,31 +1,33 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_npi: shares one memory port between receiver and transmitter, with one access per byte.
+// modem_npi: shares one memory port between the receiver and the transmitter of the modem, with one
+// memory access for each byte.
 //
-// Single-byte accesses need no word buffers and cost little: at most 22,000 per second in both
-// directions together, below one percent of the memory bandwidth. Writes have priority, because the
-// serial line does not wait. An accepted request is carried out even if its packet is dropped.
+// Accesses of single bytes need no word buffers, and are cheap: both directions together need at
+// most 22,000 accesses per second, which is below one percent of the memory bandwidth. Writes have
+// priority, because the serial line does not wait. A request that has been accepted is completed
+// even if its packet is dropped.
 
 `default_nettype none
 
 module modem_npi (
     input  wire        clk_i,
     input  wire        rst_i,
-    // base address of the ring (receive ring while wr_valid_i, otherwise transmit ring); must be
-    // valid in that clock
+    // base address of a ring: the receive ring while wr_valid_i is high, otherwise the transmit
+    // ring
     input  wire [31:11] base_i,
     input  wire        base_valid_i,
-    // writes a byte: {buffer, word in the buffer}, place in the word
+    // writes a byte; the address is {buffer, word in the buffer, byte in the word}
     input  wire        wr_valid_i,
     input  wire [10:3] wr_addr_i,
     input  wire [7:0]  wr_be_i,
     input  wire [7:0]  wr_data_i,
     output wire        wr_ready_o,   // accepted
-    output wire        wr_busy_o,    // an accepted write is not acknowledged yet
-    // reads a byte; a read that is withdrawn for a cycle never completes
+    output wire        wr_busy_o,    // the memory has not yet acknowledged an accepted write
+    // reads a byte; a read never completes if rd_valid_i was low for a cycle
     input  wire        rd_valid_i,
     input  wire [10:0] rd_addr_i,
-    output wire        rd_done_o,    // one cycle: the data is valid
+    output wire        rd_done_o,    // high for one cycle: the data is valid
     output reg  [7:0]  rd_data_o,
     // memory port
     output wire [31:0] npi_addr_o,
@@ -44,7 +46,7 @@ module modem_npi (
 
     reg [1:0]  state;
     reg [31:3] addr;
-    reg        wanted; // the current read has not been withdrawn
+    reg        wanted; // rd_valid_i has been high since the read began
 
     wire start = state == IDLE && base_valid_i && npi_init_done_i;
 
@@ -76,7 +78,7 @@ module modem_npi (
         wanted <= rd_valid_i && (wanted || state == IDLE);
         case (state)
             IDLE: begin
-                // wr_valid_i instead of `start`, because `start` arrives late
+                // the select input is wr_valid_i, because `start` arrives later
                 addr <= {base_i, wr_valid_i ? wr_addr_i[10:3] : rd_addr_i[10:3]};
                 if (start && wr_valid_i)
                     state <= WRITE;
@@ -95,7 +97,7 @@ module modem_npi (
     end
 
 `ifdef FORMAL
-    // Proves that words and acknowledgements keep the rules of a memory port.
+    // Proves that pushed words and requests follow the rules of a memory port.
     reg past = 1'b0;
     initial assume (rst_i);
     reg [4:0] words = 5'd0; // words pushed and not yet acknowledged

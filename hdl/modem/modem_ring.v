@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_ring: bookkeeping of a ring of sixteen buffers: which buffers are in use, and how many
-// bytes each contains.
+// modem_ring: manages a ring of sixteen buffers: which buffers are in use, and how many bytes each
+// buffer contains.
 //
-// Pushing while full and popping while empty are errors of the user; modem.v excludes them.
+// The user of the module must not push while the ring is full, and must not pop while it is empty;
+// modem.v excludes both.
 
 `default_nettype none
 
 module modem_ring (
     input  wire       clk_i,
-    input  wire       rst_i,   // reset, which also empties the ring
-    input  wire       push_i,  // buffer next_o contains bytes_i bytes
+    input  wire       rst_i,   // reset; it also empties the ring
+    input  wire       push_i,  // buffer next_o now contains bytes_i bytes and is in use
     input  wire [6:0] bytes_i,
     input  wire       pop_i,   // frees the oldest buffer
     output wire [3:0] next_o,
@@ -19,8 +20,9 @@ module modem_ring (
     output wire [4:0] free_o   // number of free buffers, 0..16
 );
     reg [6:0] bytes [0:15];
-    reg [4:0] head; // number of the oldest buffer, with one more bit
-    reg [4:0] tail; // number of the next buffer to fill, with one more bit
+    reg [4:0] head; // number of the oldest buffer; the upper bit counts turns of the ring
+    // number of the buffer that is filled next; the upper bit counts turns of the ring
+    reg [4:0] tail;
 
     assign next_o   = tail[3:0];
     assign oldest_o = head[3:0];
@@ -39,10 +41,11 @@ module modem_ring (
     end
 
 `ifdef FORMAL
-    // Proves that a length leaves unchanged, and that the count of free buffers is correct.
+    // Proves that the length of a buffer stays unchanged until the buffer is freed, and that the
+    // number of free buffers is correct.
     reg past = 1'b0;
     initial assume (rst_i);
-    // The length of any buffer, in any turn of the ring, leaves unchanged, in its position.
+    // The proof holds for the length of any buffer, in any turn of the ring.
     (* anyconst *) reg [4:0] place;
     reg [6:0] length;
     reg       inside = 1'b0;

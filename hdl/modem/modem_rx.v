@@ -2,48 +2,48 @@
 //
 // modem_rx: writes bytes from the modem into the receive ring, one packet per buffer.
 //
-// A packet ends after the length given by its first byte ((byte & 127) + 5, if at most 100), at 100
-// bytes, after 3.2 characters of silence, or at a framing error. In API mode, a packet is the
-// contents of a frame, and ends with the frame. A packet is in memory before it is published. If no
-// buffer is free, the whole packet is dropped. If the memory is more than a byte time late, the
-// current packet and the bytes that follow without a pause are lost; earlier packets are kept.
+// The first byte of a packet announces its length: (byte & 127) + 5, if this is at most 100. A
+// packet ends after this length, after 100 bytes, after a silence of 3.2 characters, or at a
+// framing error. In API mode, a packet is the contents of a frame, and ends with the frame. A
+// packet is published only after it is in memory. If no buffer is free, the whole packet is
+// dropped. If the memory is more than a byte time late, the current packet and the bytes that
+// follow without a pause are lost; earlier packets are kept.
 
 `default_nettype none
 
 module modem_rx (
     input  wire       clk_i,
-    input  wire       rst_i,      // reset, which also drops the current packet
+    input  wire       rst_i,      // reset; it also drops the current packet
     input  wire       tick_i,     // eight ticks per bit time
-    input  wire       api_i,      // API mode: packets end as in modem_api_rx, at rx_end_i or
-                                  // rx_bad_i
+    input  wire       api_i,      // API mode: modem_api_rx ends packets with rx_end_i or rx_bad_i
     // bytes in
     input  wire       rx_valid_i,
     input  wire [7:0] rx_data_i,
     input  wire       rx_error_i, // framing error: the current packet ends here
     input  wire       rx_end_i,   // the packet is complete (API)
     input  wire       rx_bad_i,   // the packet must be dropped (API)
-    output wire       silent_o,   // 3.2 characters without a byte
+    output wire       silent_o,   // no byte has arrived for 3.2 characters
     input  wire       rx_idle_i,
     // memory
     output wire       wr_valid_o,
     output reg  [7:0] wr_data_o,
     output reg  [6:0] wr_index_o, // index of the byte in the packet
-    output reg  [7:0] wr_be_o,    // byte enable, one bit: the byte's position in a word of eight
-                                  // bytes
+    // byte enables: one bit is set, at the position of the byte in a word of eight bytes
+    output reg  [7:0] wr_be_o,
     input  wire       wr_ready_i,
     input  wire       wr_busy_i,
     // ring
     input  wire       full_i,
-    output wire       push_o,     // the packet is complete: wr_index_o bytes
+    output wire       push_o,     // the packet is complete and has wr_index_o bytes
     output reg        overrun_o   // one cycle: a packet or bytes were dropped
 );
-    reg [6:0] length;   // announced number of bytes minus 5; ignored if above 95
+    reg [6:0] length;   // announced length minus 5; ignored if it is above 95
     reg       near;     // wr_index_o / 4 is length / 4 + 1
-    reg [8:0] silence;  // ticks; 256 are 3.2 characters
+    reg [8:0] silence;  // ticks without a byte; 256 ticks are 3.2 characters
     reg       pending;  // wr_data_o waits
-    reg       ending;   // the last byte is in wr_data_o or has been written
+    reg       ending;   // the last byte of the packet is in wr_data_o, or has been written
     reg       dropping; // no buffer was free for this packet, or a byte of it was lost
-    reg       deaf;     // bytes were lost: the input is ignored until there is silence
+    reg       deaf;     // bytes were lost; all further bytes are ignored until the line is silent
 
     wire       first   = wr_index_o == 7'd0;
     wire       begins  = pending && first && !ending;
@@ -54,8 +54,8 @@ module modem_rx (
     wire       late    = (rx_valid_i || rx_error_i || rx_end_i || rx_bad_i) && pending && !taken &&
         !deaf;
     wire       done    = ending && !wr_busy_i;
-    // The index is at most 100, so four of its bits identify 99. modem_api_rx never delivers a
-    // packet of this length.
+    // The index is at most 100, so that four of its bits are enough to identify 99. modem_api_rx
+    // never delivers a packet of this length.
     wire       longest = api_i ? &wr_index_o[6:4] :
                          (wr_index_o[6] && wr_index_o[5] && wr_index_o[1] && wr_index_o[0]) ||
                          (near && wr_index_o[1:0] == length[1:0]);
@@ -127,7 +127,7 @@ module modem_rx (
     end
 
 `ifdef FORMAL
-    // Proves that a packet is published once, after all its bytes are in memory.
+    // Proves that a packet is published once, and only after all its bytes are in memory.
     wire [6:0] most = api_i ? 7'd113 : 7'd100;
     reg past = 1'b0;
     initial assume (rst_i);
@@ -147,7 +147,8 @@ module modem_rx (
         assume (!wr_ready_i || (wr_valid_o && !owed));
         assume (wr_busy_i == owed);
         owed <= write || (owed && !acknowledge);
-        // In modem.v, only a packet fills the ring, and the block sees a full ring one clock later.
+        // In modem.v, the ring becomes full only by a packet, and this block receives the flag one
+        // clock later.
         if (past)
             assume (!full_i || $past(full_i) || $past(push_o));
         wrote <= wrote + write;
@@ -164,13 +165,14 @@ module modem_rx (
             lost  <= 1'b0;
         end
         if (past && !rst_i && !$past(rst_i)) begin
-            // An unreleased packet is never overwritten: nothing is written while the ring is full,
-            // nor beyond the longest packet; bytes are written in order, each to its position.
+            // A packet that has not been released is never overwritten: nothing is written while
+            // the ring is full, or after the longest packet. Bytes are written in order, each at
+            // its position.
             assert (!wr_valid_o || (!full_i && wr_index_o < most));
             assert (wr_be_o == 8'd1 << wr_index_o[2:0]);
             assert (!wr_valid_o || (wr_data_o == latest && wr_index_o == wrote && !lost));
-            // A published packet was completely written and acknowledged, and a buffer was free for
-            // it.
+            // All bytes of a published packet were written and acknowledged, and a buffer was free
+            // for the packet.
             if (push_o)
                 assert (!owed && !wr_valid_o && !full_i && !lost &&
                         wrote == wr_index_o && wrote != 7'd0 && wrote <= most);
@@ -180,9 +182,9 @@ module modem_rx (
             assert (!overrun_o || $past(late || dropping));
             assert (!(overrun_o && $past(push_o && !late)));
             assert (!lost || (ending && dropping));
-            assert (silence == ticks); // both counts reach 256 after 3.2 characters
-            // After a loss, input is ignored until there is silence, so the tail of a packet is not
-            // taken for a packet.
+            assert (silence == ticks); // Both counts reach 256 after 3.2 characters.
+            // After a loss, bytes are ignored until the line is silent, so that the rest of a
+            // packet is not taken for a new packet.
             assert (deaf || !$past(deaf) || $past(silence[8]));
             // The packet has the length given by its first byte.
             if (wrote != 7'd0 && !dropping)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_timer: counts time in units of 17/16 ms; the margin of 1/16 covers the clock tolerance of
-// the modem.
+// modem_timer: counts time in units of 17/16 ms. The additional 1/16 covers the tolerance of the
+// clock in the modem.
 
 `default_nettype none
 
@@ -11,12 +11,12 @@ module modem_timer #(
     input  wire        clk_i,
     input  wire        rst_i,
     input  wire        clear_i,
-    output reg         tick_o, // one cycle per unit
-    output reg  [11:0] time_o  // units since clear_i
+    output reg         tick_o, // high for one cycle per unit
+    output reg  [11:0] time_o  // units since clear_i was high
 );
     localparam [31:0] CLOCKS = CLK_HZ / 16000 * 17;
-    localparam [16:0] FIRST  = 17'd1 - CLOCKS[16:0]; // first value; two clocks before the tick the
-                                                     // counter is 2**17 - 1
+    // first value of the counter; the counter reaches 2**17 - 1 two clocks before the tick
+    localparam [16:0] FIRST  = 17'd1 - CLOCKS[16:0];
 
     reg [16:0] clocks;
 
@@ -35,8 +35,8 @@ module modem_timer #(
     end
 
 `ifdef FORMAL
-    // Proves that time_o counts the ticks since clear_i. Up to the tick, n clocks equal one step of
-    // n, which the simulator adds at once.
+    // Proves that time_o counts the ticks since clear_i. Before the tick, n clocks have the same
+    // effect as one step of n, which the simulator computes at once.
     (* anyseq *) reg begins; // a span
     reg        past = 1'b0, spans = 1'b0;
     reg [16:0] then, n;
@@ -57,7 +57,7 @@ module modem_timer #(
             n         <= 17'd1;
         end
         if (past) begin
-            // A unit begins with clear_i and with each tick, which counts.
+            // A unit begins with clear_i, and with each tick, which is counted.
             assert (passed == 17'd0 || !$past(rst_i || clear_i || tick_o));
             assert (time_o ==
                     ($past(rst_i || clear_i) ? 12'd0 : $past(time_o) + {11'd0, $past(tick_o)}));

@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_tx: sends the packets in the transmit ring, each as one RF packet.
+// modem_tx: sends the packets of the transmit ring, each as one RF packet.
 //
-// After a packet of fewer than 100 bytes (95 if the modem encrypts) the line pauses for four
-// characters. This exceeds the modem's RO of 3, so the modem transmits the packet. A packet of 100
-// (95) bytes is transmitted without a pause.
+// After a packet of fewer than 100 bytes (95 if the modem encrypts), the line is silent for four
+// characters. This is longer than RO, which is set to 3 characters, so the modem transmits the
+// packet. The modem transmits a packet of 100 (95) bytes without such a pause.
 
 `default_nettype none
 
 module modem_tx (
     input  wire       clk_i,
-    input  wire       rst_i,        // reset, which also drops the current packet
-    input  wire       enable_i,     // the modem is configured
-    input  wire       encrypt_i,    // the modem encrypts
+    input  wire       rst_i,        // reset; it also drops the current packet
+    input  wire       enable_i,     // the modem has been configured
+    input  wire       encrypt_i,    // the modem encrypts packets
     input  wire       api_i,        // API mode: no pause after a frame
     // oldest packet of the ring
     input  wire       packet_valid_i,
     input  wire [6:0] packet_bytes_i,
-    output reg        sent_o,       // one cycle: the packet has been sent, and its buffer is free
+    // high for one cycle: the packet has been sent, so its buffer is free
+    output reg        sent_o,
     // memory
     output wire       rd_valid_o,
     output wire [6:0] rd_index_o,   // index of the byte in the packet
@@ -25,8 +26,9 @@ module modem_tx (
     input  wire [7:0] rd_data_i,
     // bytes out
     output wire       tx_valid_o,
-    output reg  [7:0] tx_data_o,    // 0 while not enabled
-    input  wire       tx_ready_i,   // one cycle per tick (eight per bit) while the line is idle
+    output reg  [7:0] tx_data_o,    // byte to send; 0 while enable_i is low
+    // high for one cycle per tick (eight per bit) while the line is idle
+    input  wire       tx_ready_i,
     output wire       tx_last_o,    // this is the last byte of the packet
     input  wire       cts_i         // 1: the modem accepts bytes
 );
@@ -34,8 +36,9 @@ module modem_tx (
     wire [6:0] longest = encrypt_i ? 7'd95 : 7'd100;
 
     reg [1:0] state;
-    reg [8:0] count; // number of bytes read; in state REST, ticks of silence
-    // in REST: the modem sends this packet without a pause; a register, to shorten the path
+    reg [8:0] count; // number of bytes read; in state REST, number of ticks of silence
+    // in state REST: the modem transmits this packet without a pause. A register, because the path
+    // would be too long
     reg       whole;
 
     wire last   = rd_index_o == packet_bytes_i;                // all bytes of the packet have been
@@ -46,7 +49,8 @@ module modem_tx (
     wire leaves = tx_valid_o && tx_ready_i;
     wire ends   = state == REST && (tx_ready_i || api_i) && rested;
 
-    // The set-up restarts the transmitter: an interrupted packet is sent again from its first byte.
+    // The set-up restarts the transmitter. A packet that was interrupted is sent again from its
+    // first byte.
     wire begin_anew = rst_i || !enable_i;
 
     assign rd_valid_o = state == FETCH && packet_valid_i && enable_i && !sent_o;
@@ -71,7 +75,7 @@ module modem_tx (
                 state  <= FETCH;
             end
         endcase
-        if (rd_done_i || (state == REST && tx_ready_i)) // rd_done_i occurs only in state FETCH
+        if (rd_done_i || (state == REST && tx_ready_i)) // rd_done_i is high only in state FETCH
             count <= count + 9'd1;
         if (begin_anew || ends || (leaves && last))
             count <= 9'd0;
@@ -83,19 +87,20 @@ module modem_tx (
     end
 
 `ifdef FORMAL
-    // Proves that the bytes of a packet leave once, in order, and that its buffer is freed after
-    // the last byte.
+    // Proves that the bytes of a packet are sent once and in order, and that the buffer is freed
+    // after the last byte.
     reg past = 1'b0;
     initial assume (rst_i);
-    reg [6:0] out  = 7'd0; // number of bytes of this packet that have left
+    reg [6:0] out  = 7'd0; // number of bytes of this packet that have been sent
     reg [7:0] read = 8'd0; // latest byte read
-    reg [8:0] rest;        // ticks since the last byte left
-    reg       full;        // the modem sends the packet without a pause because of its length
+    reg [8:0] rest;        // ticks since the last byte was sent
+    reg       full;        // the modem transmits this packet without a pause, because of its length
     always @(posedge clk_i) begin
         past <= 1'b1;
         if (past)
             assume ($stable(api_i));
-        // The ring keeps its oldest packet, of 1..105 bytes (modem.v), until the packet is sent.
+        // Assumptions about modem.v: the oldest packet of the ring has 1..105 bytes and stays in
+        // the ring until it is sent.
         if (past && $past(packet_valid_i) && !$past(sent_o) && !$past(rst_i))
             assume (packet_valid_i && $stable(packet_bytes_i));
         assume (packet_bytes_i >= 7'd1 && packet_bytes_i <= 7'd105);
@@ -109,22 +114,23 @@ module modem_tx (
         if (sent_o || begin_anew)
             out <= 7'd0;
         if (past && !rst_i && !$past(begin_anew)) begin
-            // Bytes are read from a packet of the ring, in order, once, never beyond its end.
+            // Bytes are read from the oldest packet only, in order, once, and never after its end.
             assert (!rd_valid_o || (packet_valid_i && rd_index_o == out && out < packet_bytes_i));
             assert (!tx_valid_o ||
                     (rd_index_o == out + 7'd1 && tx_last_o == (rd_index_o == packet_bytes_i)));
             if (tx_valid_o)
                 assert (tx_data_o == read);
-            // The buffer is released once, when all its bytes have left.
+            // The buffer is freed once, after all its bytes have been sent.
             if (sent_o)
                 assert (packet_valid_i && out == packet_bytes_i && !$past(sent_o));
-            // After a packet that the modem does not send at once because of its length, the line
-            // is idle for 320 ticks.
+            // If the length of a packet does not make the modem transmit it, the line is idle for
+            // 320 ticks after the packet.
             if (state == REST && tx_ready_i)
                 assert (ends == (api_i || full || rest >= 9'd320));
             assert (state != REST || (count == rest && whole == full));
         end
-        if (past) // Each state is at a known byte; the induction needs this.
+        // The number of bytes is known in each state; the induction needs these invariants.
+        if (past)
             case (state)
                 FETCH:   assert (sent_o ? packet_valid_i && rd_index_o == 7'd0 &&
                                  out == packet_bytes_i :

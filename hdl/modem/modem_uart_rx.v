@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_uart_rx: receives bytes, 8N1, eight ticks per bit; samples each bit within an eighth of a
-// bit before its middle.
+// modem_uart_rx: receives bytes, 8N1, with eight ticks per bit. Each bit is sampled in the last
+// eighth of a bit time before its middle.
 
 `default_nettype none
 
@@ -20,10 +20,11 @@ module modem_uart_rx (
     wire      rxd_sync;
     cdc_bit #(.INITIAL(1'b1)) u_rxd (.clk_i(clk_i), .bit_async_i(rxd_i), .bit_sync_o(rxd_sync));
     reg [2:0] ticks;
-    reg [8:0] bits;    // bits received; they enter at the top, above a 1 that reaches the bottom
-                       // with the eighth bit
-    reg       idle;    // no start bit was seen since the last byte
-    reg       started; // the start bit was still low in its middle
+    // bits received so far. They enter at the top and shift down; a 1 below them reaches the bottom
+    // with the eighth bit
+    reg [8:0] bits;
+    reg       idle;    // no start bit has been detected since the last byte
+    reg       started; // the line was still low in the middle of the start bit
     reg       armed;   // the line has been high since the last byte
 
     wire line   = rxd_sync;
@@ -46,7 +47,7 @@ module modem_uart_rx (
             started <= 1'b1;
             if (!started) begin
                 bits <= 9'h100;
-                idle <= line; // a glitch is not a start bit
+                idle <= line; // a glitch does not count as a start bit
             end else if (!bits[0]) begin
                 bits <= {line, bits[8:1]};
             end else begin
@@ -66,17 +67,18 @@ module modem_uart_rx (
     end
 
 `ifdef FORMAL
-    // Proves that a byte from a sender of the same rate is received once, in its stop bit, and that
-    // a tick without a sample changes nothing else. With `sender`, the sender advances one tick per
-    // clock. Otherwise ticks and line are free, and only changes are checked.
+    // Proves that a byte from a sender with the same rate is received once, during its stop bit,
+    // and that a tick without a sample changes nothing else. With `sender`, a model of the sender
+    // advances by one tick per clock. Otherwise ticks and line are unconstrained, and only changes
+    // of registers are checked.
     (* anyconst *) reg sender;
     reg past = 1'b0;
     wire busy = !idle;
     initial assume (rst_i);
     (* anyconst *) reg [7:0] sent;
     (* hierconn, init = 1'b1 *) wire \u_rxd.bit_meta ;
-    reg [6:0] age = 7'd127; // ticks since the edge of the start bit reached the first flip-flop;
-                            // 127: no start bit yet
+    // ticks since the edge of the start bit reached the first flip-flop; 127 before a start bit
+    reg [6:0] age = 7'd127;
     wire [9:0] frame = {1'b1, sent, 1'b0};
     wire [6:0] before = age - 7'd1;
     wire [3:0] got = (age - 7'd6) >> 3; // number of data bits sampled
@@ -107,14 +109,14 @@ module modem_uart_rx (
                 assert (bits == (({1'b0, sent} << (4'd9 - got)) | (9'h100 >> got)));
             assert (armed || age == 7'd127 || age > 7'd77);
         end
-        // After a framing error (a break) no byte begins until the line has been high.
+        // After a framing error (a break), the next byte begins only after the line has been high.
         if (past && !$past(rst_i)) begin
             assert (!framing_error_o || !armed);
             assert (!armed || $past(armed || line));
             assert (idle || !$past(idle) || $past(armed && !line));
         end
-        // A tick without a sample changes only `ticks`: the simulator skips it. Without a tick, or
-        // while the line is idle, nothing changes.
+        // A tick without a sample changes only `ticks`, so the simulator may skip it. Without a
+        // tick, and while the line is idle, nothing changes.
         if (past && !$past(rst_i) && $past(busy && !(tick_i && ticks == 3'd7)))
             assert (busy && {bits, started, armed} == $past({bits, started, armed}) && !valid_o &&
                     !framing_error_o &&

@@ -11,17 +11,19 @@ module modem_uart_tx (
     // bytes in
     input  wire       valid_i,
     input  wire [7:0] data_i,
-    // one cycle per tick while the line is idle, and at the end of a stop bit
+    // high for one cycle per tick while the line is idle, and at the end of a stop bit
     output wire       ready_o,
     // pin
     output wire       txd_o
 );
     reg [2:0] ticks;
-    reg [8:0] bits;  // bits still to send: data below the 1 of the stop bit, which marks the end
+    // bits that are still to be sent; the 1 of the stop bit is above the data and marks the end
+    reg [8:0] bits;
     reg       line;
     reg       busy;
 
-    // Bytes follow each other without a gap; one more tick per byte would cost 1.2 % of the line.
+    // Bytes follow each other without a gap, because an additional tick per byte would cost 1.2 %
+    // of the rate.
     wire ends = busy && ticks == 3'd7 && bits == 9'd0;
     assign ready_o = tick_i && (!busy || ends);
     assign txd_o   = line;
@@ -49,12 +51,12 @@ module modem_uart_tx (
     end
 
 `ifdef FORMAL
-    // Proves that a byte that was taken is on the line as start bit, eight bits and stop bit.
-    // `sent` is any byte that was taken; each of its ten bits lasts eight ticks.
+    // Proves that a byte that was taken appears on the line as start bit, eight bits and stop bit.
+    // `sent` is any byte that was taken. Each of its ten bits lasts eight ticks.
     reg past = 1'b0;
     initial assume (rst_i);
     reg [7:0] sent;
-    reg [6:0] age = 7'd80; // ticks since the byte was taken; 80: the byte is finished
+    reg [6:0] age = 7'd80; // ticks since the byte was taken; 80 when the byte is finished
     wire [9:0] frame = {1'b1, sent, 1'b0};
     always @(posedge clk_i) begin
         past <= 1'b1;
@@ -69,7 +71,7 @@ module modem_uart_tx (
         if (past) begin
             assert (ready_o == (tick_i && age >= 7'd79));
             assert (txd_o == (age == 7'd80 ? 1'b1 : frame[age[6:3]]));
-            // A tick within a bit changes only `ticks`: the simulator skips it.
+            // A tick within a bit changes only `ticks`, so the simulator may skip it.
             if (!$past(rst_i) && $past(busy && ticks != 3'd7))
                 assert ({busy, bits, line} == $past({busy, bits, line}) &&
                         ticks == $past(ticks) + {2'd0, $past(tick_i)});
@@ -78,7 +80,8 @@ module modem_uart_tx (
                 assert ({busy, bits, line, ticks} == $past({busy, bits, line, ticks}));
         end
         cover (past && age == 7'd80 && $past(age) == 7'd79 && sent == 8'hA5);
-        cover (past && age == 7'd0 && $past(age) == 7'd79); // reaches a byte that follows at once
+        // reaches a byte that follows without a gap
+        cover (past && age == 7'd0 && $past(age) == 7'd79);
     end
 `endif
 `ifdef COVER_POINTS

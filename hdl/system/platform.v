@@ -12,7 +12,9 @@ module platform #(
     parameter             SLOTS     = 3, // number of slots, 1 to 64
     parameter             PORTS     = 2, // number of memory ports, 2 to 8
     // one bit per memory port: 1 if the port needs a FIFO for read words
-    parameter [PORTS-1:0] READ_FIFO = 0
+    parameter [PORTS-1:0] READ_FIFO = 0,
+    // one bit per memory port: 1 if the port writes only single bytes (npi_arbiter)
+    parameter [PORTS-1:0] BYTES     = 0
 ) (
     input  wire                 clk_i,
     input  wire                 rst_i,
@@ -124,7 +126,7 @@ module platform #(
         .clk_i(clk_i), .bit_async_i(mcb_calib_done_i), .bit_sync_o(calib_done)
     );
 
-    memory_mcb #(.PORTS(PORTS), .READ_FIFO(READ_FIFO)) u_memory (
+    memory_mcb #(.PORTS(PORTS), .READ_FIFO(READ_FIFO), .BYTES(BYTES)) u_memory (
         .clk_i(clk_i), .rst_i(rst_i),
         .npi_addr_i({npi_addr_i, npi_addr}),
         .npi_addr_req_i({npi_addr_req_i, npi_addr_req}),

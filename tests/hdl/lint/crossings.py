@@ -1,14 +1,16 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""crossings: finds flip-flops that depend on another clock or on a pin, other than through hdl/cdc.
+"""crossings: finds flip-flops that depend on another clock or on a pin, other than through hdl/cdc,
+and outputs to pins that may glitch.
 
 Usage: crossings.py TOP CLOCK SOURCE GENERATED WORK PARAMETERS [SYNCHRONOUS-INPUT...]
 
 Yosys runs the commands PARAMETERS, then flattens TOP, but keeps the modules of hdl/cdc. A register
 of CLOCK may depend on registers of CLOCK, on the listed inputs, and on outputs of hdl/cdc for
 CLOCK. A register that a pin clocks may depend on pins, because they change together with this pin,
-and on registers that a pin clocks. Asynchronous resets do not count as data. Exit status 1 means
-that a crossing bypasses hdl/cdc; each such crossing is listed.
+and on registers that a pin clocks. Asynchronous resets do not count as data. An output to a pin
+must be driven by a flip-flop, or depend on pins only; SAMPLED lists the exceptions. Exit status 1
+means that a crossing bypasses hdl/cdc, or that an output may glitch; each of them is listed.
 """
 
 import json
@@ -20,6 +22,10 @@ from pathlib import Path
 
 CLOCKS = {"clk_i", "dst_clk_i", "src_clk_i", "read_clk_i", "write_clk_i"}
 OF_WRITER = {"full_o", "push_i", "data_i"}
+PIN = re.compile(r"fsmc_.*_o|modem_.*_o|core_pins_o|irq_o")
+# The processor samples fsmc_d_o only 4 HCLK after NWAIT. formal.fsmc_bridge and
+# tests/hdl/fsmc/nwait_test.py show that fsmc_nwait_n_o does not glitch.
+SAMPLED = {"fsmc_d_o", "fsmc_nwait_n_o"}
 NO_DATA = {"CLK", "ARST", "ALOAD", "RD_CLK", "WR_CLK"}
 
 
@@ -75,7 +81,7 @@ class Nets:
 
     def __init__(self, module, main_clock, synchronous):
         self.names, self.clock, self.comb, self.sinks = names_of(module), {}, {}, []
-        self.seen, self.visited = {}, set()
+        self.seen, self.visited, self.inverted = {}, set(), {}
         ports = module["ports"].values()
         self.pins = {b for port in ports if port["direction"] == "input" for b in port["bits"]}
         self.clock = dict.fromkeys(self.pins, "pin")
@@ -93,6 +99,8 @@ class Nets:
                 needs = [b for p in ins for b in nets[p]]
                 outs = [b for p in nets if way[p] == "output" for b in nets[p]]
                 self.comb.update(dict.fromkeys(outs, needs))
+                if cell["type"] == "$not":
+                    self.inverted.update(zip(outs, needs))
 
     def add_crossing(self, name, kind, nets, ins):
         """Adds an instance of a module of hdl/cdc."""
@@ -137,6 +145,19 @@ class Nets:
                 self.visited.add(b)
         return seen[bit]
 
+    def glitches(self, ports):
+        """Returns the outputs to pins that neither a flip-flop nor pins alone drive."""
+        bad = set()
+        for name in filter(PIN.fullmatch, ports.keys() - SAMPLED):
+            for bit in ports[name]["bits"]:
+                bit = self.inverted.get(bit, bit)
+                if isinstance(bit, int) and bit not in self.clock and \
+                        self.origins(bit).keys() - {"pin"}:
+                    bad.add(f"{name}: expected a flip-flop at the pin, got logic of "
+                            f"{', '.join(sorted(map(str, self.origins(bit).values())))}; it may "
+                            "glitch")
+        return bad
+
     def bad(self, main_clock):
         """Returns the sinks that depend on a source that is not allowed."""
         return {
@@ -155,6 +176,7 @@ def main():
     main_clock = module["ports"][clock]["bits"][0]
     nets = Nets(module, main_clock, synchronous)
     bad = sorted(nets.bad(main_clock)) if nets.sinks else ["no register at all"]
+    bad += sorted(nets.glitches(module["ports"]))
     for line in bad:
         print(f"{top}: {line}")
     sys.exit(1 if bad else 0)

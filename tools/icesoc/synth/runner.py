@@ -93,7 +93,8 @@ def script_of(run, library, options, output, more="", memory=False):
     cells, mapping = ((options.scripts / f"xilinx_{name}.ys").read_text()
                       for name in ("cells", "map"))
     if run.design.limits:
-        cells, script = "", script.replace("prepare:", "begin:")
+        command_line = re.search(r"synth_xilinx .*-run ", script)
+        cells = f"{command_line[0]}begin:prepare" if command_line else ""
     if not memory and not any(DECLARES_MEMORY.search(read(file)) for file in files):
         script = script.replace("@NO_MEMORY@", NO_MEMORY).replace("-run map_memory:",
                                                                   "-run map_ffram:")

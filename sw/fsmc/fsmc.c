@@ -39,8 +39,15 @@
 /* Settings of FSMC_init: mode 1 with NWAIT, which is active low. With ADDSET 2, NWAIT is valid when
  * the data phase begins; NWAIT follows the pins in less than 16 ns. DATAST 4 is the smallest value
  * that NWAIT permits (docs/fsmc.md). */
+#ifndef FSMC_SYNC
 #define BCR_VALUE (BCR_ALWAYS | BCR_ASYNCWAIT)
 #define BTR_VALUE (BTR_ADDSET(2) | BTR_DATAST(4) | BTR_BUSTURN(1))
+#else
+/* FSMC_SYNC: the FPGA has the bridge that samples its pins (fsmc_sync_bridge). Mode A: both strobes
+ * are high for ADDSET, 6 HCLK, between two accesses. Streams also use NWAIT. */
+#define BCR_VALUE (BCR_ALWAYS | BCR_EXTMOD | BCR_ASYNCWAIT)
+#define BTR_VALUE (BTR_ADDSET(6) | BTR_DATAST(5) | BTR_BUSTURN(1))
+#endif
 
 #define WINDOW_MASK ((1U << MAP_DDR_WINDOW_LOG2) - 1U)
 
@@ -68,6 +75,9 @@ FSMC_Status FSMC_init(const FSMC_Port* port, void* context) {
     fsmcContext = context;
     for (bank = 0; bank < 2U; ++bank) {
         port->write32(context, FSMC_BTR(bank), BTR_VALUE);
+#ifdef FSMC_SYNC
+        port->write32(context, FSMC_BWTR(bank), BTR_VALUE);
+#endif
         port->write32(context, FSMC_BCR(bank), BCR_VALUE);
     }
     return identify();
@@ -165,6 +175,9 @@ void FSMC_setHclk(U32 hz) {
 }
 
 static void setBank(int fast) {
+#ifdef FSMC_SYNC
+    (void)fast;
+#else
     if (fast) {
         fsmcPort->write32(fsmcContext, FSMC_BTR(0), BTR_DATAST(readDatast) | BTR_BUSTURN(1));
         fsmcPort->write32(fsmcContext, FSMC_BWTR(0),
@@ -174,6 +187,7 @@ static void setBank(int fast) {
         fsmcPort->write32(fsmcContext, FSMC_BCR(0), BCR_VALUE);
         fsmcPort->write32(fsmcContext, FSMC_BTR(0), BTR_VALUE);
     }
+#endif
 }
 
 /* Returns 1 if an access since the last call was too early for the bridge. The function reads a

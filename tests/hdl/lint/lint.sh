@@ -33,7 +33,7 @@ async_fifo) variants='LOG2=2 LOG2=6' ;;
 npi_fifo) variants='LOG2=2 LOG2=24,BLOCK=1 LOG2=5 BLOCK=1' ;;
 npi_write_fifo) variants='BYTES=0 BYTES=1 BYTES=1,BLOCK=1' ;;
 modem) variants='CLK_HZ=2000000 CLK_HZ=100000000 API=1' ;;
-fsmc_bridge)
+fsmc_bridge | fsmc_sync_bridge)
     variants='MUXED=1 WAIT_HIGH=1,TIMEOUT_LOG2=24 TIMEOUT_LOG2=1 POST_LOG2=2,BLOCK_LOG2=4'
     variants="$variants POST_LOG2=3,BLOCK_LOG2=1 POST_LOG2=5,BLOCK_LOG2=2"
     refused='MUXED=2 WAIT_HIGH=2 POST_LOG2=1 POST_LOG2=6 BLOCK_LOG2=0 BLOCK_LOG2=5 TIMEOUT_LOG2=0'

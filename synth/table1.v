@@ -10,7 +10,8 @@
 
 module table1 #(
     parameter CLK_HZ    = 100000000, // Hz
-    // 1: the modem controller with API frames, as in the chip that flies; 0: as published
+    // 1: the modem controller has API frames, as in the chip that flies; 0: it has none, as in the
+    // paper
     parameter MODEM_API = 0
 ) (
     input  wire        clk_i,

@@ -122,14 +122,16 @@
     wire [3:0]   out_word  = {wr_be_o[7], wr_data_o[63], wr_be_o[0], wr_data_o[0]};
 
     // ---- Counts, modulo 2**W
-    // words of `me`: pushed into its FIFO; claimed by accepted writes; passed to the back-end
+    // number of words of `me` that were pushed into its FIFO, claimed by accepted writes, or passed
+    // to the back-end
     reg [W-1:0] w_pushed, w_claimed, w_moved;
     reg [W-1:0] r_claimed, r_pushed, r_popped;
-    // words of all ports: of accepted writes; passed to the back-end
+    // numbers of words of all ports: of accepted writes; of these, words passed to the back-end
     reg [W-1:0] all_w, all_moved;
-    // words of all ports: of accepted reads; of issued commands; arrived from the back-end
+    // numbers of words of all ports: of accepted reads; of issued reads; of words that have arrived
+    // from the back-end
     reg [W-1:0] all_r, all_asked, all_came;
-    reg [Q-1:0] accepted, issued;             // requests
+    reg [Q-1:0] accepted, issued;             // numbers of requests
     wire        moves  = wr_valid_o && wr_ready_i;
     wire        comes  = rd_valid_i && rd_ready_o;
     wire        issues = cmd_valid_o && cmd_ready_i;

@@ -54,9 +54,9 @@ golden)
     ;;
 hardware)
     "$slice2c" "$ice" --output-dir "$work/c" $hardware
-    # The registers are a contract, so they are compared with the file. test_slice_hardware runs
-    # wrappers, servants and proxies; test_ip_sample runs new cores.
-    # prints one line for each register, field or event
+    # The registers are a contract, so they are compared with the file: this program prints one line
+    # for each register, field or event. test_slice_hardware runs wrappers, servants and proxies;
+    # test_ip_sample runs new cores.
     /usr/bin/python3 - "$out"/*.regs.json >"$work/registers" <<'PYTHON'
 import json, sys
 for path in sys.argv[1:]:

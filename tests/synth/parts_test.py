@@ -92,8 +92,8 @@ class Timing(unittest.TestCase):
             self.assertAlmostEqual(p["ns"], ns)
 
     def test_paths_of_pads_contain_their_buffers(self):
-        # A LUT that two pads drive itself drives a pad and a flip-flop; the flip-flop drives
-        # another pad. For such a design, XST reports 5.645 ns from pad to pad with a fan-out of 8,
+        # Two pads drive a LUT. The LUT drives a third pad and a flip-flop, and the flip-flop drives
+        # a fourth pad. For such a design, XST reports 5.645 ns from pad to pad with a fan-out of 8,
         # and 3.597 ns from register to pad.
         n = Netlist([lut([10, 11], 12), cell("FDRE", {"C": 2, "D": 12}, {"Q": 13}),
                              *(lut([10], 20 + i) for i in range(7))])

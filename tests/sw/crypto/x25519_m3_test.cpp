@@ -48,7 +48,7 @@ TEST(X25519M3, TakesTheSameCyclesForAnyNumberAndALittleStack) {
         EXPECT_EQ(m3.cpu.word(stack - 576), 0xA5A5A5A5u)
             << "X25519 used more than 576 bytes of stack";
     }
-    EXPECT_LT(cycles[0], 12'000'000u); // 100 ms at 120 MHz
+    EXPECT_LT(cycles[0], 12'000'000u); // this number of cycles takes 100 ms at 120 MHz
     // The model counts 2 cycles more for a multiplication before which it was stopped.
     EXPECT_NEAR(double(cycles[0]), double(cycles[1]), 4);
     EXPECT_EQ(cycles[1], cycles[2]);

@@ -86,9 +86,9 @@ TEST_F(EngineTest, AModemThatIsResetInFlightIsSetUpAgain) {
         rig_.ground->resetPin(false, rig_.ns() + 1000);
         EXPECT_EQ(rig_.ground->parameter("BD"), 3u);
     });
-    EXPECT_TRUE(rig_.read(fd, 1).empty()); // the loss of the connection is reported ...
+    EXPECT_TRUE(rig_.read(fd, 1).empty()); // the program is told that the connection was lost
     close(fd);
-    fd = engine->connect(0); // ... and the next call waits until the link is back
+    fd = engine->connect(0); // this call waits until the link is up again
     echoes(fd, 2);
     close(fd);
     EXPECT_EQ(rig_.with([&] { return rig_.ground->parameter("BD"); }), 7u);

@@ -65,7 +65,7 @@ private:
 class Wire : private LinkEnd {
 public:
     Wire() {
-        begin(16); // 16 us for 16 characters: the path is so fast that no pacing is needed
+        begin(16); // 16 us for 16 characters, so the link need not limit its rate
         Link_start(link(), us());
         if (openpty(&master_, &slave_, name_, nullptr, nullptr) != 0)
             throw std::runtime_error("no pty");

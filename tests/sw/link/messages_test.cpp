@@ -226,7 +226,7 @@ TEST_P(FullOvertaking, ManyShortOnesLeaveTheLongOneHalf) {
             return b.received.size() && b.received.back().first == 0;
         },
         5'000'000));
-    // at most one short message for each fragment of the long message
+    // at most one short message may overtake each fragment of the long message
     EXPECT_LE(b.received.size(), 12u);
     EXPECT_GE(b.received.size(), 6u);
 }

@@ -193,7 +193,8 @@ static void setFaultmask(void) {
                      : "r"(1));
 }
 
-void Case_faultmaskIgnored(void) { /* in the handler of an NMI */
+/* FAULTMASK is written in the handler of an NMI, where it must have no effect */
+void Case_faultmaskIgnored(void) {
     Case_action[2] = setFaultmask;
     Case_priority(0, 0x80);
     SCB_ICSR = 1UL << 31;

@@ -8,8 +8,7 @@
 // - A word written to the bus consists of the last two completed register accesses of the
 //   processor: the low half, then the high half of the same word. An aborted access writes nothing.
 // - A write of a high half, or to an address after the last slot, causes exactly one transfer or
-//   one
-//   error report, before the next register access continues. It causes a transfer if the access
+//   one error report, before the next register access continues. It causes a transfer if the access
 //   immediately before was the write of the low half of the word, and no read was attempted between
 //   the two. Otherwise it causes an error report. A write of a low half causes neither.
 // - A read returns a half of the word that the bus returned last, and that word has the address of

@@ -24,16 +24,24 @@ struct HardwareOutput {
 };
 const HardwareOutput hardwareOutputs[] = {
     {"--hw-verilog",
-     "folder for the wrappers of [\":hw\"] interfaces (docs/hw-mapping.md)",
+     "folder for the wrappers of [\":hw\"] interfaces in Verilog (docs/hw-mapping.md)",
      {hw::verilogFile}},
-    {"--hw-vhdl", "folder for the same wrappers in VHDL", {hw::vhdlFile}},
-    {"--hw-regs", "folder for their registers, *.regs.json", {hw::registersFile}},
-    {"--hw-c", "folder for their servants in C90", {hw::servantHeader, hw::servantSource}},
-    {"--hw-cpp", "folder for their proxies in C++, for test benches", {hw::proxyFile}},
+    {"--hw-vhdl", "folder for the wrappers of [\":hw\"] interfaces in VHDL", {hw::vhdlFile}},
+    {"--hw-regs",
+     "folder for the register descriptions of [\":hw\"] interfaces, *.regs.json",
+     {hw::registersFile}},
+    {"--hw-c",
+     "folder for the servants of [\":hw\"] interfaces in C90",
+     {hw::servantHeader, hw::servantSource}},
+    {"--hw-cpp",
+     "folder for the C++ proxies of [\":hw\"] interfaces, for test benches",
+     {hw::proxyFile}},
     {"--hw-new-verilog",
-     "folder for a core to begin with, in Verilog, and its test",
+     "folder for a first version of each core in Verilog, and its test",
      {hw::verilogSkeleton, hw::testSkeleton}},
-    {"--hw-new-vhdl", "folder for the same in VHDL", {hw::vhdlSkeleton, hw::testSkeleton}}};
+    {"--hw-new-vhdl",
+     "folder for a first version of each core in VHDL, and its test",
+     {hw::vhdlSkeleton, hw::testSkeleton}}};
 
 struct Options {
     std::vector<std::string> files, includes, defines, undefines;
@@ -241,7 +249,8 @@ bool compile(const std::string& file, const Options& o, Collected& all) {
 
 void addOptions(CLI::App& app, Options& o) {
     app.add_option("files", o.files, "Slice files");
-    app.add_option("-I", o.includes, "folder to look for #include files")->allow_extra_args(false);
+    app.add_option("-I", o.includes, "folder to search for included files; can be repeated")
+        ->allow_extra_args(false);
     app.add_option("-D", o.defines, "define a preprocessor symbol: NAME or NAME=VALUE")
         ->allow_extra_args(false);
     app.add_option("-U", o.undefines, "undefine a preprocessor symbol")->allow_extra_args(false);
@@ -252,11 +261,12 @@ void addOptions(CLI::App& app, Options& o) {
                    "extension of headers, without the dot (default: h)");
     app.add_option("--source-ext", o.sourceExtension,
                    "extension of sources, without the dot (default: c)");
-    app.add_option("--include-dir", o.includeDir, "folder of the header in the sources' #include");
+    app.add_option("--include-dir", o.includeDir,
+                   "folder in front of the header's name in the sources' #include");
     for (size_t i = 0; i < std::size(hardwareOutputs); ++i)
         app.add_option(hardwareOutputs[i].option, o.hardware[i], hardwareOutputs[i].help);
     app.add_flag("--hw-own-clock", o.hwOwnClock,
-                 "the clock of each core may stop; servants check that the core has answered");
+                 "for cores whose clock may stop: servants check that the core has answered");
     app.add_flag("--describe", o.describe,
                  "print the declarations as JSON, generate nothing (docs/call.md)");
     app.add_flag("--depend", o.depend, "print make dependencies, generate nothing");

@@ -109,7 +109,7 @@ void asyncFunction(Writer& w, const CContext& c, const Declaration& d, const Ope
 } // namespace
 
 std::string clientFile(const CContext& c) {
-    Writer w = c.beginSource("Proxies: calls to objects elsewhere.");
+    Writer w = c.beginSource("Proxies: synchronous calls.");
     c.each(Declaration::Kind::Interface, [&](const Declaration& d) {
         if (d.isForward)
             return;

@@ -93,7 +93,7 @@ void readFunction(Writer& w, const Declaration& d) {
                        w.line("bytes = Ice_InputStream_readBlob(is, v->size);");
                        w.single("if (bytes)", "memcpy(v->data, bytes, (size_t)v->size);");
                    } else if (bytes) {
-                       w.line("/* In place: the bytes stay in the message. */");
+                       w.line("/* The bytes are not copied: they stay in the message. */");
                        w.line("v->data = (Ice_Byte *)Ice_InputStream_readBlob(is, v->size);");
                        w.single("if (!v->data)", "v->size = 0;");
                    } else {

@@ -152,7 +152,7 @@ void declareThrown(Writer& w, const CContext& c, const Declaration& d, const Ope
     w.blank();
     if (c.thrownAs(o) != op) {
         Writer::Values v = {{"op", op}, {"as", c.thrownAs(o)}};
-        w.line("/* {op} throws what {as} does: one union serves both. */", v);
+        w.line("/* {op} throws the same exceptions as {as}, so both use one union. */", v);
         w.line("typedef {as}_Exception {op}_Exception;", v);
         w.line("#define {op}_none {as}_none", v);
         for (const Declaration* e : family)
@@ -226,7 +226,8 @@ void declareServant(Writer& w, const Declaration& d) {
     w.line("    const struct {c}_Operations *operations;", v);
     w.line("} {c}, *{c}Ptr;", v);
     w.blank();
-    w.line("/* A servant's operations; 0 for one that it does not have. */");
+    w.line(
+        "/* A servant's functions, one for each operation; 0 if the servant does not have it. */");
     w.type("struct", cName(d) + "_Operations", [&] {
         for (const Declaration* base : d.bases)
             w.line(cName(*base) + "_Operations " + cName(*base) + "_;");
@@ -238,7 +239,8 @@ void declareServant(Writer& w, const Declaration& d) {
     w.line("extern const Ice_Interface {c}_ice_interface;", v);
     w.line("void {c}_initWith({c}Ptr self, const {c}_Operations *operations);", v);
     w.blank();
-    w.line("/* With the operations below, which the application writes. */");
+    w.line(
+        "/* Initialises a servant with the functions below, which the application must define. */");
     w.line("void {c}_init({c}Ptr self);", v);
     for (const Declaration* from : lineage(d))
         for (const Operation& o : from->operations)
@@ -307,7 +309,7 @@ std::string headerFile(const CContext& c) {
         declare(w, *d);
     if (c.usesClasses()) {
         w.blank();
-        w.line("/* The classes that can be received; 0 ends. */");
+        w.line("/* The classes that can be received; 0 marks the end. */");
         w.line("extern const Ice_ValueType *const " + c.valueTable() + "[];");
     }
     c.each(DKind::Interface, [&](const Declaration& d) { declareInterface(w, c, d); });

@@ -56,16 +56,17 @@ std::string readModemKey(const std::string& path) {
 
 void addOptions(CLI::App& app, Options& o) {
     app.add_option("-d,--device", o.device, "serial port of the modem")->required();
-    app.add_option("-b,--baud", o.baud,
-                   "baud rate (default 115200, which is BD 7 of the modem, really 111,111)")
+    app.add_option(
+           "-b,--baud", o.baud,
+           "baud rate of the modem (default 115200, the modem's BD 7, whose real rate is 111,111)")
         ->check(CLI::IsMember({1200, 2400, 4800, 9600, 19200, 38400, 57600, 115200, 250000}));
     const auto one = app.add_option("-a,--address", o.target,
                                     "16-bit address of the only vehicle (default 0x0001)")
                          ->check(CLI::Range(0, 0xFFFE));
     app.add_option("--vehicle", o.vehicles,
-                   "NAME=ADDRESS, such as uav7=0x0007: a vehicle; repeat it for each of several "
-                   "vehicles. The first name in alphabetical order gets the port of --listen, each "
-                   "further name the next port")
+                   "NAME=ADDRESS of a vehicle, such as uav7=0x0007; repeat the option for several "
+                   "vehicles. In alphabetical order of the names, the first vehicle gets the port "
+                   "of --listen, and each further vehicle the next port")
         ->excludes(one);
     app.add_option("-s,--source", o.source,
                    "16-bit address of this ground station (default 0x0000)")
@@ -86,8 +87,8 @@ void addOptions(CLI::App& app, Options& o) {
     app.add_flag("!--no-setup", o.setUp, "do not configure the modem: it is already configured");
     app.add_flag("!--transparent", o.isApi, "use the modem in transparent mode, not in API mode");
     app.add_flag("--wire", o.isWire,
-                 "no modems: the serial port is wired to the vehicle's board, whose jumper PB1 is "
-                 "set");
+                 "the serial port is wired to the vehicle's board, without modems; the board's "
+                 "jumper PB1 must be closed");
     app.add_option("-l,--listen", o.listen,
                    "HOST:PORT at which clients connect, or Ice endpoints such as \"ssl -p 10001\". "
                    "An IPv6 address is written as [::1]:PORT; port 0 selects a free port, which is "
@@ -101,7 +102,7 @@ void addOptions(CLI::App& app, Options& o) {
         ->excludes(station);
     app.add_option("--maintenance", o.maintenance,
                    "HOST:PORT, or Ice endpoints, for maintenance objects such as 'keys', 'update' "
-                   "and 'fpga'; they can be reached there and nowhere else (default: none)");
+                   "and 'fpga'; these objects can only be called there (default: none)");
     app.add_option("--page", o.page,
                    "HOST:PORT of a web page with forms for all operations. Open it under exactly "
                    "this HOST. Browsers call a ws endpoint (wss with IceSSL.CertFile), which is "
@@ -110,14 +111,17 @@ void addOptions(CLI::App& app, Options& o) {
                    "origin of another web page that may make calls, such as "
                    "https://example.org:8443");
     app.add_option("--rights", o.rights,
-                   "JSON file with rules: which certificate may call which identities and "
+                   "JSON file with rules that define which certificates may call which objects and "
                    "operations (default: every client may call everything)");
-    app.add_option("--wait", o.wait,
-                   "time-out for the radio, and then for the vehicle to receive the call, s "
-                   "(default 30)")
+    app.add_option(
+           "--wait", o.wait,
+           "time for which a call may wait until the radio is free, and then again until the "
+           "vehicle has received it, s (default 30)")
         ->check(CLI::Range(1, 3600));
-    app.add_option("-t,--trace", o.trace,
-                   "messages: 0 errors (default), 1 also link and connections, 2 also AT commands")
+    app.add_option(
+           "-t,--trace", o.trace,
+           "messages to print: 0 errors (default), 1 also those about link and connections, "
+           "2 also AT commands")
         ->check(CLI::Range(0, 2));
     app.footer(
         "Ice properties are also options, such as --IceSSL.CertFile=gateway.p12. With\n"

@@ -14,7 +14,7 @@ namespace {
 template <class T> T at(const std::vector<uint8_t>& file, size_t offset) {
     T value;
     if (offset + sizeof value > file.size())
-        throw std::runtime_error("it ends too early");
+        throw std::runtime_error("the file ends too early");
     std::memcpy(&value, file.data() + offset, sizeof value);
     return value;
 }
@@ -48,7 +48,7 @@ ElfImage::ElfImage(const std::string& path) : path_(path) {
             if (p.p_type != PT_LOAD || p.p_filesz == 0)
                 continue;
             if (size_t(p.p_offset) + p.p_filesz > file.size())
-                throw std::runtime_error("it ends too early");
+                throw std::runtime_error("the file ends too early");
             auto begin = file.begin() + p.p_offset;
             segments_.push_back({p.p_paddr, p.p_vaddr, p.p_offset, {begin, begin + p.p_filesz}});
         }

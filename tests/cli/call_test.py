@@ -98,7 +98,7 @@ REFUSED = {
     "pixels @text": "frame: expected a picture, got ",
     'count {"a":2147483648}': "words[\"a\"]: expected -2147483648 to 2147483647",
     "count [1]": "words: expected an object, or a list of [key, value], got [1]",
-    'colours [[{"x":1},"red"],[{"x":1,"y":7},"blue"]]': "is given twice",
+    'colours [[{"x":1},"red"],[{"x":1,"y":7},"blue"]]': "duplicate key",
     'places {"x":{"x":1}}': "key of map: expected -2147483648 to 2147483647, got 'x'",
     'chain {"@type":"Trial.Point","name":"a"}': "first.@type: expected ::Trial::Node or a class",
     "self ::": "other: expected a proxy such as",
@@ -111,7 +111,7 @@ REFUSED = {
     "nothing --page --gateway x": "--page: expected --gateway HOST:PORT, got 'x'",
     "nothing --encoding 2.0": "--encoding: expected 1.0 or 1.1, got '2.0'",
     "nothing --gateway x": "--gateway: expected HOST:PORT",
-    "nothing --device /dev/null --flight x": "--flight, --device exclude each other: give only one",
+    "nothing --device /dev/null --flight x": "--flight, --device exclude each other; give only one",
     "echo " + "\udcff": "text: expected text in UTF-8",
 }
 # Calls that fail, each with exit status and message
@@ -303,8 +303,8 @@ class Call(unittest.TestCase):
         server.stdout.readline()
         for vehicle, wanted in (
                 ("uav7", (0, "3\n", "")),
-                ("uav8", (4, "", "try.add: IceGrid has no vehicle 'uav8': is its gateway "
-                          "running, and the vehicle in reach?"))):
+                ("uav8", (4, "", "try.add: IceGrid has no vehicle 'uav8'; check that its "
+                          "gateway is running and the vehicle is in reach"))):
             status, out, err = self.ask(["add", "1", "2", "--locator", locator, "--vehicle",
                                          vehicle])
             self.assertEqual((status, out), wanted[:2], err)

@@ -118,7 +118,7 @@ class Values(Work):
         place.mkdir()
         text = subprocess.run(["sh", "-c", f"rmdir '{place}' && '{TREE}/icesoc' board list"],
                               cwd=place, capture_output=True, text=True, check=False).stderr
-        self.assertIn("the current folder does not exist any more", text)
+        self.assertIn("the current folder no longer exists", text)
 
     def test_a_missing_flight_in_the_default_folder_is_refused(self):
         status, text = ask("./icesoc", "replay", ICESOC_TREE=str(self.work / "tree"))
@@ -135,7 +135,7 @@ class Values(Work):
             Path(name).touch()
         every = {"LIST": "3", "BY": by, "FIRST": first}
         for given, status, said in (
-                ({}, 0, "only you may read"), ({}, 1, "never overwritten"),
+                ({}, 0, "only you can read"), ({}, 1, "never overwritten"),
                 ({"SIGNING": "1"}, 0, f"public {made} {made}.pub\n"),
                 (every, 0, f"keys 3 {by} {first} {made}\n"),
                 ({**every, "SECOND": second}, 0, f"keys 3 {by} {first} {second} {made}\n"),
@@ -167,7 +167,7 @@ class Values(Work):
                 ("./icesoc fly", {"SEED": "x"}, "SEED: expected a whole number"),
                 ("make -s new-ip NAME=abc", {"LANG": "verilog"},
                  "--lang: expected verilog or vhdl"),
-                ("make -s run OPEN=1 KEY=Makefile", {}, "OPEN=1 flies without a key, KEY=")):
+                ("make -s run OPEN=1 KEY=Makefile", {}, "OPEN=1 and KEY='")):
             self.assertIn(said, ask(*words.split(), **given)[1])
         self.assertNotIn("OPEN=1 flies",
                          ask("make", "-s", "run", "OPEN=0", "KEY=Makefile", "OUT=/proc/none")[1])

@@ -112,7 +112,7 @@ class Cases(Script):
         for text in '{"no": {"test": "and no file"}}\n', "no JSON\n", "[]\n":
             malformed.write_text(text)
             self.ask(*RUN, "--check", status=1)
-            self.has("wrong.bugs.json: not bugs as")
+            self.has("wrong.bugs.json: expected bugs in the format")
         malformed.unlink()
 
         # A test that fails even without a bug detects nothing.

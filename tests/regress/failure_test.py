@@ -20,7 +20,7 @@ RUDE = {
     "Mute": ("exit 3", "^1 x  failed without a word$"),
     "Red": (r"printf '\033[31mx.c:1: error: red\033[0m\n'; exit 1", "^1 x  x.c:1: error: red$"),
     "Leaves": ("setsid sleep 1000 >/dev/null 2>&1 &",
-               r"^A test has left behind, and it was ended: .*sleep 1000 "
+               r"^Ended a process that a test left behind: .*sleep 1000 "
                r"\(in build/main/tests/room\)$"),
     "Writes": ("echo >../../../../written", "^Changed while the tests ran, .*: written$")}
 IDEMPOTENT = "! error: unexpected operation mode. expected Normal, received Idempotent"
@@ -161,7 +161,8 @@ class Cases(Project):
         self.ask("sh", "-c", "trap '' XFSZ; ulimit -f 500; exec $0 --name test_a", REGRESS,
                  status=2)
         self.has("^2 passed, 0 failed",
-                 "^regress: cannot write build/regress/report.html: is the disk full[?]$")
+                 "^regress: cannot write build/regress/report.html; check whether the disk is "
+                 "full$")
         self.assertFalse(Path("build/regress/report.html.part").exists())
         self.assertEqual(Path("build/regress/history.jsonl").read_text().count("\n"), 2)
 
@@ -272,7 +273,7 @@ add_custom_target(test_w)
         append("CMakeLists.txt", "add_subdirectory(ip/core)\n")
         self.tests("")
         self.regress("--name 'test_w|damaged'", 1)
-        self.has("^0 passed, 2 failed", "formal.damaged.vcd is damaged, and not drawn")
+        self.has("^0 passed, 2 failed", "formal.damaged.vcd is damaged, so the page does")
         self.has("^TOP.clk_i$", file="build/regress/failures/test_w.Wave-1.gtkw")
         self.has("test_w.Wave-1.fst", r'"signals":\[\["top.u_post.#"',
                  file="build/regress/report.html")

@@ -40,7 +40,7 @@ computed() {
 }
 same() {
     run
-    { [ $status -eq 0 ] && head -1 "$work/said" | grep -q '^kept: the verdict of 20.*FRESH=1' &&
+    { [ $status -eq 0 ] && head -1 "$work/said" | grep -q '^kept: cached result of 20.*FRESH=1' &&
         grep -q "$2" "$work/said"; } || fail "not kept: $1"
 }
 computed 'never run' "^1 names, one, no limit, nothing else, $PWD/own$"

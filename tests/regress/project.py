@@ -43,7 +43,7 @@ b.Bad)
 c.Flicker) [ ! -e ../../../../flicker ] ;;
 d.Crash) kill -SEGV $$ ;;
 formal)
-    echo "kept: the verdict of yesterday"
+    echo "kept: cached result of yesterday"
     echo "thing: bounded, 6 clocks"
     echo "thing: proven, 12 clauses with 3 flops"
     echo "thing: 2 covers reached" ;;

@@ -426,7 +426,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
 
     def test_seeds(self):
         self.regress("--kept")
-        self.has("no seed is kept")
+        self.has("no failing seed of these tests is known")
         self.regress("--name 'test_[ab]' --seed random --repeat 2", 1)
         seeds = re.findall("^3 tests, SEED=(.*)", self.said, re.M)
         self.assertEqual(len(seeds), 2)
@@ -437,7 +437,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         before = page.read_bytes()
         # the page of the earlier run is unchanged, because no selected test has a recorded seed
         self.regress("--kept --name 'a[.]'")
-        self.has("no seed is kept")
+        self.has("no failing seed of these tests is known")
         self.assertEqual(page.read_bytes(), before)
         self.regress("--kept", 1)
         self.has("0 passed, 2 failed", *(f"^1 tests, SEED={seed}" for seed in seeds))
@@ -446,7 +446,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         edit("tests/room/t.sh", "[ \"$SEED\" = 7 ]", "true")  # removes the bug
         self.regress("--kept")
         self.regress("--kept")
-        self.has("no seed is kept")
+        self.has("no failing seed of these tests is known")
 
     def test_bisect(self):
         """Of five commits, the second cannot be configured, and the third breaks test_a.One. The

@@ -239,7 +239,7 @@ class Reports(unittest.TestCase):
                 with self.assertRaisesRegex(Stop, f"report 1 cannot be read: .*{why}"):
                     reports.read(file)
                 file.write_text("{}")
-                self.assertRaisesRegex(Stop, "no list of reports", reports.read, file)
+                self.assertRaisesRegex(Stop, "expected a list of reports", reports.read, file)
 
 
 class Baseline(unittest.TestCase):

@@ -199,7 +199,7 @@ class Cases(Script):
         self.has("^Designs: 1 measured now, 2 changed since, 1 never measured here")
         edit("project/synth/designs.json", '"lut": 40', '"lut": 1')
         self.run_program("--accept", status=None)
-        self.has("above the limit of 1: nothing is accepted")
+        self.has("above the limit of 1, so no figures were accepted")
 
     def test_broken(self):
         write(BLOCKS / "broken.v", "module broken(input wire a_i); assign b = ; endmodule\n")

@@ -83,7 +83,7 @@ refused 'expected an addrmap' '// nothing\n'
 refused 'regwidth: expected' 'addrmap a { reg { regwidth = 0x 16; field {} b; } x; };'
 refused "expected a number, got 2'b3" "addrmap a { reg { field {} b = 2'b3; } x; };"
 refused 'an addrmap of the file has no name' 'addrmap { reg { field {} b; } x; };'
-refused 'two addrmaps have one name' \
+refused 'two addrmaps have the same name' \
     'addrmap a { reg { field {} b; } x; }; addrmap A { reg { field {} b; } x; };'
 refused 'expected a name, got' 'addrmap { reg { field {} b; } x; } "../a";'
 refused 'b: duplicate name, first on line 1' 'addrmap a { reg { field {} b; field {} b; } x; };'

@@ -242,7 +242,7 @@ def no_descriptors(start, name, moment, deaths):
 def port_taken(start, name, moment, deaths):
     import socket
     with socket.create_server(("127.0.0.1", 0)) as s:
-        return refused(start(options=["--port", str(s.getsockname()[1])]), "is the port taken")
+        return refused(start(options=["--port", str(s.getsockname()[1])]), "the port may be in use")
 
 
 def no_memory(start, name, moment, deaths):

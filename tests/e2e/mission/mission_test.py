@@ -128,7 +128,7 @@ class Cases(Script):
         self.has("^true$")
         self.simulate(*call, self.out / "b.key", "uav.isAlive", "7", "--timeout", "3", status=4,
                       options=("--key", "a.key"))
-        self.has("no answer from the vehicle 0x0001 at .* within 3 s: is it on, in reach")
+        self.has("no answer from the vehicle 0x0001 at .* within 3 s; check that it is switched on")
 
     def test_loss(self):
         """A flight with packet loss can be replayed from its recording, as a user does to find the

@@ -42,7 +42,7 @@ rmdir out
 named My 'small letters' wb_port wishbone wb_port.v
 named event "'event' is a reserved word" wb_port wishbone wb_port.v
 named npi_fifo "'npi_fifo' is the name of this project's module in hdl" wb_port wishbone wb_port.v
-named wb_port "'wb_port' is the name of a module of the core" wb_port wishbone wb_port.v
+named wb_port "'wb_port' is also the name of a module of the core" wb_port wishbone wb_port.v
 refused "none.v': expected a Verilog or VHDL file" wb_port wishbone none.v
 refused "no module 'missing' in FILES; found wb_port" missing wishbone wb_port.v
 refused 'does not elaborate broken' broken wishbone broken.v
@@ -52,7 +52,7 @@ refused 'expected a path without spaces' wb_port wishbone 'a b.v'
 sed '1i // module wb_port' wb_port.v >again.v
 refused "again.v:6: module 'wb_port' is also in .*/wb_port.v:5" wb_port wishbone wb_port.v again.v
 echo 'module npi_fifo(input clk); endmodule' >ours.v
-refused "ours.v:1: module 'npi_fifo' has the name of .*hdl/ddr/npi_fifo.v:" wb_port wishbone \
+refused "ours.v:1: module 'npi_fifo' has the same name as .*hdl/ddr/npi_fifo.v:" wb_port wishbone \
     wb_port.v ours.v
 sed '1i `include "sizes.vh"' wb_port.v >head.v
 refused "sizes.vh.*" wb_port wishbone head.v
@@ -64,7 +64,7 @@ refused "no entity 'lamp' in FILES; found lamps" lamp own lamps.vhd
 refused 'no port for write, wdata, rdata: .*PORTS=' req_words own cores.v
 refused "'grant': expected one of .*select, strobe" req_words own grant=gnt cores.v
 refused "has no port 'go'" req_words own write=go cores.v
-refused "ack is an output of a core, and 'req' is not" req_words own ack=req cores.v
+refused "ack must be an output of the core, and 'req' is not" req_words own ack=req cores.v
 refused 'a strobe of one clock needs an ack' req_words own strobe=req write=wr wdata=value \
     rdata=held clock=clock cores.v
 refused "FILES lacks the file with module 'inner'" outer wishbone outer.v
@@ -78,7 +78,7 @@ refused "'my_wide' of .* has 64 bits" wide own select=clk_en write=we address=a 
     rdata=q wide.v
 echo 'module broad(input clk, we, input [31:0] d, output [31:0] q, output [127:0] pads,
     input [32:0] more); endmodule' >broad.v
-refused "'pads' of broad has 128 bits, and a pin at most 32: PORTS='open=pads low=more'" broad \
+refused "'pads' of broad has 128 bits, but a pin has at most 32: PORTS='open=pads low=more'" broad \
     own write=we wdata=d rdata=q broad.v
 refused 'include looks for timescale.v' apb_words apb "$here/apb_words.v"
 : >timescale.v
@@ -99,7 +99,8 @@ refused 'leave out ack=' apb_words apb ack=1 pin=PREADY "$here/apb_words.v" time
 refused 'CLOCK: a core with AXI-Streams' axis_scale axis CLOCK=24000000 cores.v
 refused 'LIBRARY: expected VHDL files, got Verilog' req_words own LIBRARY=lights cores.v
 refused 'a setting requires BUS=axis' req_words own setting=value cores.v
-refused "setting is an input of a core, and 'over' is not" axis_scale axis setting=over cores.v
+refused "setting must be an input of the core, and 'over' is not" axis_scale axis setting=over \
+    cores.v
 # The same module name in two cores of a chip is an error.
 ! "$source/tools/python" -m icesoc.cores.foreign_files wb_port.v again.v 2>log &&
     grep -q "again.v:6: module 'wb_port' is also in .*a chip has one of each" log ||
@@ -209,7 +210,7 @@ new_foreign.main(sys.argv[1:])'
 # shellcheck disable=SC2086
 "$source/tools/python" -c "$limited" my_port big own cleared $big_ports cleared.v >log 2>&1 &&
     grep -q 'waiting for Yosys to elaborate big: 1 s' log &&
-    grep -q 'Yosys has not elaborated big in 2 s: Verilator reads its ports' log ||
+    grep -q 'Yosys has not elaborated big in 2 s, so Verilator reads its ports' log ||
     { cat log && echo 'a slow core is not reported' && exit 1; }
 prints 'd: wdata'
 # Packed structures: a bus in the style of AXI with nested members, whose roles PORTS assigns, and a

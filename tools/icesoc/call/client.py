@@ -107,7 +107,8 @@ class Client:
             settings |= self.guarded(lambda: properties_in(self.options.config))
         if self.target.plugin and not os.path.exists(
                 os.path.join(self.target.plugin, "libxbeeat.so.37")):
-            raise Stop(f"'{self.target.plugin}' has no libxbeeat.so.37: make run builds it", 2)
+            raise Stop(f"'{self.target.plugin}': expected libxbeeat.so.37 in this folder; make "
+                       "run builds it", 2)
         return self.guarded(lambda: plugged.initialize(
             settings, self.target.plugin, self.target.guard, self.target.key))
 
@@ -126,7 +127,7 @@ class Client:
             if not self.each.interface:
                 own = next((name for name in ids if name != "::Ice::Object"), ids[0])
                 raise Stop(f"'{self.each.identity}' has the interface {own}, which no Slice file "
-                           "declares: give --slice FILE", 2)
+                           "declares; add --slice FILE", 2)
         return self.mapping.of(self.each.interface, "Prx").uncheckedCast(plain)
 
     def arguments(self, operation, values):
@@ -171,17 +172,19 @@ class Client:
                           "Ice.FacetNotExistException") from None
         except Ice.OperationNotExistException:
             raise Failure(f"'{self.each.identity}' has no operation '{operation['name']}' in the "
-                          "vehicle: is its firmware built from the same Slice?", ABSENT,
+                          "vehicle; check that its firmware was built from the same Slice "
+                          "files", ABSENT,
                           "Ice.OperationNotExistException") from None
         except Ice.UnknownException as error:
             raise Failure(f"the call was refused: {reason_of(error)}", REFUSED,
                           error.ice_id().lstrip(":").replace("::", ".")) from None
         except Ice.NotRegisteredException as error:
-            raise Failure(f"IceGrid has no vehicle '{error.id}': is its gateway running, and the "
-                          "vehicle in reach?", SILENT, "Ice.NotRegisteredException") from None
+            raise Failure(f"IceGrid has no vehicle '{error.id}'; check that its gateway is running "
+                          "and the vehicle is in reach", SILENT,
+                          "Ice.NotRegisteredException") from None
         except (Ice.InvocationTimeoutException, Ice.TimeoutException):
-            raise Failure(f"no answer from {self.target.place} within {self.options.timeout:g} s: "
-                          "is it on, in reach, and has it the same key?", SILENT,
+            raise Failure(f"no answer from {self.target.place} within {self.options.timeout:g} s; "
+                          "check that it is switched on, in reach, and has the same key", SILENT,
                           "Ice.TimeoutException") from None
         except Ice.LocalException as error:
             raise Failure(f"cannot reach {self.target.place}: "

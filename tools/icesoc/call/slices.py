@@ -53,7 +53,8 @@ class Slices:
                                   errors="replace")
         except OSError as error:
             raise Stop(f"cannot run the Slice compiler '{compiler}': {error.strerror}; "
-                       "./icesoc build makes it, the package icesoc-slice2c has it") from None
+                       "./icesoc build makes it, and the package icesoc-slice2c contains "
+                       "it") from None
         if done.returncode:
             raise Stop(done.stderr.rstrip(), 2)
         return json.loads(done.stdout)

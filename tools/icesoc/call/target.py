@@ -88,7 +88,8 @@ def of(values):
     progress; without a flight, a vehicle in the installed settings."""
     given = [name for name in ("flight", "device", "gateway", "locator") if getattr(values, name)]
     if len(given) > 1:
-        raise Stop(f"{', '.join('--' + name for name in given)} exclude each other: give only one",
+        raise Stop(f"{', '.join('--' + name for name in given)} exclude each other; give only one "
+                   "of them",
                    2)
     if values.locator:
         name = values.vehicle or "uav1"

@@ -266,7 +266,7 @@ class Reader:
             raise Refused(where, "an object, or a list of [key, value]", short(value))
         keys = [json.dumps(key, default=repr) for key, _ in pairs]
         if twice := next((key for key in keys if keys.count(key) > 1), None):
-            raise Stop(f"{where}: the key {twice} is given twice", 2)
+            raise Stop(f"{where}: duplicate key {twice}", 2)
         return [[key, self.check(inner, its["element"], f"{where}[{json.dumps(key, default=repr)}]",
                                  (), depth + 1)] for key, inner in pairs]
 

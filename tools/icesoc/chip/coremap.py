@@ -155,13 +155,13 @@ class Chip:
                    "signals=u_fir.busy,u_fir.count:9")
         core.identity = core.identity or core.name
         known = self.names.setdefault(core.name, line)
-        core.check(known, f"'{core.name}' is a name of the platform; give the core another name by "
-                          "name=")
+        core.check(known, f"'{core.name}' is a name of the platform; give the core another name "
+                          "with name=")
         core.check(known == line, f"'{core.name}' is already on line {known}; give one of the two "
-                                  "another name by name=")
+                                  "another name with name=")
         core.check(core.identity not in places.OBJECTS,
-                   f"the identity '{core.identity}' is an object of the platform; give another one "
-                   "by identity=")
+                   f"the identity '{core.identity}' is an object of the platform; give the core "
+                   "another identity with identity=")
         core.check(core.identity not in self.identities,
                    f"the identity '{core.identity}' is taken")
         self.identities.add(core.identity)

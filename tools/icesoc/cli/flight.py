@@ -173,10 +173,10 @@ def complete(values):
             if name not in given:
                 setattr(values, name, value)
     if values.open and values.key:
-        raise Stop(f"OPEN=1 flies without a key, KEY='{values.key}' flies with one: expected at "
-                   "most one of the two", 2)
+        raise Stop(f"OPEN=1 and KEY='{values.key}': expected at most one of the two, because "
+                   "OPEN=1 flies without a key", 2)
     if values.app == "minimal" and values.cpu != "m3":
-        raise Stop("the minimal program is an ARM binary: give --cpu m3 (CPU=m3)", 2)
+        raise Stop("the minimal program is an ARM binary; add --cpu m3 (CPU=m3)", 2)
     other = [name for name in ("loss", "interference", "distance", "trace", "update")
              if getattr(values, name)] + ["app"] * (values.app == "minimal")
     if values.wire and other:
@@ -187,7 +187,8 @@ def complete(values):
         raise Stop(f"VEHICLES={values.vehicles}: several vehicles can only fly the mission; "
                    "leave out " + ", ".join(f"--{name}" for name in single or ["app"]), 2)
     if values.camera and values.pins:
-        raise Stop("CAMERA=1 and PINS=file both drive the inputs of cores: give one of them", 2)
+        raise Stop("CAMERA=1 and PINS=file both drive the inputs of cores; give only one of "
+                   "them", 2)
     if values.camera and "camera" not in values.cores:
         values.cores = [*values.cores, "camera"]
     if values.probe and "probe" not in values.cores:
@@ -227,8 +228,8 @@ def take_key(values, build):
     keys.rescue(build.folder.parent)
     values.key = str(keys.folder() / "demo.key")
     if make_key(values.key):
-        say(f"made a demo key, {values.key}, for ground and vehicle; KEY=file uses your key, "
-            "OPEN=1 flies without a key")
+        say(f"made the demo key {values.key} for ground station and vehicle; KEY=file uses your "
+            "own key, and OPEN=1 flies without a key")
 
 
 def take_observers_key(values):

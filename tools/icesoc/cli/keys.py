@@ -89,7 +89,7 @@ def check_authority(authority, signs):
             raise Stop(f"'{path}': expected a regular file")
     if signs.exists() and signs.stat().st_mode & 0o077:
         raise Stop(f"others may read '{signs}': chmod 600 '{signs}', and make new certificates if "
-                   "somebody else may have read it")
+                   "another user may have read it")
 
 
 def sign(name, cert, key, constraint, *by):

@@ -22,7 +22,7 @@ def surroundings():
     try:
         place = os.getcwd()
     except FileNotFoundError:
-        raise Stop("the current folder does not exist any more: cd to another one", 2) from None
+        raise Stop("the current folder no longer exists; cd to another one", 2) from None
     tree = os.environ.pop("ICESOC_TREE", "")  # a test sets ICESOC_TREE to use another tree
     os.chdir(tree or TREE)
     place = os.getcwd() if tree else place

@@ -128,7 +128,7 @@ def check_names(slot, top, files):
     if top not in names:
         fail(f"no {kind} '{top}' in FILES; found {', '.join(names) or 'none'}")
     if slot in names:
-        fail(f"'{slot}' is the name of a {kind} of the core: give the slot another name")
+        fail(f"'{slot}' is also the name of a {kind} of the core; give the slot another name")
     first = only_once(there, "leave one of the files out") if kind == "module" else {}
     room = str(TREE)
     ours = [os.path.join(d, f) for r in ("bus", "hdl")
@@ -139,9 +139,9 @@ def check_names(slot, top, files):
             fail(f"'{slot}' is the name of this project's module in "
                  f"{os.path.relpath(file, room)}: give the slot another name")
         if name in first and first[name][0] != file:
-            fail(f"{first[name][0]}:{first[name][1]}: module '{name}' has the name of this "
-                 f"project's {os.path.relpath(file, room)}:{line}: give it another name, also "
-                 "where it is used")
+            fail(f"{first[name][0]}:{first[name][1]}: module '{name}' has the same name as this "
+                 f"project's {os.path.relpath(file, room)}:{line}: rename it, also in the modules "
+                 "that use it")
     return top
 
 

@@ -266,9 +266,9 @@ def modules_by_yosys(top, files, headers, params, defines, is_whole, work):
     if accepted is False and short != whole:
         accepted = elaborates(whole, not is_system)
     if accepted is None:
-        print(f"new-foreign: Yosys has not elaborated {top} in {LIMIT} s: Verilator reads its "
-              "ports. Tests and flights work; `make synth` needs long, or does not end: build "
-              "large memories without reset, and mind loops over all their words",
+        print(f"new-foreign: Yosys has not elaborated {top} in {LIMIT} s, so Verilator reads its "
+              "ports. Tests and flights work, but `make synth` takes long or does not end. Build "
+              "large memories without a reset and without loops over all their words",
               file=sys.stderr, flush=True)
     return json.loads(text_of(result))["modules"] if accepted else None
 

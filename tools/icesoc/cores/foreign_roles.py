@@ -160,7 +160,7 @@ def take_given(top, bus, ports, roles, given):
         if port not in ports:
             fail(f"PORTS: {top} has no port '{port}': {', '.join(ports)}")
         if words[what] and is_output != (ports[port]["direction"] == "output"):
-            fail(f"PORTS: {what} is an {'output' if is_output else 'input'} of a core, and "
+            fail(f"PORTS: {what} must be an {'output' if is_output else 'input'} of the core, and "
                  f"'{port}' is not")
         if what == "setting" and bus != "axis":
             fail("PORTS: a setting requires BUS=axis; here an input outside the bus is a pin")
@@ -178,7 +178,7 @@ def check_needed(top, bus, ports, roles, latency):
              *(["stb"] if bus == "wishbone" and "cyc" in roles.values() else [])}
     missing = [say.get(r, r) for r in NEEDED[bus] + ["clock"] if r not in there]
     if missing:
-        fail(f"{top} has no port for {', '.join(missing)}: {', '.join(ports)}; name it by "
+        fail(f"{top} has no port for {', '.join(missing)}: {', '.join(ports)}; name the port with "
              f"PORTS='{missing[0]}=port ...'"
              + (", or give ack=1 if read data is valid one clock later"
                 if "ack" in missing else ""))
@@ -186,8 +186,8 @@ def check_needed(top, bus, ports, roles, latency):
              "open", "1", "2", *(("adr", "ack") if bus == "own" else ())}
     for r in there - often:
         if len(same := [n for n in ports if roles[n] == r]) > 1:
-            fail(f"{top} has more than one port for {say.get(r, r)}: {', '.join(same)}; give the "
-                 f"role of the others by PORTS='pin={same[-1]} ...'")
+            fail(f"{top} has more than one port for {say.get(r, r)}: {', '.join(same)}; name the "
+                 f"role of each other port, such as PORTS='pin={same[-1]} ...'")
     if "strobe" in roles.values() and "ack" not in there:
         fail("PORTS: a strobe of one clock needs an ack; for a core that answers in the same "
              "clock, use select")
@@ -201,4 +201,4 @@ def check_limits(top, bus, ports, roles, latency):
     if wide := [n for n in ports if bus != "axis" and roles[n] in ("wdata", "rdata")
                 and len(ports[n]["bits"]) > 32]:
         fail(f"'{wide[0]}' of {top} has {len(ports[wide[0]]['bits'])} bits: a slot's bus has 32; "
-             "put a module in between that splits the words")
+             "write a module that splits the words, and use it as TOP")

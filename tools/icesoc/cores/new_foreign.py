@@ -53,7 +53,7 @@ def check_pairs(option, pairs):
         if not re.fullmatch(r"[A-Za-z_]\w*", name, re.A):
             fail(f"{option}: expected a name, got '{name}'")
         if names.count(name) > 1:
-            fail(f"{option}: {name} is given twice")
+            fail(f"{option}: {name} is given twice; give it once")
 
 
 class Request:
@@ -98,7 +98,7 @@ class Request:
         if not re.fullmatch(r"[A-Za-z_]\w*", self.top):
             fail(f"TOP: expected the name of a module or an entity, got '{self.top}'")
         if os.path.exists(self.folder):
-            fail(f"{self.folder} already exists")
+            fail(f"{self.folder} already exists; choose another name, or remove it first")
         if self.name in RESERVED:
             fail(f"'{self.name}' {REFUSAL}")
 
@@ -139,11 +139,11 @@ def read_core(asked):
                                         asked.defines, ghdl=asked.ghdl, library=asked.library,
                                         libraries=asked.libraries)
     if odd := [n for n in ports if not re.fullmatch(r"\w+", n)]:
-        fail(f"{asked.top} has the port '{odd[0]}', an escaped name: put a module with plain "
-             "names around it")
+        fail(f"{asked.top} has the port '{odd[0]}', an escaped name; write a module around it "
+             "whose ports have plain names")
     if two_way := [n for n, p in ports.items() if p["direction"] == "inout"]:
-        fail(f"{asked.top} has the inout port '{two_way[0]}': tri-states belong to the chip's "
-             "pads; choose a top module without it")
+        fail(f"{asked.top} has the inout port '{two_way[0]}': a core inside the chip cannot have "
+             "tri-state ports; choose a top module without such ports")
     ports = with_members(ports, asked.bus, asked.ports)
     if asked.is_vhdl:
         return ports, [], {}
@@ -159,8 +159,8 @@ def slot_texts(asked, ports, params):
     if wide := [n for n, p in ports.items() if not roles[n] and len(p["bits"]) > 32]:
         left_out = " ".join(f"{'open' if ports[n]['direction'] == 'output' else 'low'}={n}"
                             for n in wide)
-        fail(f"'{wide[0]}' of {asked.top} has {len(ports[wide[0]]['bits'])} bits, and a pin at "
-             f"most 32: PORTS='{left_out}' leaves such ports unconnected")
+        fail(f"'{wide[0]}' of {asked.top} has {len(ports[wide[0]]['bits'])} bits, but a pin has "
+             f"at most 32: PORTS='{left_out}' leaves such ports unconnected")
     said = {n: roles[n] or "pin " + pin_name(n, p) for n, p in ports.items()}
     for n, p in ports.items():
         if not roles[n] and p["direction"] == "output" and ASKED.search(n):
@@ -254,15 +254,14 @@ def main(words):
         print(f"  {port}: {what}")
     print(f"  {last}")
     if not asked.is_synthesised:
-        print("  SystemVerilog that Yosys does not read: tests and flights have it as it is. For "
-              "make synth and the chip, FILES is what sv2v makes of it (github.com/zachjs/sv2v, "
-              "not in Debian):")
+        print("  Yosys cannot read this SystemVerilog. Tests and flights use it unchanged. For "
+              "make synth and the real chip, convert it with sv2v (github.com/zachjs/sv2v, not in "
+              "Debian), and give the result as FILES:")
         print(f"  sv2v --top={asked.top} {' '.join('-I ' + d for d in folders_of(asked.headers))} "
               f"{' '.join('-D ' + d for d in asked.defines)} {' '.join(asked.files)} "
               f">{asked.top}.v")
-    print(f"Next: look at what is above; make ip-test IP={asked.name}; a line {asked.name} in "
-          "ip/cores.list; "
-          f"make run CORES={asked.name}")
+    print(f"Next: check the list above; run make ip-test IP={asked.name}; add the line "
+          f"{asked.name} to ip/cores.list; run make run CORES={asked.name}")
 
 
 if __name__ == "__main__":

@@ -90,7 +90,7 @@ def captured(path):
     head, signals, moments = read_vcd(path)
     hz = re.search(r"clk_hz (\d+)", head)
     if not hz or not moments:
-        fail(f"{path} is not what probe.py has written")
+        fail(f"{path}: expected a capture that probe.py has written")
     unit = 10**9 if "1ns" in head else 10**12
     values, found = {}, []
     for time, changes in moments:

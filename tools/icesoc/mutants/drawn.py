@@ -77,7 +77,8 @@ class Proof:
         status, text = self.run(self.work, DRAW.format(
             module=self.module, lines=self.lines_of_proof(), number=4 * number, seed=seed))
         if status:
-            sys.exit(f"{text}mutants: formal.{self.name} fails without any mutant: mend that first")
+            sys.exit(f"{text}mutants: formal.{self.name} fails without any mutant; repair this "
+                     "first")
         self.design = model.cells(self.work / "plain.json")
         return (self.work / "list").read_text().splitlines()[:number]
 
@@ -209,8 +210,8 @@ def progress(results, number):
         left = round((time.monotonic() - start) / done * (number - done) / 60)
         if done * 10 // number > (done - 1) * 10 // number:
             missed = sum(row["result"] == "SURVIVED" for row in rows)
-            print(f"{done} of {number} mutants tried against their proofs, {missed} not seen by "
-                  f"one, {left // 60}:{left % 60:02} h left", file=sys.stderr, flush=True)
+            print(f"{done} of {number} mutants tried, {missed} not detected by a proof, "
+                  f"{left // 60}:{left % 60:02} h left", file=sys.stderr, flush=True)
     return rows
 
 

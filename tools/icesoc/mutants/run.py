@@ -69,8 +69,8 @@ def bugs(chosen):
             found += [Bug(f"{pathlib.Path(file).name.split('.')[0]}/{name}", said)
                       for name, said in json.loads(pathlib.Path(file).read_text()).items()]
         except (ValueError, LookupError, TypeError, AttributeError) as error:
-            sys.exit(f"mutants: {file}: not bugs as `tools/python -m icesoc.mutants.run "
-                     f"--help` shows them: {error!r}")
+            sys.exit(f"mutants: {file}: expected bugs in the format that `tools/python -m "
+                     f"icesoc.mutants.run --help` shows: {error!r}")
     found = [bug for bug in found if not name or bug.name == chosen]
     return found or sys.exit(f"mutants: no {chosen} in tests/mutants/*.json and ip/*/*.bugs.json")
 
@@ -208,7 +208,7 @@ def try_all(chosen, jobs):
                 log = WORK / f"baseline.{test.replace('/', '-')}.log"
                 if attempt(test, copy, log) != "passes":
                     sys.stderr.write(log.read_text(errors="replace"))
-                    sys.exit(f"mutants: {test} fails without any mutant: mend that first")
+                    sys.exit(f"mutants: {test} fails without any mutant; repair this first")
                 log.unlink()
                 for bug in group:
                     if bug.test == test:

@@ -162,7 +162,7 @@ def main(gates, folder):
                 read = read_info if path.suffix == ".info" else read_verilator
                 read(path, root, files, explanations)
         if not files:
-            raise Stop("nothing was measured: did the tests run with COVERAGE_DIR?")
+            raise Stop("nothing was measured; run the tests with COVERAGE_DIR set to this folder")
         below = report(files, limits["gates"], f"{folder}/summary.json")
         below += [f"a gate of no file: {path}" for path in limits["gates"]
                   if not any(name.startswith(path) for name in files)]

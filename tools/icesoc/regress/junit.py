@@ -26,7 +26,7 @@ def read_junit(path):
     try:
         cases = xml.parse(path).iter("testcase")
     except xml.ParseError as error:
-        raise Stop(f"{path}: {error}; is the disk full?") from None
+        raise Stop(f"{path}: {error}; check whether the disk is full") from None
     results = []
     for case in cases:
         parts = {each.tag for each in case}

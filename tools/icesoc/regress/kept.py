@@ -102,8 +102,8 @@ def main():
     for verdict in verdicts if not os.environ.get("FRESH") else []:
         if all(state(path.replace("@ROOT@", ROOT), listed) == was
                for path, (listed, was) in verdict["seen"].items()):
-            print(f"kept: the verdict of {verdict['date']}, as all that it came of is unchanged; "
-                  "FRESH=1 computes it again")
+            print(f"kept: cached result of {verdict['date']}, because its inputs have not changed; "
+                  "FRESH=1 runs the test again")
             print(verdict["said"].replace("@ROOT@", ROOT), end="")
             return 0
     shutil.rmtree(own or "/dev/null/", ignore_errors=True)
@@ -117,8 +117,8 @@ def main():
         tracing = [*TRACING, "-o", trace]
         if not shutil.which("strace") or subprocess.run(tracing + ["true"],
                                                         stderr=subprocess.DEVNULL).returncode:
-            print("kept: strace is missing, or may not trace here: the verdict is computed each "
-                  "time", file=sys.stderr)
+            print("kept: strace is missing, or not permitted here, so the test runs each time",
+                  file=sys.stderr)
             return subprocess.call(command, env=environment)
         with subprocess.Popen(tracing + command, env=environment, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT) as run:

@@ -174,7 +174,7 @@ class Regression:
         log = o.build / "build.log"
         with lock(o.build, busy=f"waiting for another build in {o.build} ..."):
             if run_ninja(["ninja", "-C", o.build, *targets], log, check=False):
-                raise Stop(f"it does not build (above); all of it is in {log}")
+                raise Stop(f"the build failed (above); the whole output is in {log}")
         if self.changes:
             self.changes.forget_graph()
 
@@ -220,7 +220,7 @@ class Regression:
                       for seed in sorted({seed for _, seed in failing})]
         rounds = [each for each in rounds if each[1]]
         if not rounds:
-            print("Nothing to run: no seed is kept that made one of these tests fail.")
+            print("Nothing to run: no failing seed of these tests is known.")
             return 0
         return self._run_rounds(rounds, chosen, tests)
 
@@ -247,7 +247,8 @@ class Regression:
                 if failures and not interrupted:
                     write_reports(gather(history, tests, results, failures, o.source), failures,
                                   o.build / "page", o.out)
-                    print(f"{o.out}/report.html is there; waveforms come into it, if there are any",
+                    print(f"{o.out}/report.html is written; waveforms are added to it later, if "
+                          "any can be made",
                           flush=True)
             if not interrupted:
                 add_waves(failures, known, o.source, o.build, o.jobs, o.waves)
@@ -269,9 +270,9 @@ class Regression:
         """Returns the failures, with the changes that may have caused them. Prints the names of
         processes that tests left, and of files that changed while the tests ran."""
         for each in end_orphans():
-            print("A test has left behind, and it was ended:", each)
+            print("Ended a process that a test left behind:", each)
         for each in changes.meanwhile():
-            print("Changed while the tests ran, by one of them or by you:", each)
+            print("Changed while the tests ran, by a test or by you:", each)
         failures = examine(results, known, self.options.out)
         for failure in failures:
             if test := known.get(failure.result.name):
@@ -334,7 +335,7 @@ def main(words):
         with only_one(options.out, "regress"):
             regression = Regression(options)
             if damaged := regression.history.damaged:
-                print(f"{damaged} damaged lines of {options.out}/history.jsonl are left out")
+                print(f"{damaged} damaged lines of {options.out}/history.jsonl are ignored")
             return regression.run()
     except Stop as error:
         print(f"regress: {error}", file=sys.stderr)

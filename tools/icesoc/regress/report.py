@@ -69,7 +69,7 @@ def gather(history, tests, results, failures, source):
                                 test.labels[0] if test and test.labels else "", r.seed, ends])
     ran = {r.name for r in results}
     names = {"left": [name for name in known if name not in ran],
-             "kept": [r.name for r in results if r.log.startswith("kept: the verdict")]}
+             "kept": [r.name for r in results if r.log.startswith("kept: cached result")]}
     for what, all_names in names.items():
         proofs = sum(name.startswith("formal.") for name in all_names)
         data[what] = {"tests": len(all_names) - proofs, "proofs": proofs}

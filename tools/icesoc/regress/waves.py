@@ -131,7 +131,7 @@ def repeat(failure, scene, source, tested, jobs, wave):
             collect(["cmake", "-S", source, "-B", build, "-G", "Ninja", "-DTRACE=ON"])
         status, text = collect(["ninja", "-C", build, "-j", jobs, scene.program])
         if status:
-            raise Stop(f"it does not build with waveforms:\n{text}")
+            raise Stop(f"the build with waveforms failed:\n{text}")
     names = [*instances(failure.changed, source, build)]
     if scene.flight:
         collect([build / "testbench/sim/icesoc-sim", "--replay", scene.flight, "--out",
@@ -152,7 +152,7 @@ def add_wave(failure, test, scene, source, tested, jobs):
     wave = os.path.abspath(f"{base}.fst")
     build, names = repeat(failure, scene, source, tested, jobs, wave)
     if not os.path.exists(wave):
-        raise Stop("the test drove no traced model")
+        raise Stop("the test uses no model that can write a waveform")
     rows = ["program.task", "program.interrupt", "program.function"] \
         if os.path.exists(wave + ".program.vcd") else []
     collect([source / "testbench/common/join_waves.sh", wave])
@@ -239,7 +239,7 @@ def drawing_of(failure, room):
                                     if failure.wave.endswith(".fst")
                                     else pathlib.Path(failure.wave).read_text())
     except (ValueError, IndexError, StopIteration, RuntimeError) as error:
-        print(f"{failure.wave} is damaged, and not drawn ({error})")
+        print(f"{failure.wave} is damaged, so the page does not draw it ({error})")
         return None
     if not moments:
         return None

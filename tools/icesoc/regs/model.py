@@ -199,7 +199,7 @@ class Block:
         if not is_built and (found := problems(description, SCHEMA)):
             raise Wrong("; ".join(found))
         check(("type" in description) == ("version" in description),
-              "a slot has a type and a version")
+              "expected both a type and a version, or neither")
         self.description = description
         self.name, self.doc = description["block"], description["doc"]
         self.prefix = self.name.upper()

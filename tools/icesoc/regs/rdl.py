@@ -259,7 +259,7 @@ def block_of(name, component, first):
         other = next(r["name"] for r in registers if r["word"] == register["word"])
         if other != register["name"]:
             fail(lines[register["name"]],
-                 f"{register['name']} has the address of {other}: give it another")
+                 f"{register['name']} has the address of {other}: give one of them another address")
     return dict(block, registers=registers, **({"events": events} if events else {}))
 
 
@@ -297,7 +297,7 @@ def blocks_of(path, first):
             add_pages(block, instance.name, pages[instance.name])
     check(blocks, "1: error: expected an addrmap")
     names = [Block(block).name for block in blocks]
-    check(len(names) == len(set(names)), "two addrmaps have one name")
+    check(len(names) == len(set(names)), "two addrmaps have the same name")
     return blocks
 
 
@@ -317,7 +317,7 @@ def main():
             with open(path, "w") as f:
                 f.write(json.dumps(block, indent=2) + "\n")
     except RecursionError:
-        sys.exit(f"{args.file}:1: error: its components are nested too deep")
+        sys.exit(f"{args.file}:1: error: components are nested too deep")
     except UnicodeDecodeError:
         sys.exit(f"{args.file}:1: error: expected text in UTF-8")
     except OSError as e:

@@ -148,7 +148,7 @@ class Joiner:
         for path in self.component.registers:
             if name == Path(path).name.replace(".regs.json", "_regs.h"):
                 return path
-        raise Stop(f"{user}: includes {name}, which is in no folder of the component "
+        raise Stop(f"{user}: includes {name}, which was not found in the folders of the component "
                    f"{self.component.name} ({components.LIST})")
 
     def header(self, path, kind):

@@ -72,7 +72,7 @@ def read_baseline(file):
     try:
         return parse(j)
     except (KeyError, TypeError, AttributeError) as error:
-        raise Stop(f"{file}: it has no accepted figures: {error!r}") from None
+        raise Stop(f"{file}: expected accepted figures: {error!r}") from None
 
 
 def written(baseline):
@@ -111,10 +111,10 @@ def accept(report, file):
                 designs[name] = old["designs"][name]
             continue
         if row.main.error:
-            raise Stop(f"{name} failed: nothing is accepted")
+            raise Stop(f"{name} failed, so no figures were accepted")
         above = above_limits(row)
         if above:
-            raise Stop(f"{above[0]}: nothing is accepted; limits are in synth/designs.json")
+            raise Stop(f"{above[0]}, so no figures were accepted; limits are in synth/designs.json")
         designs[name] = accepted_from(row.figures, row.sources)
     write(file, written({"yosys": report.yosys, "designs": designs}))
     print(f"Accepted: {file}; commit it.")

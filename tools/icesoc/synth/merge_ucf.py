@@ -42,8 +42,8 @@ def renamed(statement, where):
     head = re.match(r'(?i)(NET|INST|PIN)\s+"?([^"\s]+)"?\s+(.*)', statement)
     if not head:
         if not re.match(r"(?i)(CONFIG|TIMESPEC|TIMEGRP|OFFSET)\b", statement):
-            sys.exit(f"{where}: '{statement}' is not understood: write it into the board's file by "
-                     "hand, and take it out here")
+            sys.exit(f"{where}: '{statement}' is not understood; write it into the board's file "
+                     "by hand, and remove it here")
         return statement
     kind, name, rest = head.groups()
     new = PADS.get(name)

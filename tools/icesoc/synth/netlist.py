@@ -337,7 +337,7 @@ def make_product(cell):
     if signs not in ({"0"}, {"1"}) or any(
             given.get(f"REG_{part}_CLK", "NONE") != "NONE"
             for part in ("INPUTA", "INPUTB", "INPUTC", "PIPELINE", "OUTPUT")):
-        raise ValueError("MULT18X18D has a mode without a model")
+        raise ValueError("MULT18X18D uses a mode for which there is no model")
     (sign,) = signs
     ports = {"A": ("A", 18), "B": ("B", 18), "Y": ("P", 36)}
     cell |= {

@@ -204,8 +204,8 @@ def show(report):
         print(f"Designs: {states_text(report.rows)}")
     versions = short_version(report.baseline["yosys"]), short_version(report.yosys)
     if versions[0] not in ("", versions[1]):
-        print(f"The accepted figures are by {versions[0]}, these by {versions[1]}: growth is not "
-              "judged.")
+        print(f"The accepted figures are from {versions[0]}, these figures from {versions[1]}, so "
+              "growth is not judged.")
     for row in report.rows:
         for line in row.notes + [f"FAILED {failure}" for failure in row.failures]:
             print(line)

@@ -42,7 +42,7 @@ def fault_of(report):
 def read(file):
     found = read_json(file)
     if not isinstance(found, dict) or not isinstance(found.get("reports"), list):
-        raise Stop(f"{file}: it has no list of reports")
+        raise Stop(f"{file}: expected a list of reports")
     for number, report in enumerate(found["reports"]):
         if why := fault_of(report) if isinstance(report, dict) else "no object":
             raise Stop(f"{file}: report {number + 1} cannot be read: {why}")

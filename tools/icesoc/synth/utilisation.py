@@ -33,7 +33,7 @@ def rtl_of(o):
     """Returns the modules of the platform, of the cores and of the generated files, in this
     order."""
     if not o.generated.is_dir():
-        raise Stop(f"{o.generated} is not there: build first")
+        raise Stop(f"{o.generated} not found; run make build first")
     rooms = sorted(folder for room in ("hdl", "ip") for folder in (o.source / room).iterdir()
                    if folder.is_dir())
     folders = [o.source / "synth", o.source / "hdl", o.source / "bus", *rooms, o.generated]
@@ -81,7 +81,7 @@ def tell_cores(library, options, o, accepted, runs):
     chip = run.figures if run else accepted["designs"].get(WHOLE_CHIP, nothing)
     map = cores.read_map(o.generated / "map.regs.json")
     if not map:
-        raise Stop(f"{o.generated} has no map.regs.json: build first")
+        raise Stop(f"{o.generated} has no map.regs.json; run make build first")
     try:
         slot = cores.slot_cost(library, options, map, True)
         print(cores.core_table(chip["costs"], map, slot, o.core,
@@ -145,7 +145,7 @@ def run(o, libraries):
     for name in o.design + [name for name in (o.edif, o.netlist) if name]:
         names = [design.name for design in plan.designs]
         if name not in names:
-            raise Stop(f"unknown design {name}; available: {', '.join(sorted(names))}")
+            raise Stop(f"unknown design {name}; expected one of {', '.join(sorted(names))}")
     accepted = baseline.read_baseline(o.source / "synth/baseline.json")
     options = runner.Options(o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs,
                              {name: a["lut"] for name, a in accepted["designs"].items()})

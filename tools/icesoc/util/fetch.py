@@ -105,7 +105,7 @@ def kept(url, checksum, part=None):
             found = re.search(part.encode(), data, re.S)
             data = found[1] if found else b""
         if hashlib.sha256(data).hexdigest() != checksum:
-            raise Unreachable(f"{url} is not the file that was tested (sha256)")
+            raise Unreachable(f"{url} has another SHA-256 than the file that was tested")
         file.parent.mkdir(parents=True, exist_ok=True)
         partial = file.with_suffix(".part")
         partial.write_bytes(data)
@@ -132,7 +132,8 @@ def packages(name, wanted, release="trixie"):
     """Returns the folder with these packages of a Debian release, unpacked in the cache."""
     folder = CACHE / name
     if not (folder / "done").exists():
-        print(f"Fetching {name} from Debian's {release}, kept apart from the system ...",
+        print(f"Fetching {name} from Debian's {release}, stored apart from the installed packages "
+              "...",
               flush=True)
         with tempfile.TemporaryDirectory(dir=CACHE) as work:
             os.makedirs(f"{work}/lists/partial")
@@ -196,8 +197,8 @@ def ice(target):
     try:
         archive = ice_source(version)
     except (KeyError, Unreachable) as error:
-        print(f"fetch: no source of ZeroC Ice {version} ({error}): taking the headers of 3.7.8; "
-              "transports did not change since", file=sys.stderr)
+        print(f"fetch: no source of ZeroC Ice {version} ({error}): using the headers of 3.7.8, "
+              "because the transports have not changed since", file=sys.stderr)
         archive, version = ice_source("3.7.8"), "3.7.8"
     unpack(archive, f"ice-{version}/cpp/src/Ice/", target / "Ice", ".h")
 

@@ -13,7 +13,7 @@ def write(path, text):
         part.write_text(text)
     except OSError:
         part.unlink(missing_ok=True)
-        raise Stop(f"cannot write {path}: is the disk full?") from None
+        raise Stop(f"cannot write {path}; check whether the disk is full") from None
     part.replace(path)
 
 

@@ -96,5 +96,5 @@ def run_ninja(words, log, check=True, env=None):
         line.clear()
     status = wait(process)
     if status and check:
-        raise Stop(f"the build failed (above); all of it is in {log}", status)
+        raise Stop(f"the build failed (above); the whole output is in {log}", status)
     return status

@@ -351,7 +351,7 @@ def server_at(host, port, certificate, program):
 
 def port_number(text):
     if not 0 <= (port := int(text)) <= 65535:
-        raise argparse.ArgumentTypeError(f"{port} is not in 0..65535")
+        raise argparse.ArgumentTypeError(f"expected a port from 0 to 65535, got {port}")
     return port
 
 
@@ -411,8 +411,8 @@ def main(program="icesoc-live", build=None):
     try:
         server = server_at(host, port, words.certificate, program)
     except OSError as error:
-        sys.exit(f"{program}: error: cannot listen on {host}: {error.strerror or error}: is the "
-                 "port taken? PORT=0 takes any that is free")
+        sys.exit(f"{program}: error: cannot listen on {host}: {error.strerror or error}: the port "
+                 "may be in use; PORT=0 selects a free port")
     if not words.only_try:
         shown = f"[{host}]" if ":" in host else host
         address = f"http{'s' if words.certificate else ''}://{shown}:{server.server_address[1]}/"

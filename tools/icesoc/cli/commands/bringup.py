@@ -34,7 +34,7 @@ CONSOLE = "/dev/ttyUSB0"
     Option("cable", TEXT, "serial port of a cable in the modem's place (docs/modem.md); the "
                           "command then loads the firmware and calls it instead of running the "
                           "self-test", ""),
-    Option("listen", SWITCH, "only read the console; the self-test was started by hand"),
+    Option("listen", SWITCH, "only read the console, for a self-test that was started by hand"),
     Option("silence", SECONDS, "end the report after this time without output from the board",
            SILENCE),
     Option("out", FOLDER, "folder of the report (default: build/board/NAME)", ""),

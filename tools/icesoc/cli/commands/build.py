@@ -183,8 +183,8 @@ def shoot_live(path, profile, icesoc):
 
 @command("build pictures", [
     Option("pictures", WORDS,
-           "pictures to take: mission, live, utilisation, regression, or failure (needs a report "
-           "with a failed test)",
+           "pictures to take: mission, live, utilisation, regression, or failure (which needs a "
+           "report with a failed test)",
            ["mission", "live", "utilisation", "regression"], positional=True),
     Option("from", INPUT_FOLDER, "folder with the pages", "build"),
     Option("to", FOLDER, "output folder", "docs/pictures")], make="pictures",

@@ -93,7 +93,7 @@ OPTIONS = [
                             "syntax", ""),
     Option("locator", TEXT, "proxy of IceGrid's locator, which finds the vehicle given by "
                             "--vehicle", ""),
-    Option("device", PATH, "serial port of the modem, or with --wire, of the cable", ""),
+    Option("device", PATH, "serial port of the modem; with --wire: serial port of the cable", ""),
     Option("key", KEY_FILE, "with --device: file with the link key; default: unencrypted", ""),
     Option("address", matching("0[xX][0-9a-fA-F]{1,4}", "0x0000 to 0xFFFF"),
            "with --device: address of the vehicle", "0x0001"),

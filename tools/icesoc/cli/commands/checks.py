@@ -223,7 +223,8 @@ def faults(values):
 @command("check soak", [
     Option("minutes", MINUTES, "CPU time of the whole test", 4.0),
     Option("fuzzed", COUNT,
-           "bytes of noise sent to the modem controller; link and engine receive ten times as many",
+           "number of bytes of noise sent to the modem controller; link and engine receive ten "
+           "times as many",
            1000000), SEED, BUILD, JOBS], make="soak",
          brief="check soak --minutes 0.01 --fuzzed 1000",
          long="check soak --minutes 60 --seed {day}", examples=[

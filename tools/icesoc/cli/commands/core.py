@@ -396,5 +396,5 @@ def remove(values):
         others = ";".join(str(folder) for folder in others if folder != core)
         logged(["cmake", f"-DCORE_FOLDERS={others}", build.folder], build / "rm-ip.log",
                "the build cannot be configured without it")
-    say(f"ip/{name} and its line in ip/cores.list are gone" if not core.is_dir() else
-        f"removed {name} from ip/cores.list; {core} is kept, but is not part of the build")
+    say(f"ip/{name} and its line in ip/cores.list were removed" if not core.is_dir() else
+        f"removed {name} from ip/cores.list; {core} is kept, but no longer part of the build")

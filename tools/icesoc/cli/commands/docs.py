@@ -95,4 +95,4 @@ def check_tutorial(values):
         (folder / MADE[0]).unlink(missing_ok=True)
         shutil.rmtree(folder / MADE[1], ignore_errors=True)
         (folder / CHIP).write_text(chip)
-    say("The output of every command is as the page shows it.")
+    say("The output of every command equals the output on the page.")

@@ -196,7 +196,8 @@ def explain_failure(values, status, has_flown):
     text = f"The mission failed{what}\n"
     span = flight.last_span(out) if has_flown else None
     if has_flown and not span:
-        text += f"It cannot be replayed: {out}/flight.jsonl is incomplete; is the disk full?\n"
+        text += (f"It cannot be replayed, because {out}/flight.jsonl is incomplete; check whether "
+                 "the disk is full.\n")
     if span:
         text += f"To write a waveform of its end: make run REPLAY='{out}' {span}\n"
         if values.cpu == "m3":
@@ -297,8 +298,8 @@ def gdb(values):
 @command("key", [
     Option("file", PATH, "output file", "", positional=True),
     Option("certificate", SWITCH, "make a TLS certificate for the gateway; the file name becomes "
-                                  "its subject. The authority.pem in the same folder signs it; a "
-                                  "missing authority is created"),
+                                  "its subject. It is signed by authority.pem in the same folder; "
+                                  "a missing authority.pem is created"),
     Option("signing", SWITCH, "make a private key for signing updates, and its public half "
                               "(spare.pub for spare.key); an existing key is kept"),
     Option("list", COUNT, "make list number N of signing keys; N must be the number of the "
@@ -341,7 +342,7 @@ def key(values):
     if not make(values.file):
         raise Stop(f"'{values.file}' already exists: a key is never overwritten")
     used = "" if values.certificate else f": ./icesoc run --key {values.file}"
-    say(f"made {values.file}, which only you may read{used}")
+    say(f"made {values.file}, which only you can read{used}")
 
 
 @command("fly", [

@@ -102,10 +102,10 @@ def changed_tests(build, values, tests, seed, label=""):
 
 @command("regress", [
     TEST_NAME, LABEL, BLOCK,
-    Option("changed", SWITCH, "only tests that depend on files that changed since they passed"),
+    Option("changed", SWITCH, "only tests whose files have changed since the tests passed"),
     Option("failed", SWITCH, "only tests that failed last time"),
-    Option("kept", SWITCH, "only tests that are known to fail, with the seeds with which they "
-                           "failed"),
+    Option("kept", SWITCH, "only tests that failed earlier and have not passed since, each with "
+                           "the seeds with which it failed"),
     Option("seed", matching(r"\d{1,18}|random", "a whole number, or random", metavar="N|random"),
            "first seed", "1"),
     Option("repeat", COUNT, "number of seeds to run", 1), WAVES, FRESH, TESTS, CORE_FOLDERS,
@@ -212,8 +212,8 @@ def search(program, values, good, bad, tree):
     git("reset")
     first = re.search(r"^# first bad commit: \[(.*?)\]", log, re.M)
     if not first:
-        raise Stop("the first bad commit was not found: the test could not run at the commits in "
-                   "between")
+        raise Stop("the first bad commit was not found, because the test could not run at the "
+                   "commits between the last good and the first known bad one")
     say("since " + output(["git", "log", "-1", "--format=%h %s (%an, %as)", first[1]]).strip())
     return 0
 

@@ -21,8 +21,8 @@ DEFAULTS["synth"] = "synth report"
 GROUPS["contract"] = "registers: changes, import of SystemRDL"
 SHOWN = 10  # number of tests listed in one line of the report for a pull request
 DESIGN = Option("design", WORDS,
-                "designs to measure, such as modem, table1 or soc; the report shows the last "
-                "figures of the others", choices=choices.designs)
+                "designs to measure, such as modem, table1 or soc; for all other designs, the "
+                "report shows the last figures", choices=choices.designs)
 DIFF = tool("chip.contract_diff")
 GIT = ["git", "-c", "advice.detachedHead=false"]
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// wb_port: a Wishbone core for tests, in the style of other people: 8 bits, word addresses, an
-// interrupt, pins.
+// wb_port: Wishbone core in another style, for tests: 8 bits, word addresses, interrupt, pins.
 
 module wb_port (
     input            wb_clk_i, wb_rst_i,

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // addressees: finds the client that receives a request of the vehicle. This is the only client that
-// has passed the vehicle a proxy of the called object. If no client has passed such a proxy, it is
-// the only client with a two-way call in progress. Addressees has no lock: the forwarder holds a
-// lock whenever it calls Addressees.
+// has passed the vehicle a proxy of the called object. If no client has ever passed such a proxy,
+// it is the only client with a two-way call in progress. After the owner of an object has
+// disconnected, no client receives a call to this object. Addressees has no lock: the forwarder
+// holds a lock whenever it calls Addressees.
 
 #pragma once
 
@@ -20,11 +21,20 @@ public:
             if (!client.hasLeft && client.objects < mostKnown)
                 client.objects += owners_[object].insert(client.connection).second;
     }
+    // Removes a client that has disconnected. Its objects keep an entry without an owner. If there
+    // are too many such entries, they are dropped; from then on, a client only receives calls to
+    // objects of which it has passed a proxy.
     void leave(const Connection& connection) {
-        for (auto owner = owners_.begin(); owner != owners_.end();) {
-            owner->second.erase(connection);
-            owner = owner->second.empty() ? owners_.erase(owner) : std::next(owner);
+        size_t ownerless = 0;
+        for (auto& each : owners_) {
+            each.second.erase(connection);
+            ownerless += each.second.empty();
         }
+        if (ownerless <= mostOwnerless)
+            return;
+        forgets_ = true;
+        for (auto each = owners_.begin(); each != owners_.end();)
+            each = each->second.empty() ? owners_.erase(each) : std::next(each);
     }
     // Returns the client that receives a call to `object`; null if no client or several clients
     // qualify. `sent`: requests of clients that have no reply yet.
@@ -34,7 +44,7 @@ public:
         const auto owner = owners_.find(object);
         if (owner != owners_.end())
             candidates = owner->second;
-        else
+        else if (!forgets_)
             for (const auto& each : sent)
                 if (each->client && !each->isOneway())
                     candidates.insert(each->current.con);
@@ -42,8 +52,10 @@ public:
     }
 
 private:
-    // for each object, the clients that have passed a proxy of this object
+    static constexpr size_t mostOwnerless = 10000;
+    // for each object, the connected clients that have passed a proxy of this object
     std::map<Ice::Identity, std::set<Connection>> owners_;
+    bool forgets_ = false; // true once entries without an owner have been dropped
 };
 
 } // namespace gateway

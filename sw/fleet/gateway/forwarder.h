@@ -36,8 +36,9 @@ public:
     // connection is closed.
     void take(std::shared_ptr<Request> request);
     // Passes a request of the vehicle to the only client that gave the vehicle a proxy with this
-    // identity. Without such a client, passes the request to the only client with a two-way call in
-    // progress. If no client or several clients qualify, replies ObjectNotExistException.
+    // identity. If no client has ever given such a proxy, passes the request to the only client
+    // with a two-way call in progress. If no client or several clients qualify, replies
+    // ObjectNotExistException.
     void takeCallback(std::shared_ptr<Request> request);
     // Sets the adapter that dispatches requests which the vehicle sends on the clients'
     // connections.

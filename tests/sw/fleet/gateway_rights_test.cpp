@@ -120,6 +120,9 @@ TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
     passes(two, "fetch");
     EXPECT_THROW(two.echo->callBack(1), Ice::Exception)
         << "two clients have passed this object, so the call must fail";
+    for (const Program* program : {&one, &two})
+        program->ic->destroy();
+    EXPECT_THROW(idle.echo->callBack(1), Ice::Exception) << "the owners of the object have left";
     EXPECT_EQ(idle.heard->calls, 0);
 }
 

@@ -294,9 +294,9 @@ module fsmc_memory #(
                         !single && place_in_block < fetch_word;
     wire place_alone  = fetch_block == place_block && have_one && place_in_block == one_word;
     wire fetching_for = loads ? target : fetch_block; // block that the current fetch reads
-    // These registers serve the property that a block that is read ahead is the one after the block
-    // being read. It holds if the address was stable: rd_at_i was equal to the pins one clock ago,
-    // and does not change while the fetch begins.
+    // Only the following property uses these registers: the block that is read ahead follows the
+    // block that is being read. The property holds if the address is stable, that is, if rd_at_i
+    // equals the address at the pins one clock earlier, and does not change while the fetch begins.
     reg  [ADDR_BITS-1:0] pins_were, next_at;
     wire [WORD-BLOCK_LOG2-1:0] read_block = {upper, current ? pair1 : pair0, current};
     reg  true_at, steady;

@@ -211,8 +211,8 @@ module fsmc_registers (
                 assert ($past(flushing));
             if (flushing && !$past(flushing))
                 assert ($past(idle && (wr_i || reading_i)));
-            // Words are atomic: the stored high half belongs to the word that was read last, and a
-            // word that is written contains the low half of the previous write.
+            // Words are atomic. The stored high half belongs to the word that was read last. A word
+            // that is written consists of the low half written just before and of this high half.
             assert (!half_read || (word == last_read && low_read));
             assert (!half_read || $past(half_read) || $past(reading_i));
             assert (half_write == low_word);

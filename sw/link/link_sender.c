@@ -278,9 +278,9 @@ static int markAcked(Link_Sender* sender, U32 advance, const U8* bitmap, U32 siz
         f->state = LINK_ACKED;
         isNew = 1;
         if (f->tries != 1U && elapsed < sender->srtt - sender->srtt / 4U) {
-            /* The time is too short for a round trip, so an earlier transmission of the fragment is
-             * acknowledged. If the radio reports losses, this was the first transmission, and the
-             * peer has become slower. */
+            /* The time since the newest transmission is too short for a round trip, so the
+             * acknowledgement answers an earlier one. With a radio that reports losses, that is the
+             * first transmission: the peer has become slower. */
             elapsed = sender->pacing->env.now - f->firstAt;
             if (sender->pacing->mostWaiting && !sender->pacing->backoff.own.isStream &&
                 elapsed < LINK_RTO_FIRST)

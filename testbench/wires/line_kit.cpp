@@ -30,7 +30,7 @@ const LineKit::Place LineKit::places[lines] = {BRINGUP_LINES(PLACE)};
 
 LineKit::LineKit(const Options& options)
     : options_(options), wires_(netNames()),
-      // HCLK 120 MHz to the oscillator's 25 MHz
+      // 24 : 5 is the ratio of HCLK (120 MHz) to the oscillator (25 MHz)
       fsmc_(fsmcPins_, {[this] { tick(); }, [] {}}, 24, 5),
       stm32_(fsmc_, [this] { return now_; }, Stm32F2::Config()) {
     // cdc_bit reads an option from the arguments, so they must exist

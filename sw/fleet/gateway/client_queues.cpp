@@ -10,7 +10,7 @@ namespace gateway {
 
 namespace {
 
-// fixed cost of a request for the fair shares, in bytes; added to the size of the request
+// number of bytes that each request costs in addition to its size, when shares are computed
 constexpr size_t requestCost = 100;
 
 size_t costOf(const Client& client) {

@@ -16,7 +16,8 @@
  * below 27 s: after that time without acknowledgement of a fragment, the session would end with all
  * its connections. Two replies of 8 KB take 4 s if three of ten packets are lost. */
 #define RETRIES 1000
-/* number of attempts for all peers except the first ground station, which has to wait meanwhile */
+/* number of attempts to send to a peer other than the first ground station; smaller, because the
+ * first ground station waits during these attempts */
 #define OTHER_RETRIES 100
 
 /* Beginning of an encoded endpoint: type, encapsulation of 13 bytes, encoding 1.1. */

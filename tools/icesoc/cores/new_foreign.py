@@ -11,9 +11,9 @@ TOP uses for their addresses; a test; ground.py, which calls the core in a missi
 that do not belong to the bus and are not a clock, reset or interrupt become pins. A core with
 AXI-Streams (axis) has an operation instead of registers: foreign_axis.py.
 
-CLOCK     the core has a separate clock with at most this frequency GHDL      program that reads
-          VHDL (ghdl) LIBRARY   VHDL library of the files; util=FILE puts one file, or the files of
-          a pattern, into
+CLOCK     the core has a separate clock with at most this frequency, in Hz
+GHDL      program that reads VHDL (ghdl)
+LIBRARY   VHDL library of the files; NAME=FILE puts one file, or the files of a pattern, into
           another library
 ADDRESS   unit of the core's address: words or bytes
 PARAM     parameter or generic of TOP

@@ -107,7 +107,8 @@ def main():
             print(verdict["said"].replace("@ROOT@", ROOT), end="")
             return 0
     shutil.rmtree(own or "/dev/null/", ignore_errors=True)
-    # file times have the resolution of the kernel's clock, so the run counts as begun earlier
+    # File times are rounded down to a tick of the kernel's clock. A file written just after the
+    # start may therefore have an earlier time, so the start is set back by 50 ms.
     begin = time.time_ns() - 50_000_000
     with tempfile.TemporaryDirectory() as folder:
         trace, said = folder + "/trace", b""

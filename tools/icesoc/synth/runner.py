@@ -3,8 +3,9 @@
 sources, and computes the figures of a run.
 
 The cache stores the figures as JSON: {"lut", "ff", ...: counts; "cells": counts by Yosys cell type;
-"costs": {path: {signal: Cost}}; and the figures of slices.py, timing.py, nets.py}. "clocks" are the
-clocks of all orders, lowest first; "mhz" is their median, which is compared with the budget.
+"costs": {path: {signal: Cost}}; and the figures of slices.py, timing.py, nets.py}. "clocks"
+lists the highest clock frequency of each order of the design's ports, lowest first; "mhz" is the
+median of this list, which is compared with the budget.
 """
 import concurrent.futures
 import dataclasses

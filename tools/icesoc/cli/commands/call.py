@@ -67,8 +67,8 @@ def values_of(catalogue, each, operation, parameter):
 
 WORD = Option("call", ARGUMENTS,
               "[OBJECT.]OPERATION, then its arguments, by position or as NAME=VALUE; write "
-              "structures and sequences as JSON, bytes and pictures also as @FILE, and for a "
-              "listener the word watch",
+              "structures and sequences as JSON, bytes and pictures as JSON or @FILE; for "
+              "an argument that is a listener, write 'watch'",
               positional=True, completer=completed)
 OPTIONS = [
     WORD,

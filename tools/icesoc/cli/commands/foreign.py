@@ -33,7 +33,8 @@ def foreign_words(values):
     Option("params", WORDS, "parameters of the top module, such as DEPTH=16"),
     Option("defines", WORDS, "Verilog macros to define, such as WIDE"),
     Option("clock", COUNT, "frequency of a separate clock, Hz"),
-    Option("library", WORDS, "VHDL library of the files; util=FILE for files in another library"),
+    Option("library", WORDS, "VHDL library of the files; NAME=FILE for a file in another library, such as "
+                             "util=pkg.vhd"),
     Option("address", one_of("words", "bytes"),
            "unit of the core's address: words or bytes; detected by default"),
     REPOSITORY, BUILD, JOBS
@@ -106,8 +107,8 @@ def put_and_fly(values, listed, known):
 
 @command("core examples", [
     Option("cores", WORDS, "names of the cores to use, from examples/foreign/cores.json (default: "
-                           "all); the chip with these cores is then built in one order of the "
-                           "list of cores, not in three"),
+                           "all); the chip with these cores is then built with one order of "
+                           "the cores; without this option, with three"),
     Option("chip", SWITCH, "also print the cost of each core in the chip"), SEED,
     *(o for o in FIELDS if o.name == "image"), BUILD, JOBS], make="foreign",
          brief="core examples --cores foreign_i2c foreign_arbiter foreign_queue",

@@ -14,8 +14,9 @@
 #include "program_memory.h"
 #include "stm32f2.h"
 #include "timing.h"
+#include "watchdog.h"
 
-Bringup_Limits bringup_limits = {BRINGUP_ALL, 1000, 1100, 0, 500};
+Bringup_Limits bringup_limits = {BRINGUP_ALL, 1000, 1100, 0, 500, 16000};
 
 int main(void);
 void Reset_Handler(void);
@@ -46,7 +47,8 @@ static U32 testContact(void) {
 
 static void testWires(U32 found) {
     if (bringup_limits.steps & BRINGUP_WIRES) {
-        Lines_testAlone(found);
+        if (!Lines_testAlone(found))
+            return;
         Lines_testThrough(found);
     }
     if (bringup_limits.steps & BRINGUP_CLOCK)
@@ -69,12 +71,27 @@ static void testChip(void) {
         Bus_testModem();
 }
 
+static void end(void) {
+    Console_text("END ");
+    Console_number(Report_failures());
+    Console_end();
+}
+
 int main(void) {
     const Timing_Clock* clock = Timing_start();
+    const char* hung = Watchdog_hungStep();
     U32 found;
     Console_start(clock->hclkHz / 2U);
     Console_text("BOARD " BOARD_NAME);
     Console_end();
+    if (hung) {
+        Report_step(hung, "the step ends");
+        Report_fail("MCU", 0, "hung", "the watchdog has ended the step",
+                    "NWAIT: an access waits as long as it is low; the supply of the FPGA");
+        end();
+        return 0;
+    }
+    Watchdog_start(bringup_limits.watchdogMs);
     testClock(clock);
     found = testContact();
     if (found) {
@@ -87,14 +104,17 @@ int main(void) {
             Console_end();
         }
         testChip();
+    } else if (Bus_isShifted()) {
+        Report_fail("D", 0, "shifted", "each read returns the halfword of the previous read",
+                    "the bitstream: no register may delay the data; the FSMC's mode is asynchronous"
+                    " (CBURSTRW, BURSTEN and FACCEN as in sw/fsmc)");
     } else {
         Report_fail("FPGA", 0, "silent", "neither line_tester nor the chip answers",
-                    "that a bitstream is loaded (DONE is high), and the supplies of the FPGA");
-        Lines_testAlone(0);
+                    "that a bitstream is loaded (DONE is high), 1.2 V of the FPGA, and VCCO of"
+                    " bank " TEXT_OF(BOARD_BANK_NE1) ", 3.3 V");
+        (void)Lines_testAlone(0);
     }
-    Console_text("END ");
-    Console_number(Report_failures());
-    Console_end();
+    end();
     return 0;
 }
 
@@ -102,7 +122,7 @@ int main(void) {
 
 static void halt(void) {
     for (;;)
-        __asm__ volatile("wfi");
+        Watchdog_feed();
 }
 
 static void fault(void) {

@@ -11,6 +11,7 @@
 #include "stm32f2.h"
 #include "system_regs.h"
 #include "timing.h"
+#include "watchdog.h"
 
 /* Registers of the FSMC (RM0033, 31.5.6). */
 #define BCR(bank) REG(0xA0000000UL + 8UL * (bank))
@@ -46,6 +47,7 @@ void Bus_write(U32 slot, U32 word, U32 value) {
 }
 
 static U32 window(U32 address) {
+    Watchdog_feed();
     if (address >> MAP_DDR_WINDOW_LOG2 != page) {
         page = address >> MAP_DDR_WINDOW_LOG2;
         Bus_write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, page);
@@ -71,6 +73,13 @@ int Bus_start(void) {
     Lines_useForFsmc();
     Bus_setSlow();
     return Bus_read(MAP_SLOT_SYSTEM, SYSTEM_ID) >> 16 == SYSTEM_ID_VALUE >> 16;
+}
+
+int Bus_isShifted(void) {
+    U32 id;
+    (void)Bus_read(MAP_SLOT_SYSTEM, SYSTEM_ID);
+    id = Bus_read(MAP_SLOT_SYSTEM, SYSTEM_ID);
+    return (id & 0xFFFFUL) == SYSTEM_ID_VALUE >> 16;
 }
 
 /* ---- writes ---- */

@@ -11,6 +11,9 @@
 /* Connects the pins to the FSMC with slow timing. Returns 1 if the chip's system slot answers. */
 int Bus_start(void);
 
+/* Returns 1 if each read returns the halfword of the previous read. */
+int Bus_isShifted(void);
+
 /* The steps. */
 void Bus_testWrites(void); /* writes with several values of HCLK; tests the edge of NWE */
 /* tests each data line at a register, and each address line of the registers */

@@ -4,6 +4,7 @@
  */
 #include "console.h"
 #include "stm32f2.h"
+#include "watchdog.h"
 
 #define CONSOLE_BAUD 115200UL
 #define PORT_A 0UL
@@ -70,6 +71,7 @@ void Console_end(void) {
 void Report_step(const char* name, const char* passes) {
     step = name;
     stepFailures = 0;
+    Watchdog_enter(name);
     Console_text("STEP ");
     Console_text(name);
     Console_text(": ");

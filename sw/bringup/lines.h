@@ -12,6 +12,10 @@
 #define FPGA_PINS 55U /* number of the FPGA's pins, for these lines and for the modem */
 #define CHANNELS 3U
 
+/* The value of a macro as a text. */
+#define TEXT_OF(macro) TEXT_OF_TOKEN(macro)
+#define TEXT_OF_TOKEN(token) #token
+
 /* Numbers of lines and of the FPGA's pins; see line_tester.v. */
 enum {
     LINE_D0 = 0,
@@ -74,7 +78,9 @@ int Lines_exchange(Answer* answer);
 
 /* Steps of the test. `found` is the result of Lines_find: the channels that work; 0 if the
  * tester does not answer. */
-void Lines_testAlone(U32 found);   /* stuck lines and shorts, without the FPGA */
+/* Stuck lines and shorts, without the FPGA. Returns 0 if another chip on the bus makes the other
+ * steps of the wires meaningless. */
+int Lines_testAlone(U32 found);
 void Lines_testThrough(U32 found); /* open, swapped and inverted lines */
 void Lines_testClock(void);        /* the FPGA's clock, and the edges of NWE */
 void Lines_testModem(void);        /* the wires between FPGA and modem */

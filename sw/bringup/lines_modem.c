@@ -7,6 +7,7 @@
  * CTS (synth/ise/lines.ucf). A pin that the tester has driven and releases follows a driver at
  * once, a pull after a microsecond, and nothing if it is open.
  */
+#include "board_pins.h"
 #include "bringup.h"
 #include "console.h"
 #include "lines.h"
@@ -194,10 +195,28 @@ static int testReset(void) {
     return 0;
 }
 
+/* Returns 1 if the FPGA can lift one of its outputs: their bank has a supply. */
+static int isBankPowered(void) {
+    set(PIN_TXD, 1);
+    set(PIN_RTS, 1);
+    set(PIN_RESET, 1);
+    look();
+    set(PIN_TXD, 2);
+    set(PIN_RTS, 2);
+    set(PIN_RESET, 2);
+    return now.txd || now.rts || now.reset;
+}
+
 void Lines_testModem(void) {
     static const Pins none;
     Report_step("modem-wires", "the modem answers to RESET, drives RXD and CTS, pulls TXD and RTS");
     lines_enable = lines_value = none;
+    if (!isBankPowered()) {
+        Report_fail("BANK" TEXT_OF(BOARD_BANK_MODEM_RESET), 0, "no-supply",
+                    "all lines of the modem are low, although the FPGA drives them high",
+                    "VCCO of this bank of the FPGA, 3.3 V");
+        return;
+    }
     look();
     if (!testReset())
         return;

@@ -18,7 +18,17 @@
 #define CODE_MASK 127U
 #define NONE 255U
 
-typedef enum Fate { GOOD, STUCK, DRIVEN_LOW, DRIVEN_HIGH, SHORTED, OPEN, MOVED, INVERTED } Fate;
+typedef enum Fate {
+    GOOD,
+    STUCK,
+    PULLED,
+    DRIVEN_LOW,
+    DRIVEN_HIGH,
+    SHORTED,
+    OPEN,
+    MOVED,
+    INVERTED
+} Fate;
 
 static U8 fate[LINES];
 /* arrives[i]: the line whose number has arrived at the FPGA's pin of line i */
@@ -29,8 +39,10 @@ static int isOutput(U32 line) {
     return line == LINE_NWAIT || line == LINE_IRQ;
 }
 
-static int isDriven(U32 line) {
-    return fate[line] == STUCK || fate[line] == DRIVEN_LOW || fate[line] == DRIVEN_HIGH;
+/* Returns 1 if another part holds this line against the pulls of the microcontroller. */
+static int isHeld(U32 line) {
+    return fate[line] == STUCK || fate[line] == PULLED || fate[line] == DRIVEN_LOW ||
+           fate[line] == DRIVEN_HIGH;
 }
 
 static int isTestable(U32 line) {
@@ -64,6 +76,23 @@ static void reportStuck(U32 line, int high) {
                     "a short to ground, or another part that drives it");
 }
 
+/* Drives a line against the level that it keeps. Returns 1 if the line takes the new level. */
+static int follows(U32 line, int high) {
+    int now;
+    Lines_drive(line, high);
+    Timing_wait(SETTLE_US);
+    now = Lines_read(line);
+    Lines_input(line, PULL_UP);
+    return now == high;
+}
+
+static void reportPulled(U32 line, int high) {
+    fate[line] = PULLED;
+    Report_fail(Lines_name(line), 0, high ? "pulled1" : "pulled0",
+                "it follows a driver, but not the pulls of the microcontroller",
+                "another part on the line: an LED, a resistor, a solder bridge that is not open");
+}
+
 /* `found` is not 0 if the tester answers; the tester can then detect an inverter in a line that it
  * drives. */
 static void testStuck(U32 found) {
@@ -76,7 +105,9 @@ static void testStuck(U32 found) {
     for (i = 0; i < LINES; ++i) {
         if (!Lines_isWired(i) || down[i] != up[i])
             continue;
-        if (found && isOutput(i))
+        if (follows(i, !up[i]))
+            reportPulled(i, up[i]);
+        else if (found && isOutput(i))
             fate[i] = up[i] ? DRIVEN_HIGH : DRIVEN_LOW;
         else
             reportStuck(i, up[i]);
@@ -97,25 +128,55 @@ static void testShorts(void) {
     U32 i, k;
     Lines_release(PULL_DOWN);
     for (i = 0; i < LINES; ++i) {
-        if (!Lines_isWired(i) || isDriven(i))
+        if (!Lines_isWired(i) || isHeld(i))
             continue;
         Lines_drive(i, 1);
         readAll(levels);
         Lines_input(i, PULL_DOWN);
         for (k = 0; k < LINES; ++k)
-            if (k != i && levels[k] && !isDriven(k))
+            if (k != i && levels[k] && !isHeld(k))
                 reportShort(i, k);
     }
     Timing_wait(SETTLE_US);
 }
 
-void Lines_testAlone(U32 found) {
+#define LEAST_DRIVEN 4U /* data lines; fewer may be shorted to NE1 or NOE */
+
+/* Returns the data lines that another chip drives while NE1 and NOE are low. */
+static U32 drivenWhenSelected(void) {
+    U8 apart[LINES], selected[LINES];
+    U32 i, driven = 0, pull;
+    Lines_release(PULL_UP); /* NE2, NWE and NBL1 stay high, so that the tester sees no frame */
+    for (pull = (U32)PULL_UP; pull <= (U32)PULL_DOWN; ++pull) {
+        for (i = LINE_D0; i < LINE_D0 + 16U; ++i)
+            Lines_input(i, (Pull)pull);
+        Lines_drive(LINE_NE1, 1);
+        Lines_drive(LINE_NOE, 1);
+        readAll(apart);
+        Lines_drive(LINE_NE1, 0);
+        Lines_drive(LINE_NOE, 0);
+        readAll(selected);
+        for (i = 0; i < 16U; ++i)
+            driven += (U32)(apart[i] == (pull == (U32)PULL_UP) && selected[i] != apart[i]);
+    }
+    Lines_release(PULL_UP);
+    return driven;
+}
+
+int Lines_testAlone(U32 found) {
     U32 i, count = 0;
     for (i = 0; i < LINES; ++i) {
         fate[i] = GOOD;
         count += (U32)Lines_isWired(i);
     }
     Report_step("shorts", "no line is stuck, and none follows another one");
+    if (found && drivenWhenSelected() >= LEAST_DRIVEN) {
+        Report_fail("D", 0, "second-driver",
+                    "another chip drives the data lines while NE1 and NOE are low",
+                    "a memory of the evaluation board on NE1: remove its jumper or solder bridge,"
+                    " or disable it");
+        return 0;
+    }
     testStuck(found);
     testShorts();
     if (Report_pass()) {
@@ -123,6 +184,7 @@ void Lines_testAlone(U32 found) {
         Console_text(" lines follow their pulls and no other line");
         Console_end();
     }
+    return 1;
 }
 
 /* ---- through the FPGA ---- */
@@ -227,6 +289,24 @@ static void judgeSent(const U8* first, const U8* second) {
     }
 }
 
+#define ADDRESS_LINES 25U
+#define LEAST_SHIFTED 4U
+
+/* Finds address lines that are all wired to the next number. */
+static void testShift(void) {
+    U32 i, count = 0;
+    for (i = LINE_A0 + 1U; i < LINE_A0 + ADDRESS_LINES; ++i)
+        count += (U32)(arrives[i] == i - 1U);
+    if (count < LEAST_SHIFTED)
+        return;
+    for (i = LINE_A0; i < LINE_A0 + ADDRESS_LINES; ++i) {
+        fate[i] = MOVED;
+        arrives[i] = NONE;
+    }
+    Report_fail("A0", "A24", "shifted", "each address line arrives at the next number",
+                "that A0 goes to A0: with 16 bits of data, A0 is the address of a halfword");
+}
+
 /* Looks for lines of the FPGA that arrive at another line. */
 static void judgeReceived(const U8* first, const U8* second) {
     U32 i, from;
@@ -258,6 +338,7 @@ void Lines_testThrough(U32 found) {
     if (!sendCodes(first, second))
         return;
     judgeSent(first, second);
+    testShift();
     if (!receiveCodes(first, second))
         return;
     for (i = 0; i < LINES; ++i)
@@ -280,6 +361,7 @@ void Lines_testThrough(U32 found) {
 
 /* ---- the FPGA's clock ---- */
 
+#define BANK_OF_CLOCK TEXT_OF(BOARD_BANK_CLOCK)
 #define MEASURED_US 1000U
 #define PULSES 10U
 
@@ -317,7 +399,8 @@ void Lines_testClock(void) {
     khz = ((after.clocks - before.clocks) & 0xFFFFU) * 64000UL / us;
     if (khz == 0)
         Report_fail("CLK", 0, "no-clock", "the FPGA's clock input does not move",
-                    "the oscillator, its supply and enable pin, and the pin's number in the UCF");
+                    "the oscillator, its supply and enable pin, the supply of bank " BANK_OF_CLOCK
+                    " of the FPGA, and the pin's number in the UCF");
     else if (khz < BOARD_FPGA_HZ / 1000UL * 995UL / 1000UL ||
              khz > BOARD_FPGA_HZ / 1000UL * 1005UL / 1000UL) {
         Report_fail("CLK", 0, "wrong-rate", "the FPGA's clock has another rate",

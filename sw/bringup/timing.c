@@ -5,6 +5,7 @@
 #include "timing.h"
 #include "board_pins.h"
 #include "stm32f2.h"
+#include "watchdog.h"
 
 #define CYCLES_MASK 0xFFFFFFUL
 #define HSI_HZ 16000000UL
@@ -22,6 +23,7 @@ U32 Timing_cycles(void) {
 
 void Timing_pause(U32 cycles) {
     U32 from = SYST_CVR;
+    Watchdog_feed();
     while (((from - SYST_CVR) & CYCLES_MASK) < cycles)
         ;
 }

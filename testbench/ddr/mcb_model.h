@@ -131,10 +131,17 @@ public:
 
     // Restarts the memory, as after power-on; the start takes `clocks` clocks.
     void restart(unsigned clocks) {
-        timing_.calibration = static_cast<unsigned>(now_) + clocks;
+        timing_.calibration = neverStarts_ ? ~0u >> 1 : static_cast<unsigned>(now_) + clocks;
         pins.calibDone = false;
         nextEvent_ = 0;
     }
+
+    // Injects a fault of the clock, a command line or the supply: the calibration never ends.
+    void breakStart() {
+        neverStarts_ = true;
+        restart(0);
+    }
+    bool neverStarts() const { return neverStarts_; }
 
     // Starts or ends a fault in which the memory hangs: no command begins and no word moves.
     // Waiting commands are carried out after the fault.
@@ -195,7 +202,7 @@ private:
     uint8_t masked(uint8_t mask) const;
 
     Lines lines_;
-    bool isFaulty_ = false;
+    bool isFaulty_ = false, neverStarts_ = false;
     mutable uint64_t noise_ = 1;
     ZeroedBytes memory_;
     Timing timing_;

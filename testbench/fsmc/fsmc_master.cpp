@@ -5,6 +5,7 @@
 #include "fsmc_master.h"
 #include "pin_delays.h"
 #include <cstdio>
+#include <utility>
 
 namespace {
 
@@ -253,6 +254,8 @@ uint16_t FsmcMaster::readPins(uint32_t address) {
     }
     if (ours && !pins_.dDriven)
         value = static_cast<uint16_t>(~value); // value of a data bus that nobody drives
+    if (ours && shiftsReads_)
+        std::swap(value, lastRead_);
     endOfAccess(access);
     pins_.noeN = true;
     pins_.neN = 0xF;

@@ -66,6 +66,9 @@ public:
     // Gives the processor wrong data instead of an FsmcError, as makeLate() does, but delays no
     // pin.
     void tolerate();
+    // Makes each read return the halfword of the previous read, as a design with one register too
+    // many in its data path does.
+    void shiftReads() { shiftsReads_ = true; }
     // Sets the frequencies of HCLK and of the design's clock, as cycles in the same unit of time.
     void setClocks(unsigned hclkPerUnit, unsigned clkPerUnit);
 
@@ -137,7 +140,8 @@ private:
     unsigned hclkPerUnit_, clkPerUnit_;
     unsigned phase_ = 0;
     std::unique_ptr<PinDelays> delays_;
-    bool looksTwice_ = false, pausesWrites_ = true, tolerant_ = false;
+    bool looksTwice_ = false, pausesWrites_ = true, tolerant_ = false, shiftsReads_ = false;
+    uint16_t lastRead_ = 0;
     Bank banks_[4] = {{0x000030DB}, {0x000030D2}, {0x000030D2}, {0x000030D2}};
     // State of the previous access, for the bus turnaround.
     bool lastWrite_ = false, lastHeld_ = false;

@@ -61,9 +61,17 @@ public:
         armed_ = armed_ || level;
     }
     void setBitTime(double ns) override {
-        wantedBitNs_ = ns;
+        wantedBitNs_ = ns * drift_;
         if (rxBit_ == 0 && txBit_ == 0)
-            bitNs_ = ns;
+            bitNs_ = wantedBitNs_;
+    }
+    // Sets the rate of the design's clock, as a factor of its nominal rate. Times of this class are
+    // counted in the design's clocks.
+    void drift(double factor) {
+        wantedBitNs_ *= factor / drift_;
+        drift_ = factor;
+        if (rxBit_ == 0 && txBit_ == 0)
+            bitNs_ = wantedBitNs_;
     }
     bool rxd() const { return txLevel_; }
     bool ctsN() const { return !cts_; }
@@ -141,7 +149,8 @@ private:
             txLevel_ = levelAfter(txBit_);
         } else {
             txBit_ = 0;
-            setBitTime(wantedBitNs_);
+            if (rxBit_ == 0)
+                bitNs_ = wantedBitNs_;
             if (mayTalk())
                 startByte(at);
             return;
@@ -152,6 +161,7 @@ private:
 
     bool level_ = true, txLevel_ = true, rts_ = true, armed_ = true;
     unsigned rxBit_ = 0, txBit_ = 0;
+    double drift_ = 1; // rate of the design's clock, as a factor of its nominal rate
     double wantedBitNs_ = bitNs_, rxStart_ = 0, rxAt_ = 0, txAt_ = 0;
     uint8_t rxByte_ = 0, txByte_ = 0;
 };

@@ -4,6 +4,9 @@
 // the pins.
 
 #include "board_wires.h"
+#include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <regex>
 #include <sstream>
 #include <stdexcept>
@@ -50,28 +53,72 @@ bool bitOf(const FsmcPins& pins, unsigned line) {
                                       : true;
 }
 
+// Returns the line of the net that a fault names, such as NE1; Lines if it is not a wire here.
+unsigned lineOfFault(const std::string& wire) {
+    struct Net {
+        const char* name;
+        unsigned line, first, count;
+    };
+    constexpr Net nets[] = {{"A", BoardWires::A, 0, 25},
+                            {"D", BoardWires::D, 0, 16},
+                            {"NBL", BoardWires::Nbl, 0, 2},
+                            {"NE", BoardWires::Ne, 1, 2},
+                            {"NOE", BoardWires::Noe, 0, 0},
+                            {"NWE", BoardWires::Nwe, 0, 0},
+                            {"NADV", BoardWires::Nadv, 0, 0},
+                            {"NWAIT", BoardWires::Nwait, 0, 0},
+                            {"IRQ", BoardWires::Irq, 0, 0},
+                            {"MODEM_RXD", BoardWires::ModemRxd, 0, 0},
+                            {"MODEM_TXD", BoardWires::ModemTxd, 0, 0},
+                            {"MODEM_CTS", BoardWires::ModemCts, 0, 0},
+                            {"MODEM_RTS", BoardWires::ModemRts, 0, 0},
+                            {"MODEM_RESET", BoardWires::ModemReset, 0, 0}};
+    for (const Net& net : nets)
+        for (unsigned i = 0; i < std::max(net.count, 1u); ++i)
+            if (wire == net.name + (net.count ? std::to_string(net.first + i) : ""))
+                return net.line + i;
+    return BoardWires::Lines;
+}
+
+std::string textOf(const std::string& file) {
+    std::ifstream in(file);
+    if (!in)
+        throw std::runtime_error("cannot read '" + file +
+                                 "': expected a folder made by ./icesoc board make");
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
 } // namespace
 
 BoardWires::BoardWires() : BoardWires(defaultWires, defaultUcf) {}
 
+BoardWires BoardWires::fromFolder(const std::string& folder) {
+    return BoardWires(textOf(folder + "/board.wires"), textOf(folder + "/board.ucf"));
+}
+
 BoardWires::BoardWires(const std::string& wires, const std::string& ucf) {
     from_.fill(-1);
+    bank_.fill(-1);
     isSwitched_.fill(true);
+    for (unsigned line = 0; line < Lines; ++line)
+        joined_[line] = 1ull << line;
     // Lines with a pull-up in synth/ise/chip.ucf.
     for (unsigned line : {unsigned(Ne), Ne + 1, unsigned(Noe), unsigned(Nwe), unsigned(ModemRxd)})
         isHigh_[line] = true;
-    std::map<std::string, int> lineAtBall;
-    readWires(wires, lineAtBall);
+    readWires(wires);
     static const std::regex place("NET \"([^\"]+)\" LOC = \"([A-Z0-9]+)\"( \\| PULLUP)?;");
     for (std::sregex_iterator at(ucf.begin(), ucf.end(), place), end; at != end; ++at) {
         const Line port = lineOf((*at)[1]);
-        auto found = lineAtBall.find((*at)[2]);
+        const auto found = balls_.find((*at)[2]);
         if (port == Lines)
             continue;
         if ((*at)[3].matched)
             isHigh_[port] = true;
-        if (found != lineAtBall.end())
-            from_[port] = found->second;
+        if (found == balls_.end())
+            continue;
+        bank_[port] = found->second.bank;
+        if (found->second.isPowered) // a bank without supply neither drives nor sees its balls
+            from_[port] = found->second.signal;
     }
     updateStraight();
 }
@@ -101,22 +148,28 @@ BoardWires::Line BoardWires::lineOf(const std::string& name) {
 }
 
 // Reads the pins and balls of each net, one net per line (tools/icesoc/board/simulator.py).
-void BoardWires::readWires(const std::string& text, std::map<std::string, int>& lineAtBall) {
+void BoardWires::readWires(const std::string& text) {
     std::istringstream lines(text);
     std::string line;
     while (std::getline(lines, line)) {
         std::istringstream words(line);
         std::string end, number, function, net, ball;
+        int bank = -1;
         double volts = 0;
         if (line.empty() || line[0] == '#')
             continue;
-        if (line.compare(0, 11, "oscillator ") == 0) {
-            oscillatorHz_ = static_cast<uint32_t>(std::stoul(line.substr(11)));
+        words >> end >> number;
+        if (end == "oscillator")
+            oscillatorHz_ = static_cast<uint32_t>(std::stoul(number));
+        else if (end == "muxed")
+            isMuxed_ = number == "1";
+        else if (end == "modem")
+            modem_ = number;
+        if (end == "oscillator" || end == "muxed" || end == "modem")
             continue;
-        }
-        if (!(words >> end >> number >> function >> net >> ball >> volts))
-            throw std::runtime_error("board.wires: expected pin, number, function, net, ball and "
-                                     "volts, got '" +
+        if (!(words >> function >> net >> ball >> bank >> volts))
+            throw std::runtime_error("board.wires: expected pin, number, function, net, ball, bank "
+                                     "and volts, got '" +
                                      line + "'");
         Line signal = lineOf(function);
         if (signal == Lines)
@@ -127,8 +180,7 @@ void BoardWires::readWires(const std::string& text, std::map<std::string, int>& 
             pins_[signal] = {unsigned(end[1] - 'A'),
                              static_cast<unsigned>(std::stoul(end.substr(2))),
                              static_cast<unsigned>(std::stoul(number)), signal};
-        if (volts > 0) // a bank without supply neither drives nor reads its balls
-            lineAtBall[ball] = int(signal);
+        balls_[ball] = {int(signal), bank, volts > 0};
     }
 }
 
@@ -153,46 +205,180 @@ void BoardWires::changed(unsigned port) {
 }
 
 void BoardWires::updateStraight() {
-    isStraight_ = true;
-    for (unsigned line = 0; line < Irq; ++line)
-        if (line != Nadv) // the bridge of this chip is not multiplexed
-            isStraight_ = isStraight_ && from_[line] == int(line) && isSwitched_[line];
+    auto reaches = [this](unsigned line) {
+        return from_[line] == int(line) && isSwitched_[line] && !(faulty_ >> line & 1);
+    };
+    isStraight_ = !hasSecondDriver_;
+    areOthersStraight_ = true;
+    for (unsigned line = 0; line < Irq; ++line) {
+        const bool isUsed = isMuxed_ ? line >= 16 : line != Nadv; // address bits 15..0, NADV
+        isStraight_ = isStraight_ && (!isUsed || reaches(line));
+    }
+    for (unsigned line = Irq; line < Lines; ++line)
+        areOthersStraight_ = areOthersStraight_ && reaches(line);
 }
 
-FsmcPins BoardWires::atChip(const FsmcPins& near) const {
-    auto level = [&](unsigned port) {
-        const int signal = from_[port];
-        return signal >= 0 && signal < int(Nwait) && isSwitched_[unsigned(signal)]
-                   ? bitOf(near, unsigned(signal))
-                   : isHigh_[port];
-    };
+// ---- faults ----
+
+// Separates a port of the chip from its wire.
+void BoardWires::cut(unsigned line) {
+    from_[line] = -1;
+}
+
+bool BoardWires::plant(const WireFault& fault) {
+    const unsigned a = lineOfFault(fault.wire);
+    const unsigned b = fault.other.empty() ? a : lineOfFault(fault.other);
+    const uint64_t bits = a < Lines && b < Lines ? 1ull << a | 1ull << b : 0;
+    switch (fault.kind) {
+    case WireFault::Open:
+        if (!bits)
+            return false;
+        cut(a);
+        break;
+    case WireFault::Stuck0:
+    case WireFault::Stuck1:
+        if (!bits)
+            return false;
+        stuck_ |= bits;
+        stuckHigh_ |= fault.kind == WireFault::Stuck1 ? bits : 0;
+        break;
+    case WireFault::Pull0:
+    case WireFault::Pull1:
+        pulled_ |= bits;
+        pulledHigh_ |= fault.kind == WireFault::Pull1 ? bits : 0;
+        break;
+    case WireFault::Short: {
+        if (!bits)
+            return false;
+        const uint64_t all = joined_[a] | joined_[b];
+        for (unsigned line = 0; line < Lines; ++line)
+            if (all >> line & 1)
+                joined_[line] = all;
+        break;
+    }
+    case WireFault::Swapped:
+        std::swap(from_[a], from_[b]);
+        break;
+    case WireFault::Inverted:
+        inverted_ ^= bits;
+        break;
+    case WireFault::Ringing:
+        rings_ = true;
+        return true;
+    case WireFault::SecondDriver:
+        hasSecondDriver_ = true;
+        break;
+    case WireFault::Shifted:
+        if (fault.wire != "A")
+            return false;
+        for (unsigned line = 24; line > 0; --line)
+            from_[A + line] = from_[A + line - 1];
+        cut(A);
+        break;
+    case WireFault::Missing:
+        if (fault.wire != "MODEM")
+            return false;
+        for (unsigned line = ModemRxd; line < Lines; ++line)
+            cut(line);
+        break;
+    case WireFault::Unpowered:
+        for (unsigned line = 0; line < Lines; ++line)
+            if (bank_[line] == fault.bank())
+                cut(line);
+        break;
+    default:
+        return false;
+    }
+    faulty_ |= bits;
+    updateStraight();
+    return true;
+}
+
+// ---- levels ----
+
+void BoardWires::Drivers::set(int signal, bool isOn, bool isHigh) {
+    if (signal < 0)
+        return;
+    const uint64_t bit = 1ull << signal;
+    on = isOn ? on | bit : on & ~bit;
+    high = isHigh ? high | bit : high & ~bit;
+}
+
+// Returns the level of a wire; -1 if nothing drives or pulls it. Low wins against high.
+int BoardWires::level(int signal) const {
+    if (signal < 0)
+        return -1;
+    const uint64_t wires = joined_[unsigned(signal)];
+    const bool isInverted = inverted_ >> signal & 1;
+    if (stuck_ & wires)
+        return (stuckHigh_ & wires) != 0;
+    bool isDriven = false, isLow = false;
+    for (const Drivers* side : {&processor_, &chip_, &modemsOutputs_}) {
+        isDriven = isDriven || (side->on & wires);
+        isLow = isLow || (side->on & ~side->high & wires);
+    }
+    if (isDriven)
+        return isLow == isInverted;
+    return pulled_ & wires ? (pulledHigh_ & wires) != 0 : -1;
+}
+
+FsmcPins BoardWires::atChip(const FsmcPins& near) {
+    for (unsigned line = 0; line < Nwait; ++line)
+        processor_.set(int(line), isSwitched_[line] && (line < D || line >= Nbl || near.dOut),
+                       bitOf(near, line));
     FsmcPins chip = near;
+    auto seen = [this](unsigned port) {
+        const int now = level(from_[port]);
+        return now < 0 ? isHigh_[port] : now == 1;
+    };
     auto bits = [&](unsigned first, unsigned count) {
         uint32_t value = 0;
         for (unsigned bit = 0; bit < count; ++bit)
-            value |= uint32_t(level(first + bit)) << bit;
+            value |= uint32_t(seen(first + bit)) << bit;
         return value;
     };
     chip.a = bits(A, 25);
     chip.d = static_cast<uint16_t>(bits(D, 16));
     chip.nblN = static_cast<uint8_t>(bits(Nbl, 2));
     chip.neN = static_cast<uint8_t>((near.neN & ~3u) | bits(Ne, 2));
-    chip.noeN = level(Noe);
-    chip.nweN = level(Nwe);
-    chip.nadvN = level(Nadv);
+    chip.noeN = seen(Noe);
+    chip.nweN = seen(Nwe);
+    chip.nadvN = seen(Nadv);
     return chip;
 }
 
-void BoardWires::toProcessor(const FsmcPins& chip, FsmcPins& near) const {
-    // A data pin without a connection to the chip reads as low, because a processor cannot detect
-    // that nothing drives it.
+void BoardWires::toProcessor(const FsmcPins& chip, FsmcPins& near) {
+    for (unsigned bit = 0; bit < 16; ++bit)
+        chip_.set(from_[D + bit], chip.dDriven, chip.dFromDesign >> bit & 1);
+    chip_.set(from_[Nwait], true, chip.nwaitN);
+    const bool reads = !near.noeN && !near.dOut;
+    // The second memory has other contents than the chip's.
+    const bool isOtherDriving = hasSecondDriver_ && reads && !(near.neN & 1);
+    const auto other = static_cast<uint16_t>(near.a * 0x9E37u >> 3 ^ 0x5AA5u);
     near.dFromDesign = 0;
     for (unsigned bit = 0; bit < 16; ++bit) {
-        const int signal = from_[D + bit];
-        if (signal >= int(D) && signal < int(Nbl) && isSwitched_[unsigned(signal)])
-            near.dFromDesign = static_cast<uint16_t>(
-                near.dFromDesign | (chip.dFromDesign >> bit & 1) << (unsigned(signal) - D));
+        // A data pin that nothing drives reads as low, because a processor cannot detect this.
+        int now = isSwitched_[D + bit] ? level(int(D + bit)) : 0;
+        if (isOtherDriving)
+            now = now != 0 && (other >> bit & 1);
+        near.dFromDesign = static_cast<uint16_t>(near.dFromDesign | (now == 1) << bit);
     }
-    near.dDriven = chip.dDriven || (!near.noeN && !near.dOut && (near.neN & 3) != 3);
-    near.nwaitN = from_[Nwait] == int(Nwait) && isSwitched_[Nwait] ? chip.nwaitN : true;
+    near.dDriven = chip.dDriven || (reads && (near.neN & 3) != 3);
+    near.nwaitN = !isSwitched_[Nwait] || level(int(Nwait)) != 0;
+}
+
+void BoardWires::drive(Line line, bool high) {
+    if (isOfModem(line))
+        modemsOutputs_.set(int(line), true, high);
+    else
+        chip_.set(from_[line], true, high);
+}
+
+// An input of the chip without a driver has the level of its pull in the chip. Inputs of the modem
+// are then high, because the modem pulls them up; IRQ is low, because nothing pulls it.
+bool BoardWires::arrives(Line line) const {
+    if (!isOfModem(line))
+        return line == Irq ? level(int(line)) == 1 : level(int(line)) != 0;
+    const int now = level(from_[line]);
+    return now < 0 ? isHigh_[line] : now == 1;
 }

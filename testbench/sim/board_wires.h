@@ -5,12 +5,14 @@
 // determines which ball the signal reaches (boards/NAME/board.toml). The constraints determine to
 // which port of the chip this ball belongs (board.ucf).
 //
-// On a straight board, each signal reaches its own port; the model then costs no run time.
+// A fault of a wire (wire_fault.h) changes the levels at its ends. On a straight board, each signal
+// reaches its own port; the model then costs no run time.
 
 #pragma once
 
 #include "fsmc_pins.h"
 #include "pin_wires.h"
+#include "wire_fault.h"
 #include <array>
 #include <functional>
 #include <map>
@@ -42,19 +44,31 @@ public:
     // Another board: the texts of its board.wires and board.ucf. Throws std::runtime_error with the
     // line that is not understood.
     BoardWires(const std::string& wires, const std::string& ucf);
+    // Reads board.wires and board.ucf from a folder that ./icesoc board make has written.
+    static BoardWires fromFolder(const std::string& folder);
 
     uint32_t oscillatorHz() const { return oscillatorHz_; }
+    bool isMuxed() const { return isMuxed_; }
+    // Returns the kind of the board's modem (xbee_profile.h); empty if unknown.
+    const std::string& modem() const { return modem_; }
     // Sets the function that returns what a pin does; without this function all pins are switched
     // to their signals, as a program that does not model pins needs it.
     void follow(std::function<PinSetting(unsigned port, unsigned pin)> setting);
+    // Plants a fault of a wire or of a bank's supply. Returns false for other kinds of faults.
+    bool plant(const WireFault& fault);
 
-    bool isStraight() const { return isStraight_; }
-    // Returns whether a signal that does not belong to the FSMC arrives where it should.
-    bool reaches(Line line) const { return from_[line] == int(line); }
-    // Returns the pins as the chip sees them.
-    FsmcPins atChip(const FsmcPins& near) const;
+    bool isStraight() const { return isStraight_; } // for the signals of the FSMC
+    bool areOthersStraight() const { return areOthersStraight_; }
+    bool rings() const { return rings_; } // rising edges of NWE arrive twice
+
+    // Returns the FSMC's pins as the chip sees them.
+    FsmcPins atChip(const FsmcPins& near);
     // Sets the processor's pins to the levels that the chip drives at its pins.
-    void toProcessor(const FsmcPins& chip, FsmcPins& near) const;
+    void toProcessor(const FsmcPins& chip, FsmcPins& near);
+    // Sets the level of an output of the chip or of the modem: IRQ, and the modem's lines.
+    void drive(Line line, bool high);
+    // Returns the level that arrives at the input of one of these lines.
+    bool arrives(Line line) const;
 
     uint16_t levels(unsigned, uint16_t inside) override { return inside; }
     void changed(unsigned port) override;
@@ -64,15 +78,36 @@ private:
         unsigned port, pin, function;
         Line line;
     };
+    // Outputs of one side: a bit for each signal.
+    struct Drivers {
+        uint64_t on = 0, high = 0;
+        void set(int signal, bool isOn, bool isHigh);
+    };
     static Line lineOf(const std::string& name);
-    void readWires(const std::string& text, std::map<std::string, int>& lineAtBall);
+    static bool isOfModem(unsigned line) { return line == ModemRxd || line == ModemCts; }
+    void readWires(const std::string& text);
     void updateStraight();
+    void cut(unsigned line);
+    int level(int signal) const;
 
     uint32_t oscillatorHz_ = 0;
+    bool isMuxed_ = false;
+    std::string modem_;
+    struct Ball {
+        int signal, bank;
+        bool isPowered;
+    };
+    std::map<std::string, Ball> balls_;
     std::array<int, Lines> from_;      // signal that arrives at each port; -1 without a signal
+    std::array<int, Lines> bank_;      // bank of each port; -1 if unknown
     std::array<bool, Lines> isHigh_{}; // level of each port at which no signal arrives
     std::array<bool, Lines> isSwitched_;
     std::map<Line, Pin> pins_; // pins of the FSMC
     std::function<PinSetting(unsigned, unsigned)> setting_;
-    bool isStraight_ = false;
+    bool isStraight_ = false, areOthersStraight_ = false;
+    Drivers processor_, chip_, modemsOutputs_;
+    // faults, a bit for each signal
+    uint64_t faulty_ = 0, stuck_ = 0, stuckHigh_ = 0, pulled_ = 0, pulledHigh_ = 0, inverted_ = 0;
+    std::array<uint64_t, Lines> joined_; // signals that are shorted to each signal, and itself
+    bool rings_ = false, hasSecondDriver_ = false;
 };

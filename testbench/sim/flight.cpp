@@ -3,6 +3,7 @@
 // flight: creates and connects the models, starts the ground program, and runs the processor.
 
 #include "flight.h"
+#include "board_faults.h"
 #include "core_pins.h"
 #include "files.h"
 #include "map_regs.h"
@@ -125,6 +126,12 @@ Flight::Flight(const Options& options)
       pace_(o_.speed == "real"  ? 1
             : o_.speed == "max" ? 0
                                 : std::stod(o_.speed)) {
+    if (!o_.board.empty())
+        soc_.wires() = BoardWires::fromFolder(o_.board);
+    std::vector<WireFault> faults;
+    for (const std::string& fault : o_.fault)
+        faults.push_back(WireFault::parse(fault));
+    plantFaults(soc_, faults);
     air_.weather = weather_;
     uav_guardMs = o_.guard;
     connectModels();

@@ -66,7 +66,8 @@ public:
         // (tools/icesoc/cli/flight.schema.json).
         std::string image, size = "320x240", out = ".", speed = "real", cpu = "host",
                            firmware = defaultFirmware(), key, observer, trouble, modem_key, pins,
-                           trace, flash, fpga_flash, modem = "s1";
+                           trace, flash, fpga_flash, modem = "s1", board;
+        std::vector<std::string> fault;
         uint16_t guard = 1000;
         unsigned vehicles = 1;
         int gdb = -1;
@@ -75,9 +76,10 @@ public:
         bool camera = false, wire = false, every_clock = false, quiet = false;
         NLOHMANN_DEFINE_TYPE_INTRUSIVE_WITH_DEFAULT(Options, image, size, out, speed, cpu, firmware,
                                                     key, observer, trouble, modem_key, pins, trace,
-                                                    flash, fpga_flash, modem, guard, vehicles, gdb,
-                                                    loss, interference, distance, duration, from,
-                                                    to, seed, camera, wire, every_clock, quiet)
+                                                    flash, fpga_flash, modem, board, fault, guard,
+                                                    vehicles, gdb, loss, interference, distance,
+                                                    duration, from, to, seed, camera, wire,
+                                                    every_clock, quiet)
         nlohmann::json flight; // flight description, which is stored in the recording
         std::vector<std::string> command;
         // recording to replay; null if this flight is not a replay

@@ -71,10 +71,17 @@ public:
         backlog_ = 0;
         running = true;
     }
+    // Replaces the modems and the air by a cable to a chip (M3Machine::Config::isWired).
+    void plugInto(SocModel& soc) {
+        constexpr double bitNs = 9000; // 111,111 baud
+        cable_ = std::make_unique<Cable>(soc.line(), line_, bitNs, [](const SerialLine&) {});
+        soc.plugIn(*cable_);
+    }
     uint64_t advance(uint64_t now) {
         clock_ += (now - now_) * hurry;
         now_ = now;
-        modem_->advance(now);
+        if (!cable_)
+            modem_->advance(now);
         const bool due = now >= nextPoll_;
         if (due)
             nextPoll_ = now + 1'000'000;
@@ -87,7 +94,7 @@ public:
             if (isUp() && !isOpen_)
                 isOpen_ = Link_openChannel(link_.get(), 0) == LINK_OK;
         }
-        return std::min(modem_->nextEvent(), nextPoll_);
+        return std::min(cable_ ? cable_->nextEvent() : modem_->nextEvent(), nextPoll_);
     }
     bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
     // Returns a request for an operation of an object; `parameters` are already encoded. `mode` is
@@ -163,6 +170,7 @@ private:
     Random random_;
     HostLine line_;
     std::unique_ptr<XBee> modem_;
+    std::unique_ptr<Cable> cable_;
     std::unique_ptr<Link> link_;
     std::unique_ptr<Link_Buffers> buffers_{new Link_Buffers};
     uint64_t now_ = 0, clock_ = 0, nextPoll_ = 0;

@@ -83,10 +83,9 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
     stm32_.wire(&soc_.wires());
     soc_.wires().follow(
         [this](unsigned port, unsigned pin) { return stm32_.pinSetting(port, pin); });
-    soc_.onIrq([this](bool high) {
-        if (soc_.wires().reaches(BoardWires::Irq))
-            stm32_.setPinB(0, high);
-    });
+    soc_.onIrq([this](bool high) { stm32_.setPinB(0, high); });
+    if (!soc_.wires().areOthersStraight() && soc_.irq()) // a line that is stuck
+        stm32_.setPinB(0, true);
     tellOnAbort(this, [this] { return stackOf(stm32_); });
 }
 

@@ -97,7 +97,9 @@ json flightOf(const std::vector<std::string>& words) {
                     "'" + *word +
                     "': expected a flight, which is a JSON object (./icesoc run writes it)");
             flight.update(described);
-        } else
+        } else if (known[name].value("type", "") == "array")
+            flight[name].push_back(*++word);
+        else
             flight[name] = valueOf(known[name], *(word + 1)), ++word;
     }
     flight.erase("version");
@@ -198,6 +200,28 @@ Flight::Options recorded(const Flight::Options& now, const std::string& folder) 
     return o;
 }
 
+// Checks the flight's board and its faults, and sets the kind of modem to the board's unless the
+// flight chooses one. Throws std::invalid_argument if the board or a fault is wrong.
+void completeBoard(Flight::Options& o) {
+    try {
+        for (const std::string& fault : o.fault)
+            (void)WireFault::parse(fault);
+        if (o.board.empty())
+            return;
+        const BoardWires wires = BoardWires::fromFolder(o.board);
+        if (wires.isMuxed() != BoardWires().isMuxed())
+            throw std::runtime_error(
+                std::string("--board: expected a board ") +
+                (wires.isMuxed() ? "without multiplexed" : "with multiplexed") +
+                " address and data, as this simulator was built, got '" + o.board +
+                "'; build one with -DBOARD=NAME");
+        if (!o.flight.contains("modem") && !wires.modem().empty())
+            o.modem = wires.modem();
+    } catch (const std::runtime_error& e) {
+        throw std::invalid_argument(e.what());
+    }
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -226,6 +250,7 @@ int main(int argc, char** argv) {
         if (replay.empty() && o.flight.contains("wave"))
             throw std::invalid_argument(
                 "--wave needs --replay: a waveform is made from a recorded flight");
+        completeBoard(o);
         if (o.camera && !o.pins.empty())
             throw std::invalid_argument(
                 "--camera and --pins exclude each other: both drive the inputs of cores");

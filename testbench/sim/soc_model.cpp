@@ -7,6 +7,7 @@
 #include "mcb_model.h"
 #include "tell_on_abort.h"
 #include <algorithm>
+#include <cmath>
 
 namespace {
 
@@ -56,7 +57,8 @@ void SocModel::reset(bool memoryStarts) {
         tick();
     top_->rst_i = 0;
     // The chip leaves its reset some clocks after the reset pin, because of the synchroniser.
-    for (int i = 0; i < 8 || !(memoryStarts || memory_.pins.calibDone); ++i)
+    const bool waits = !memoryStarts && hasClock_ && !memory_.neverStarts();
+    for (int i = 0; i < 8 || (waits && !memory_.pins.calibDone); ++i)
         tick();
 }
 
@@ -72,10 +74,48 @@ void SocModel::timeModels() {
     }
     if (others_)
         nextEvent_ = std::min(nextEvent_, others_(time));
-    if (top_->modem_rxd_i != line_.rxd() || top_->modem_cts_n_i != line_.ctsN())
+    fromModem();
+}
+
+// Shows the chip the levels of the modem's outputs.
+void SocModel::fromModem() {
+    bool rxd = line_.rxd(), ctsN = line_.ctsN();
+    if (!wires_.areOthersStraight()) {
+        wires_.drive(BoardWires::ModemRxd, rxd);
+        wires_.drive(BoardWires::ModemCts, ctsN);
+        rxd = wires_.arrives(BoardWires::ModemRxd);
+        ctsN = wires_.arrives(BoardWires::ModemCts);
+    }
+    if (top_->modem_rxd_i != rxd || top_->modem_cts_n_i != ctsN)
         span_.forget();
-    top_->modem_rxd_i = !wires_.reaches(BoardWires::ModemRxd) || line_.rxd();
-    top_->modem_cts_n_i = wires_.reaches(BoardWires::ModemCts) && line_.ctsN();
+    top_->modem_rxd_i = rxd;
+    top_->modem_cts_n_i = ctsN;
+}
+
+// Puts the chip's outputs, except those of the FSMC, on wires with a fault.
+void SocModel::throughWires() {
+    wires_.drive(BoardWires::ModemTxd, top_->modem_txd_o);
+    wires_.drive(BoardWires::ModemRts, top_->modem_rts_n_o);
+    wires_.drive(BoardWires::ModemReset, top_->modem_reset_n_o);
+    wires_.drive(BoardWires::Irq, top_->irq_o);
+    fromModem();
+}
+
+void SocModel::changeClock(double percent) {
+    hasClock_ = percent > -100;
+    if (!hasClock_)
+        return;
+    const double rate = 1 + percent / 100;
+    fsmc_.setClocks(6000, static_cast<unsigned>(std::lround(5000 * rate)));
+    line_.drift(rate);
+}
+
+// Passes time of a chip without a clock.
+void SocModel::standStill() {
+    ++cycles_;
+    if (now() >= nextEvent_)
+        timeModels();
+    quiet_ = now() < nextEvent_ ? (nextEvent_ - now() - 1) / clkNs : 0;
 }
 
 // Returns the number of clocks until a model outside the chip, and until a model at the platform's
@@ -95,6 +135,8 @@ void SocModel::pay() {
     if (rested_)
         (void)span_.pass(rested_); // these clocks contain no tick of the baud rate
     rested_ = 0;
+    if (!hasClock_)
+        owed_ = 0;
     if (!owed_)
         return;
     uint64_t left = span_.pass(owed_);
@@ -122,6 +164,7 @@ void SocModel::settle() {
     if (!isStraight)
         bent = wires_.atChip(*far_);
     const FsmcPins& pins = isStraight ? *far_ : bent;
+    const bool risesTwice = wires_.rings() && pins.nweN && !top.fsmc_nwe_n_i;
     top.fsmc_a_i = pins.a;
     top.fsmc_d_i = pins.d;
     top.fsmc_ne_n_i = pins.neN & 3;
@@ -130,6 +173,10 @@ void SocModel::settle() {
     top.fsmc_nwe_n_i = pins.nweN;
     top.fsmc_nadv_n_i = pins.nadvN;
     top.eval();
+    for (unsigned level = 0; risesTwice && level < 2; ++level) {
+        top.fsmc_nwe_n_i = level != 0;
+        top.eval();
+    }
     showOutputs();
 }
 
@@ -145,6 +192,10 @@ void SocModel::showOutputs() {
 void SocModel::tick() {
     if (quiet_) {
         (void)passQuiet(cycles_ + 1);
+        return;
+    }
+    if (!hasClock_) {
+        standStill();
         return;
     }
     if (span_.stirs())
@@ -165,6 +216,33 @@ void SocModel::tick() {
     resting_ = quiet_ ? 0 : clocks.platform;
 }
 
+// Shows the modem and the processor the levels of the chip's outputs, except those of the FSMC.
+void SocModel::passOutputs() {
+    const bool isStraight = wires_.areOthersStraight();
+    if (!isStraight)
+        throughWires();
+    auto level = [&](bool output, BoardWires::Line line) {
+        return isStraight ? output : wires_.arrives(line);
+    };
+    const bool txd = level(top_->modem_txd_o, BoardWires::ModemTxd),
+               resetN = level(top_->modem_reset_n_o, BoardWires::ModemReset),
+               rtsN = level(top_->modem_rts_n_o, BoardWires::ModemRts),
+               irq = level(top_->irq_o, BoardWires::Irq);
+    if (txd != txd_ || resetN != resetN_ || rtsN != rtsN_)
+        nextEvent_ = 0;
+    if (txd != txd_)
+        line_.setTxd(txd_ = txd, now());
+    if (resetN != resetN_ || rtsN != rtsN_) {
+        modem_.resetPin(!(resetN_ = resetN), now());
+        line_.setRts(!(rtsN_ = rtsN), now());
+    }
+    if (irq != irq_) {
+        irq_ = irq;
+        if (irqEdge_)
+            irqEdge_(irq_);
+    }
+}
+
 void SocModel::evaluate(bool rests) {
     // The design has settled; the memory pins now get their values for after this clock.
     VSoc& top = *top_;
@@ -182,30 +260,11 @@ void SocModel::evaluate(bool rests) {
         top.eval();
         observer_.step(top, cycles_, half);
     }
-    if (top.modem_txd_o != txd_) {
-        txd_ = top.modem_txd_o;
-        if (wires_.reaches(BoardWires::ModemTxd))
-            line_.setTxd(txd_, now());
-        nextEvent_ = 0;
-    }
-    if (top.modem_reset_n_o != resetN_ || top.modem_rts_n_o != rtsN_) {
-        resetN_ = top.modem_reset_n_o;
-        rtsN_ = top.modem_rts_n_o;
-        if (wires_.reaches(BoardWires::ModemReset))
-            modem_.resetPin(!resetN_, now());
-        if (wires_.reaches(BoardWires::ModemRts))
-            line_.setRts(!rtsN_, now());
-        nextEvent_ = 0;
-    }
+    passOutputs();
     if (top.core_pins_o != corePins_) {
         corePins_ = top.core_pins_o;
         if (corePinsChanged_)
             corePinsChanged_(corePins_);
-    }
-    if (top.irq_o != irq_) {
-        irq_ = top.irq_o;
-        if (irqEdge_)
-            irqEdge_(irq_);
     }
     if (now() >= nextEvent_)
         timeModels();

@@ -71,7 +71,8 @@ public:
     }
     uint64_t cycles() const { return cycles_; }
     uint64_t now() const { return cycles_ * clkNs; }
-    bool irq() const { return top_->irq_o; }
+    bool nwaitN() const { return far_->nwaitN; } // level of NWAIT at the processor
+    bool irq() const { return wires_.areOthersStraight() ? top_->irq_o : irq_; }
 
     // Sets the input pins of cores (MAP_PIN_...); they take effect with the next evaluation.
     // `sampled` means that the pins only lead to flip-flops, like the pins of a sensor; a platform
@@ -98,6 +99,9 @@ public:
     FsmcMaster& fsmc() { return fsmc_; }
     // The wires of the board between processor, modem and chip.
     BoardWires& wires() { return wires_; }
+    // Changes the rate of the chip's clock, in percent; -100 stops it. Call it before the reset.
+    // The processor and the modem keep their rates; time (now()) is that of the chip.
+    void changeClock(double percent);
     // Adds delays to the FSMC's wires; only with a clock of 100 MHz.
     void delay(const FsmcCorner& corner, uint64_t seed, bool looksTwice) {
         delayed_ = pins_;
@@ -126,6 +130,10 @@ public:
 
 private:
     void timeModels();
+    void passOutputs();
+    void fromModem();
+    void throughWires();
+    void standStill();
     void settle();
     void showOutputs();
     void evaluate(bool rests = false);
@@ -164,5 +172,7 @@ private:
     std::function<uint64_t(uint64_t)> others_;
     uint64_t cycles_ = 0, nextEvent_ = 0;
     std::function<void(bool)> irqEdge_;
+    // levels at the processor and at the modem
     bool irq_ = false, txd_ = true, resetN_ = true, rtsN_ = false;
+    bool hasClock_ = true;
 };

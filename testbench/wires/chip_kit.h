@@ -5,10 +5,10 @@
 
 #pragma once
 
+#include "board_faults.h"
 #include "rf_channel.h"
 #include "soc_model.h"
 #include "stm32f2.h"
-#include "wire_fault.h"
 #include <string>
 #include <vector>
 
@@ -26,15 +26,12 @@ public:
     Stm32F2& stm32() { return stm32_; }
 
 private:
-    void plant(const WireFault& fault);
     uint16_t levels(unsigned port, uint16_t inside) override;
     void changed(unsigned) override {}
 
     RfChannel air_{1};
     SocModel soc_;
     Stm32F2 stm32_;
-    McbModel::Lines memory_;
-    bool hasMemoryFault_ = false, neverCalibrates_ = false;
     std::string printed_;
     bool ended_ = false;
 };

@@ -10,7 +10,8 @@ extern "C" {
 
 namespace {
 
-constexpr unsigned nwe = 44, rxd = 50, txd = 51, cts = 52, rts = 53, resetN = 54;
+constexpr unsigned ne1 = 41, noe = 43, nwe = 44, rxd = 50, txd = 51, cts = 52, rts = 53,
+                   resetN = 54;
 constexpr unsigned notWired = 255;
 
 std::vector<std::string> netNames() {
@@ -36,20 +37,15 @@ LineKit::LineKit(const Options& options)
     // cdc_bit reads an option from the arguments, so they must exist
     context_.commandArgs(0, static_cast<const char**>(nullptr));
     double mhz = options.fpgaMhz;
-    for (const WireFault& fault : options.faults) {
-        if (fault.wire == "CLK")
-            mhz = fault.kind == WireFault::Missing ? 0 : mhz * (1 - fault.value / 100);
-        else if (fault.wire == "MODEM" && fault.kind == WireFault::Missing)
-            isModemFitted_ = false;
-        else
-            wires_.plant(fault);
-    }
+    for (const WireFault& fault : options.faults)
+        plant(fault, mhz);
     clockHalfNs_ = mhz > 0 ? 500 * unitClocks / mhz : 0;
     if (isModemFitted_)
         for (unsigned pin : {txd, rts, resetN})
             wires_.set(pin, 0, {Wires::None, Wires::High}, 0); // pull-ups (PR)
     wires_.set(rxd, 1, {Wires::None, Wires::Low}, 0);          // synth/ise/lines.ucf
     wires_.set(cts, 1, {Wires::None, Wires::High}, 0);
+    fsmc_.tolerate(); // no chip answers to an access
     stm32_.wire(this);
     stm32_.onSerial = [this](uint8_t byte) {
         printed_ += static_cast<char>(byte);
@@ -61,6 +57,28 @@ LineKit::LineKit(const Options& options)
         for (unsigned pin = 0; pin < pins; ++pin)
             wires_.set(pin, 1, {Wires::None, Wires::High}, 0);
     exchange();
+}
+
+void LineKit::plant(const WireFault& fault, double& mhz) {
+    static const int banks[pins] = {
+#define BANK(name, place) BOARD_BANK_##name,
+        BRINGUP_LINES(BANK)
+#undef BANK
+            BOARD_BANK_MODEM_RXD,
+        BOARD_BANK_MODEM_TXD, BOARD_BANK_MODEM_CTS, BOARD_BANK_MODEM_RTS, BOARD_BANK_MODEM_RESET};
+    if (fault.wire == "CLK" || fault.bank() == BOARD_BANK_CLOCK)
+        mhz = fault.kind == WireFault::Off ? mhz * (1 - fault.value / 100) : 0;
+    if (fault.bank() >= 0) {
+        for (unsigned pin = 0; pin < pins; ++pin)
+            if (banks[pin] == fault.bank())
+                wires_.powerOff(pin);
+    } else if (fault.wire == "MODEM") {
+        isModemFitted_ = false;
+    } else if (fault.kind == WireFault::SecondDriver) {
+        hasSecondMemory_ = true;
+    } else if (fault.wire != "CLK") {
+        wires_.plant(fault);
+    }
 }
 
 uint16_t LineKit::levels(unsigned port, uint16_t inside) {
@@ -97,6 +115,18 @@ void LineKit::followModem() {
     wires_.setOther(cts, reset ? Wires::None : Wires::Low, now_);
 }
 
+// Another memory with NE1 and NOE drives the data lines.
+void LineKit::followSecondMemory() {
+    constexpr unsigned contents = 0x5AA5;
+    const bool isSelected = !wires_.level(ne1, 0, now_) && !wires_.level(noe, 0, now_);
+    for (unsigned line = 0; line < 16; ++line)
+        wires_.setOther(line,
+                        !isSelected             ? Wires::None
+                        : contents >> line & 1u ? Wires::High
+                                                : Wires::Low,
+                        now_);
+}
+
 // Passes edges of NWE on, with an echo if the line rings.
 void LineKit::pulseNwe(bool level) {
     const uint64_t bit = 1ull << nwe;
@@ -116,6 +146,8 @@ void LineKit::exchange() {
         return;
     for (unsigned turn = 0; turn < 4; ++turn) {
         followModem();
+        if (hasSecondMemory_)
+            followSecondMemory();
         uint64_t inputs = 0;
         for (unsigned i = 0; i < pins; ++i)
             inputs |= uint64_t(wires_.level(i, 1, now_)) << i;

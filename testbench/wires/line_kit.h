@@ -46,7 +46,9 @@ private:
     void changed(unsigned port) override;
     void tick();
     void exchange();
+    void plant(const WireFault& fault, double& mhz);
     void followModem();
+    void followSecondMemory();
     void pulseNwe(bool level);
 
     struct Place {
@@ -65,7 +67,7 @@ private:
     uint64_t now_ = 0;
     double clockAt_ = 0, clockHalfNs_ = 0; // 0 means that the clock is missing
     uint64_t inputs_ = 0, outputs_ = ~0ull, enables_ = ~0ull;
-    bool isModemFitted_ = true, inReset_ = false;
+    bool isModemFitted_ = true, inReset_ = false, hasSecondMemory_ = false;
     std::string printed_;
     bool ended_ = false;
 };

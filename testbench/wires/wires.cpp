@@ -27,6 +27,8 @@ unsigned Wires::newNode() {
 }
 
 void Wires::plant(const WireFault& fault) {
+    if (fault.kind == WireFault::Shifted && fault.wire == "A")
+        return shiftAddress();
     const unsigned a = net(fault.wire), b = fault.other.empty() ? a : net(fault.other);
     dirty_ = true;
     switch (fault.kind) {
@@ -37,6 +39,10 @@ void Wires::plant(const WireFault& fault) {
     case WireFault::Stuck1:
         nodes_[nodeOf_[2 * a]].fixed = true;
         nodes_[nodeOf_[2 * a]].fixedLevel = fault.kind == WireFault::Stuck1;
+        break;
+    case WireFault::Pull0:
+    case WireFault::Pull1:
+        nodes_[nodeOf_[2 * a]].otherPull = fault.kind == WireFault::Pull1 ? High : Low;
         break;
     case WireFault::Short:
         std::replace(nodeOf_.begin(), nodeOf_.end(), unsigned(nodeOf_[2 * b]),
@@ -54,6 +60,25 @@ void Wires::plant(const WireFault& fault) {
     default:
         throw std::runtime_error("wire " + fault.wire + ": this fault does not affect levels");
     }
+}
+
+// Joins end 0 of each address line with the next line.
+void Wires::shiftAddress() {
+    constexpr unsigned count = 25;
+    for (unsigned line = count; line-- > 0;) {
+        const unsigned a = net("A" + std::to_string(line));
+        nodeOf_[2 * a] =
+            line + 1 < count ? nodeOf_[2 * net("A" + std::to_string(line + 1)) + 1] : newNode();
+    }
+    dirty_ = true;
+}
+
+void Wires::powerOff(unsigned net) {
+    nodeOf_[2 * net] = newNode();
+    Node& node = nodes_[nodeOf_[2 * net + 1]];
+    node.fixed = true;
+    node.fixedLevel = false;
+    dirty_ = true;
 }
 
 void Wires::set(unsigned net, unsigned end, End what, uint64_t now) {
@@ -103,6 +128,8 @@ void Wires::settle(uint64_t now) {
     }
     for (unsigned n = 0; n < nodes_.size(); ++n) {
         Node& node = nodes_[n];
+        if (node.otherPull != None)
+            pull_[n] = node.otherPull;
         if (node.fixed)
             drive_[n] = node.fixedLevel;
         if (fight_[n] && !node.fighting)

@@ -30,6 +30,9 @@ public:
     size_t count() const { return names_.size(); }
     const std::string& name(unsigned net) const { return names_[net]; }
 
+    // Removes the supply of the FPGA's end: this end drives nothing and reads a low level.
+    void powerOff(unsigned net);
+
     // Sets the driver and the pull of an end, at this time.
     void set(unsigned net, unsigned end, End what, uint64_t now);
     // Sets an additional driver at end 0, which belongs to another chip on the board.
@@ -52,12 +55,13 @@ private:
     struct Node {
         bool level = false, pulled = false;
         bool fixed = false, fixedLevel = false; // a short to a supply
+        Level otherPull = None;                 // pull of another part; the chips' pulls lose
         uint64_t since = 0;                     // time since which a pull works against the level
         bool moving = false, fighting = false;
     };
 
     void settle(uint64_t now);
-    void join(unsigned a, unsigned b);
+    void shiftAddress();
     unsigned newNode();
 
     std::vector<std::string> names_;

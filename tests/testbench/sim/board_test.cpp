@@ -2,8 +2,10 @@
 //
 // board_test: tests that the firmware can fly with the kit's generated pins and each of the modems
 // that can be bought. Also tests that a flight fails if a pair of wires is swapped, an alternate
-// function is wrong, a bank has no supply, or a location in the constraints is wrong.
+// function is wrong, a bank has no supply, or a location in the constraints is wrong, and that it
+// ends as expected with planted faults of wires, clock, memory and modem.
 
+#include "board_faults.h"
 #include "ground.h"
 #include "m3_machine.h"
 #include <fstream>
@@ -34,11 +36,12 @@ struct Board {
     std::string wires = textOf("board.wires"), ucf = textOf("board.ucf");
 };
 
-// Flies on a board until a call has been answered, the firmware has given up, or the time has
-// elapsed. Returns true if the call was answered.
-bool answersACall(const Board& board, double seconds) {
+// Flies on a board with faults until a call has been answered, the firmware has given up, or the
+// time has elapsed. Returns true if the call was answered.
+bool answersACall(const Board& board, double seconds, const std::string& faults = "") {
     GroundAndChip flight;
     flight.soc.wires() = BoardWires(board.wires, board.ucf);
+    plantFaults(flight.soc, WireFault::parseAll(faults));
     flight.soc.reset(true);
     auto script = flight.ground.pinging(1);
     bool isAnswered = false;
@@ -79,9 +82,9 @@ TEST(BoardWires, AreStraightWhenTheFirmwaresTableHasSwitchedThePins) {
         wires.changed(port);
     EXPECT_TRUE(wires.isStraight());
     EXPECT_EQ(wires.oscillatorHz(), 8'000'000u);
-    for (auto line : {BoardWires::Irq, BoardWires::ModemRxd, BoardWires::ModemTxd,
-                      BoardWires::ModemCts, BoardWires::ModemRts, BoardWires::ModemReset})
-        EXPECT_TRUE(wires.reaches(line)) << line;
+    EXPECT_TRUE(wires.areOthersStraight());
+    EXPECT_EQ(wires.modem(), "xb3");
+    EXPECT_FALSE(wires.isMuxed());
 }
 
 TEST(BoardWires, ASwappedPairExchangesItsLevels) {
@@ -91,9 +94,12 @@ TEST(BoardWires, ASwappedPairExchangesItsLevels) {
     EXPECT_FALSE(wires.isStraight());
     FsmcPins near;
     near.d = 0x8001;
+    near.dOut = true;
     EXPECT_EQ(wires.atChip(near).d, 0x8002);
     FsmcPins chip, back;
+    (void)wires.atChip(back);
     chip.dFromDesign = 0x4002;
+    chip.dDriven = true;
     wires.toProcessor(chip, back);
     EXPECT_EQ(back.dFromDesign, 0x4001);
 }
@@ -103,8 +109,8 @@ TEST(BoardWires, ALineThatIsNotUnderstoodIsNamed) {
         BoardWires("PD14 12 FSMC_D0\n", "");
         FAIL();
     } catch (const std::runtime_error& e) {
-        EXPECT_STREQ(e.what(), "board.wires: expected pin, number, function, net, ball and volts, "
-                               "got 'PD14 12 FSMC_D0'");
+        EXPECT_STREQ(e.what(), "board.wires: expected pin, number, function, net, ball, bank and "
+                               "volts, got 'PD14 12 FSMC_D0'");
     }
 }
 
@@ -127,11 +133,11 @@ const WrongBoard wrongBoards[] = {
      [](Board& board) { board.wires = with(board.wires, "PD4 12 FSMC_NOE", "PD4 11 FSMC_NOE"); }},
     {"ABankWithoutSupply",
      [](Board& board) {
-         const std::regex bank1("( [B-T][0-9]+) 3.3\n");
+         const std::regex bank1("( [B-T][0-9]+ 1) 3.3\n");
          board.wires = std::regex_replace(board.wires, bank1, "$1 0\n");
      }},
     {"NoWireForTheModemsData",
-     [](Board& board) { board.wires = with(board.wires, "DOUT - - MODEM_RXD N9 3.3\n", ""); }},
+     [](Board& board) { board.wires = with(board.wires, "DOUT - - MODEM_RXD N9 2 3.3\n", ""); }},
     {"AnotherBallForTheInterrupt", [](Board& board) {
          board.ucf = with(board.ucf, "NET \"irq_o\" LOC = \"K11\"", "NET \"irq_o\" LOC = \"T14\"");
      }}};
@@ -144,6 +150,52 @@ TEST_P(BoardFlights, AnswerNoCall) {
     Board board;
     GetParam().spoil(board);
     EXPECT_FALSE(answersACall(board, enough));
+}
+
+// Faults of the kit, and whether a call is answered nevertheless.
+struct FaultyBoard {
+    const char* fault;
+    bool answers;
+    friend void PrintTo(const FaultyBoard& board, std::ostream* out) { *out << board.fault; }
+};
+const FaultyBoard faultyBoards[] = {{"D3:open", false},
+                                    {"NE2:stuck1", false},
+                                    {"D1-D2:short", false},
+                                    {"D0-D1:swapped", false},
+                                    {"NWAIT:inverted", false},
+                                    {"NWE:ringing", true},
+                                    {"D:second-driver", false},
+                                    {"D:shifted", false},
+                                    {"A:shifted", false},
+                                    {"BANK1:unpowered", false},
+                                    {"BANK2:unpowered", false},
+                                    {"CLK:none", false},
+                                    {"CLK:off=12%", false},
+                                    {"DDR_DQ3:stuck0", false},
+                                    {"IRQ:stuck0", false},
+                                    {"IRQ:inverted", false},
+                                    {"MODEM_RXD:open", false},
+                                    {"MODEM_CTS:open", true},
+                                    {"MODEM_RXD-MODEM_TXD:swapped", false},
+                                    {"MODEM:none", false},
+                                    {"IRQ:pull0", true},
+                                    {"CLK:off=2%", true}};
+
+class FaultFlights : public testing::TestWithParam<FaultyBoard> {};
+INSTANTIATE_TEST_SUITE_P(With, FaultFlights, testing::ValuesIn(faultyBoards), [](const auto& each) {
+    return std::regex_replace(std::string(each.param.fault), std::regex("[^A-Za-z0-9]+"), "_");
+});
+
+// Tests that each flight ends as expected. If an access waits for ever, an error ends the flight.
+TEST_P(FaultFlights, EndAsTheFaultMakesThem) {
+    bool isAnswered = false;
+    try {
+        isAnswered = answersACall({}, 1.6, GetParam().fault);
+    } catch (const FsmcError& e) {
+        EXPECT_NE(std::string(e.what()).find("NWAIT has been active for"), std::string::npos)
+            << e.what();
+    }
+    EXPECT_EQ(isAnswered, GetParam().answers);
 }
 
 // Flies the mission with the kit's pins and each modem: the controller sets the modem up by AT
@@ -177,6 +229,8 @@ TEST_P(ModemFlights, CarryTheMission) {
     EXPECT_EQ(modem.parameter("AP"), 1u);
     EXPECT_EQ(modem.counters().refused, 0u);
     EXPECT_EQ(modem.counters().overflow, 0u);
+    RecordProperty("busCycles", std::to_string(machine.cpu().busCycles()));
+    RecordProperty("accesses", std::to_string(flight.soc.fsmc().accesses()));
     RecordProperty("upMs", static_cast<int>(upNs / 1'000'000));
     RecordProperty("ms", static_cast<int>(flight.soc.now() / 1'000'000));
 }

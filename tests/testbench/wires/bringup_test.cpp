@@ -110,6 +110,48 @@ TEST(Bringup, NamesInvertedAndRingingLines) {
     expectNamed(all, "NWE:ringing", "NWE ringing");
 }
 
+TEST(Bringup, NamesLinesThatAnotherPartPulls) {
+    for (const std::string line :
+         {"IRQ:pull0", "D13:pull1", "A24:pull0", "NOE:pull1", "NWAIT:pull0", "NWAIT:pull1"})
+        expectNamed(wires, line,
+                    line.substr(0, line.find(':')) + " pulled" + std::string(1, line.back()));
+}
+
+// Replaces the code of a step by a loop that never ends.
+TEST(Bringup, EndsAStepThatHangs) {
+    LineKit kit({});
+    kit.onStart([](Stm32F2& stm32) {
+        const struct {
+            Limits limits{wires};
+            uint32_t watchdogMs = 40;
+        } limits;
+        stm32.cpu().writeMemory(stm32.image()->symbol("bringup_limits"), &limits, sizeof limits);
+        const uint16_t loop = 0xE7FE; // b .
+        stm32.cpu().writeMemory(stm32.image()->symbol("Lines_testThrough") & ~1u, &loop, 2);
+    });
+    const std::string text = kit.run(BRINGUP_FLASH_ELF, 500);
+    EXPECT_EQ(failures(text), std::vector<std::string>{"MCU hung"}) << text;
+    EXPECT_NE(text.find("FAIL shorts MCU hung: the watchdog has ended the step"), std::string::npos)
+        << text;
+    EXPECT_NE(text.find("END 1"), std::string::npos) << text;
+}
+
+TEST(Bringup, NamesAnotherMemoryOnTheBus) {
+    expectNamed(all, "D:second-driver", "D second-driver");
+}
+
+TEST(Bringup, NamesAddressLinesThatAreShifted) {
+    expectNamed(all, "A:shifted", "A0-A24 shifted");
+}
+
+TEST(Bringup, NamesABankWithoutSupply) {
+    expectNamed(clocks, "BANK0:unpowered", "CLK no-clock");
+    EXPECT_NE(report("BANK0:unpowered", clocks).find("the supply of bank 0"), std::string::npos);
+    expectNamed(all, "BANK1:unpowered", "FPGA silent");
+    EXPECT_NE(report("BANK1:unpowered", wires).find("VCCO of bank 1"), std::string::npos);
+    expectNamed(modemWires, "BANK2:unpowered", "BANK2 no-supply");
+}
+
 TEST(Bringup, NamesAClockThatIsMissingOrWrong) {
     expectNamed(clocks, "CLK:none", "CLK no-clock");
     expectNamed(clocks, "CLK:off=2%", "CLK wrong-rate");
@@ -125,6 +167,41 @@ TEST(Bringup, NamesEachLineOfTheModem) {
         expectNamed(modemWires, "MODEM_" + pair + ":swapped", "MODEM_" + pair + " swapped");
     for (const std::string pair : {"RXD-MODEM_TXD", "CTS-MODEM_RTS"})
         expectNamed(modemWires, "MODEM_" + pair + ":short", "MODEM_" + pair + " short");
+}
+
+// Tests that the error for a wrong text states the expected form and the nearest name.
+TEST(WireFault, NamesTheExpectedForm) {
+    const std::pair<const char*, const char*> cases[] = {
+        {"D3", "fault D3: expected WIRE:FAULT, such as D3:open or D1-D2:short"},
+        {"D33:open", "fault D33:open: expected a wire such as D3, A24, NWE, MODEM_CTS or DDR_A5, "
+                     "got 'D33'; did you mean D3?"},
+        {"NWIAT:open", "fault NWIAT:open: expected a wire such as D3, A24, NWE, MODEM_CTS or "
+                       "DDR_A5, got 'NWIAT'; did you mean NWAIT?"},
+        {"D3:opne", "fault D3:opne: expected open, stuck0, stuck1, pull0, pull1, short, swapped, "
+                    "inverted or late, got 'opne'; did you mean open?"},
+        {"CLK:open", "fault CLK:open: expected none or off, got 'open'"},
+        {"NWE-NOE:ringing", "fault NWE-NOE:ringing: expected open, stuck0, stuck1, pull0, pull1, "
+                            "short, swapped, inverted or late, got 'ringing'"},
+        {"D1:short", "fault D1:short: expected two wires, such as D1-D2, got 'D1'"},
+        {"D1-D1:short", "fault D1-D1:short: expected two different wires, got 'D1-D1'"},
+        {"D1-D2:open", "fault D1-D2:open: expected one wire, got 'D1-D2'"},
+        {"NWE:late", "fault NWE:late: expected a value, such as late=2ns, got 'late'"},
+        {"NWE:late=12", "fault NWE:late=12: expected a number of ns of at most 50, such as 2ns, "
+                        "got '12'"},
+        {"NWE:late=-1ns", "fault NWE:late=-1ns: expected a number of ns of at most 50, such as "
+                          "2ns, got '-1ns'"},
+        {"D3:open=1", "fault D3:open=1: expected no value, got 'open=1'"}};
+    for (const auto& [text, expected] : cases) {
+        try {
+            (void)WireFault::parse(text);
+            ADD_FAILURE() << text;
+        } catch (const std::runtime_error& e) {
+            EXPECT_STREQ(e.what(), expected);
+        }
+    }
+    for (const std::string text : {"D1-D2:short", "CLK:off=-2%", "NWE:late=12ns", "A:shifted"})
+        EXPECT_EQ(WireFault::parse(text).text(), text);
+    EXPECT_EQ(WireFault::parseAll("D3:open  BANK1:unpowered").at(1).bank(), 1);
 }
 
 // ---- with the chip ----
@@ -146,6 +223,10 @@ void expectNamedWithChip(uint32_t steps, const std::string& fault, const std::st
     const std::string text = chipReport(fault, steps);
     EXPECT_NE(text.find("\nEND "), std::string::npos) << fault << ": the self-test hangs";
     EXPECT_EQ(failures(text), std::vector<std::string>{expected}) << fault << ":\n" << text;
+}
+
+TEST(Bringup, NamesDataThatIsShiftedByAHalfword) {
+    expectNamedWithChip(all, "D:shifted", "D shifted");
 }
 
 TEST(Bringup, NamesALateStrobe) {
@@ -175,7 +256,8 @@ TEST(Bringup, NamesLinesOfTheMemory) {
         expectNamedWithChip(memory, name + ":open", name + " open");
     for (const std::string pair : {"DDR_DQ3-DDR_DQ4", "DDR_A5-DDR_A6", "DDR_BA0-DDR_BA1"})
         expectNamedWithChip(memory, pair + ":short", pair + " short");
-    expectNamedWithChip(memory, "DDR_CK:open", "DDR no-calibration");
+    for (const std::string fault : {"DDR_CK:open", "BANK3:unpowered"})
+        expectNamedWithChip(memory, fault, "DDR no-calibration");
 }
 
 TEST(Bringup, AGoodBoardPassesWithTheChip) {

@@ -78,6 +78,12 @@ def header(board: Board):
             pin = net.get("mcu") if net else ""
             place = f"{ord(pin[1]) - ord('A')}, {pin[2:]}" if pin else "255, 0"
             lines.append(f"#define BOARD_AT_{signal.name} {place}")
+    lines += ["", "/* Bank of the FPGA for each net; 255 means a net without a ball. */"]
+    for signal in SIGNALS.values():
+        if signal.port and not signal.name.startswith("CORE_"):
+            net = board.net(signal.name)
+            ball = board.parts["fpga"].get(net.get("fpga", "")) if net else None
+            lines.append(f"#define BOARD_BANK_{signal.name} {ball.bank if ball else 255}")
     return "\n".join(lines) + "\n"
 
 

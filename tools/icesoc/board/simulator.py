@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""simulator: generates the wires of a board for the simulator (testbench/fsmc/board_wires.h)."""
+"""simulator: generates the wires of a board for the simulator (testbench/sim/board_wires.h)."""
 from icesoc.board.model import Board
 from icesoc.board.signals import SIGNALS
 
@@ -14,11 +14,14 @@ def at_pin(pin, function):
 
 
 def wires(board: Board):
-    """Returns the wires as text. The first line is the oscillator. Then each net has a line: the
+    """Returns the wires as text. The first lines are the oscillator, whether address and data are
+    multiplexed (1) or not (0), and the kind of modem if it is known. Then each net has a line: the
     pin, the number and the name of its alternate function ("-" if it has none), the net, the ball,
-    and the supply of the ball's bank in V."""
-    lines = [f"# Wires of {board.name}: pin, alternate function, its name, net, ball, volts",
-             f"oscillator {board.facts['mcu']['hse_hz']}"]
+    its bank, and the supply of the bank in V."""
+    lines = [f"# Wires of {board.name}: pin, alternate function, its name, net, ball, bank, volts",
+             f"oscillator {board.facts['mcu']['hse_hz']}", f"muxed {int(board.muxed)}"]
+    if board.modem:
+        lines.append(f"modem {board.modem}")
     pins, balls = board.parts["mcu"], board.parts["fpga"]
     for net in board.nets:
         pin, ball = net.get("mcu", "-"), net.get("fpga", "-")
@@ -27,7 +30,8 @@ def wires(board: Board):
         bank = balls[ball].bank if ball != "-" else None
         volts = board.banks[bank] if bank is not None else 0
         end = pin if pin != "-" else net.get("modem", "-")
-        lines.append(f"{end} {number} {function} {net.name} {ball} {volts:g}")
+        place = f"{ball} {-1 if bank is None else bank} {volts:g}"
+        lines.append(f"{end} {number} {function} {net.name} {place}")
     return "\n".join(lines) + "\n"
 
 

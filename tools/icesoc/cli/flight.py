@@ -10,10 +10,12 @@ import os
 import re
 from pathlib import Path
 
+from icesoc.board import make, model
 from icesoc.cli import choices, keys
 from icesoc.cli.build_folder import BuildFolder
 from icesoc.cli.options import (CORE_FOLDERS, COUNT, FILE, FOLDER, FRAME, KEY_FILE, PATH, SEED,
                                 SHARE, SWITCH, TEXT, UCOS2, WORDS, Option, matching, number, one_of)
+from icesoc.regs.model import Wrong
 from icesoc.util.console import say
 from icesoc.util.errors import Stop, nearest
 from icesoc.util.schema import limits, problems
@@ -55,7 +57,14 @@ FIELDS = [
     ),
     Option("wire", SWITCH, "connect vehicle and ground station by a serial cable, without modems"),
     Option("modem", one_of("s1", "s2c", "xb3"),
-           "modems of vehicle and ground station: XBee series 1, S2C or XBee 3", "s1"),
+           "modems of vehicle and ground station: XBee series 1, S2C or XBee 3; with --board its "
+           "modem", "s1"),
+    Option("board", TEXT,
+           "board whose wires are flown: its name, its file board.toml, or a folder made by board "
+           "make; the vehicle runs the ARM binary", ""),
+    Option("fault", WORDS,
+           "faults of the vehicle's board, such as D3:open D1-D2:short NWE:late=12ns "
+           "(docs/simulation.md); the vehicle runs the ARM binary"),
     Option("pins", FILE,
            "script that drives the input pins of cores (docs/simulation.md); OUT/pins.log records "
            "the output pins", ""),
@@ -172,6 +181,7 @@ def complete(values):
         for name, value in read(values.again).items():
             if name not in given:
                 setattr(values, name, value)
+    take_board(values)
     if values.open and values.key:
         raise Stop(f"OPEN=1 and KEY='{values.key}': expected at most one of the two, because "
                    "OPEN=1 flies without a key", 2)
@@ -208,6 +218,22 @@ def complete(values):
         pass
     if not os.access(values.out, os.W_OK):
         raise Stop(f"OUT='{values.out}': expected a folder that a flight can write to", 2)
+
+
+def take_board(values):
+    """Completes a flight with a board or faults: it runs the ARM binary, which sets the pins, and
+    has the kind of modem of the board. Writes the board's wires into OUT/board."""
+    if (values.board or values.fault) and "cpu" not in values.given:
+        values.cpu = "m3"
+    if not values.board or (Path(values.board) / "board.wires").is_file():
+        return
+    try:
+        board = (model.read if values.board.endswith(".toml") else model.find)(values.board)
+        values.board = str(make.write(make.for_build(board), Path(values.out) / "board")[0].parent)
+    except (Wrong, OSError) as error:
+        raise Stop(f"--board: {error}", 2) from None
+    if board.modem and "modem" not in values.given:
+        values.modem = board.modem
 
 
 def check_chip(values, build):

@@ -28,8 +28,8 @@ CONSOLE = "/dev/ttyUSB0"
 @command("board bringup", [
     NAME,
     Option("simulated", SWITCH, "run the self-test on a simulated board"),
-    Option("wire", WORDS, "with --simulated: faults of the board's wires, such as D3:open "
-                          "D1-D2:short NWE:late=12ns"),
+    Option("fault", WORDS, "with --simulated: faults of the board, such as D3:open D1-D2:short "
+                           "NWE:late=12ns (docs/simulation.md)"),
     Option("device", TEXT, "serial port of the board's console", CONSOLE),
     Option("cable", TEXT, "serial port of a cable in the modem's place (docs/modem.md); the "
                           "command then loads the firmware and calls it instead of running the "
@@ -40,7 +40,7 @@ CONSOLE = "/dev/ttyUSB0"
     Option("out", FOLDER, "folder of the report (default: build/board/NAME)", ""),
     BUILD, JOBS],
          examples=["board bringup nucleo-qmtech --simulated",
-                   "board bringup nucleo-qmtech --simulated --wire D3:open",
+                   "board bringup nucleo-qmtech --simulated --fault D3:open",
                    "board bringup nucleo-qmtech --device /dev/ttyUSB0",
                    "board bringup nucleo-qmtech --cable /dev/ttyUSB1"],
          brief="board bringup nucleo-qmtech --simulated --out build/brief/bringup")
@@ -50,7 +50,7 @@ def board_bringup(values):
     Loads the self-test into the microcontroller's RAM by OpenOCD, listens to the console, and
     writes OUT/bringup.html and OUT/bringup.json. Run it twice: first with the bitstream of
     synth/ise/lines.v in the FPGA, which tests the wires, then with the chip's bitstream.
-    --cable then loads the firmware and calls it. --simulated runs the self-test on a model."""
+    --cable then loads the firmware and calls it. --simulated runs all parts on a model."""
     board = read(values.name)
     folder = Path(values.out or f"build/board/{board.name}")
     report = bringup.Report(board)
@@ -58,8 +58,8 @@ def board_bringup(values):
     build = BuildFolder(values.build, values).prepare()
     report.data["modem"] = board.modem or "unknown"
     if values.simulated:
-        build.ninja("icesoc-bringup", "firmware_bringup_flash")
-        report.data["how"] = " ".join(["Simulated.", *values.wire])
+        build.ninja("icesoc-bringup", "firmware_bringup_flash", "firmware_uav")
+        report.data["how"] = " ".join(["Simulated.", *values.fault])
         simulated(values, build, report)
     elif values.cable:
         report.data["how"] = f"Board with a cable at {values.cable}."
@@ -88,9 +88,10 @@ def follow(report, line):
 
 def simulated(values, build, report):
     """Runs the self-test on the models (testbench/wires)."""
-    words = [build / "testbench/wires/icesoc-bringup", build / "firmware/bringup_flash.elf"]
-    for fault in values.wire:
-        words += ["--wire", fault]
+    words = [build / "testbench/wires/icesoc-bringup", build / "firmware/bringup_flash.elf",
+             build / "firmware/uav.elf"]
+    for fault in values.fault:
+        words += ["--fault", fault]
     with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as process:
         for line in process.stdout:
             follow(report, line)

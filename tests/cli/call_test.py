@@ -27,6 +27,7 @@ os.chdir(TREE)
 os.environ.pop("MAKEFLAGS", None)
 from icesoc.cli import command, main  # noqa: E402
 from icesoc.cli.commands.call import choices  # noqa: E402
+from icesoc.cli.options import ADDRESS  # noqa: E402
 from icesoc.call.objects import Catalogue  # noqa: E402
 from icesoc.util.errors import Stop  # noqa: E402
 
@@ -111,6 +112,8 @@ REFUSED = {
     "nothing --page --gateway x": "--page: expected --gateway HOST:PORT, got 'x'",
     "nothing --encoding 2.0": "--encoding: expected 1.0 or 1.1, got '2.0'",
     "nothing --gateway x": "--gateway: expected HOST:PORT",
+    "nothing --address 65536": "--address: expected 0 to 65535, or 0x0000 to 0xFFFF, got '65536'",
+    "nothing --address 09": "--address: expected 0 to 65535, or 0x0000 to 0xFFFF, got '09'",
     "nothing --device /dev/null --flight x": "--flight, --device exclude each other; give only one",
     "echo " + "\udcff": "text: expected text in UTF-8",
 }
@@ -181,6 +184,8 @@ class Call(unittest.TestCase):
     def test_refused(self):
         """Wrong arguments are rejected before anything is sent; no server listens at this
         address."""
+        self.assertEqual([ADDRESS.read(text) for text in ("9", "0x9", "0x0009", "65535")],
+                         ["0x0009", "0x0009", "0x0009", "0xFFFF"])
         for words, message in REFUSED.items():
             # whether an operation exists is known only after the object has been asked for its
             # interface

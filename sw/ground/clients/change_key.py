@@ -135,7 +135,7 @@ def main():
                         help="folder of libxbeeat.so.37 (default: as built or installed)")
     parser.add_argument("--slice", default=places.slice_file("Autopilot.ice"),
                         help="path of Autopilot.ice (default: as installed)")
-    parser.add_argument("--address", type=lambda text: int(text, 0), default=1,
+    parser.add_argument("--address", type=provide_key.address, default=1,
                         help="address of the vehicle (default 0x0001)")
     parser.add_argument("--guard", type=int, default=1000,
                         help="guard time of the modem, ms (default 1000)")

@@ -32,11 +32,11 @@ class Failed(Exception):
 
 
 def address(text):
-    """Returns an address, as written in key files, as a number."""
-    if not re.fullmatch("0x[0-9a-fA-F]{1,4}", text):
+    """Returns the number of an address, such as 0x0001 or 1."""
+    if not re.fullmatch("0[xX][0-9a-fA-F]{1,4}|0|[1-9][0-9]{0,4}", text) or int(text, 0) > 0xFFFF:
         raise argparse.ArgumentTypeError(
-            "'%s': expected the address of a vehicle, such as 0x0001" % text)
-    return int(text, 16)
+            "expected 0 to 65535, or 0x0000 to 0xFFFF, got '%s'" % text)
+    return int(text, 0)
 
 
 def open_secret(path):

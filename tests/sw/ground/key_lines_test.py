@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """key_lines_test: tests that change_key.py keeps the other lines of a key file, whatever bytes
-their comments contain, and that provide_key.py can read a file with a byte order mark."""
+their comments contain, and that provide_key.py can read a file with a byte order mark, and takes
+decimal and hexadecimal addresses."""
 import argparse
 import tempfile
 import unittest
@@ -46,6 +47,13 @@ class KeyLines(unittest.TestCase):
         self.change()
         self.assertEqual(provide_key.read_key(self.path, 7), OLD)
         self.assertNotEqual(provide_key.read_key(self.path, 1), OLD)
+
+    def test_an_address_is_decimal_or_hexadecimal(self):
+        for text in "9", "0x9", "0X0009":
+            self.assertEqual(provide_key.address(text), 9)
+        for text in "", "x", "09", "65536", "0x10000", "-1", "٣":
+            with self.assertRaisesRegex(argparse.ArgumentTypeError, "expected 0 to 65535"):
+                provide_key.address(text)
 
 
 if __name__ == "__main__":

@@ -177,6 +177,16 @@ def _frame(text):
     return text
 
 
+def _address(text):
+    """Returns a modem's address in the form of key files, such as 0x0001."""
+    if not re.fullmatch("0[xX][0-9a-fA-F]{1,4}|0|[1-9][0-9]{0,4}", text):
+        raise ValueError
+    value = int(text, 0)
+    if value > 0xFFFF:
+        raise ValueError
+    return f"0x{value:04X}"
+
+
 TEXT = Kind(str, "text", {"type": "string"})
 WORDS = Kind(str.split, "words separated by spaces",
              {"type": "array", "items": {"type": "string"}}, "WORD")
@@ -191,6 +201,7 @@ KEY_FILE = Kind(_key, "a readable file", {"type": "string"}, "FILE")
 FLIGHT = Kind(_flight, "the folder of a recorded flight", {"type": "string"}, "FOLDER")
 FRAME = Kind(_frame, "WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8", {"type": "string"},
              "WxH")
+ADDRESS = Kind(_address, "0 to 65535, or 0x0000 to 0xFFFF", {"type": "string"}, "N")
 SHARE = number(0, 1, convert=float)
 COUNT = number(1)
 SECONDS = number(0, unit="s", convert=float)

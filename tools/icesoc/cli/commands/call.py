@@ -14,8 +14,8 @@ from icesoc.call.objects import Catalogue, check_register, flights, registers, A
 from icesoc.call.slices import annotation, listed
 from icesoc.call.values import Reader, plain, readable
 from icesoc.cli.command import command
-from icesoc.cli.options import (ARGUMENTS, BUILD, COUNT, FILE, FOLDER, KEY_FILE, PATH, SWITCH, TEXT,
-                                Option, matching, number, one_of)
+from icesoc.cli.options import (ADDRESS, ARGUMENTS, BUILD, COUNT, FILE, FOLDER, KEY_FILE, PATH,
+                                SWITCH, TEXT, Option, number, one_of)
 from icesoc.util.console import say
 from icesoc.util.errors import Interrupted, Stop, nearest
 
@@ -95,8 +95,7 @@ OPTIONS = [
                             "--vehicle", ""),
     Option("device", PATH, "serial port of the modem; with --wire: serial port of the cable", ""),
     Option("key", KEY_FILE, "with --device: file with the link key; default: unencrypted", ""),
-    Option("address", matching("0[xX][0-9a-fA-F]{1,4}", "0x0000 to 0xFFFF"),
-           "with --device: address of the vehicle", "0x0001"),
+    Option("address", ADDRESS, "with --device: address of the vehicle", "0x0001"),
     Option("guard", number(2, 3300, "ms"), "with --device: guard time of the modem", 1000),
     Option("wire", SWITCH, "with --device: the port leads to a serial cable, without modems"),
     Option("plugin", FOLDER, "with --device: folder of the radio plugin (default: the build's "

@@ -20,8 +20,9 @@ namespace XBeeAT {
 
 namespace {
 
-// interval between attempts to set up the modem while a program listens but none connects
-constexpr std::chrono::seconds retryEvery{5};
+// intervals between attempts while a program listens but none connects: to open a port that was
+// lost; to set up a modem that does not answer
+constexpr std::chrono::seconds reopenEvery{1}, retryEvery{5};
 
 std::mutex registryMutex;
 std::map<std::string, std::weak_ptr<Engine>>& registry() {
@@ -136,10 +137,12 @@ int Engine::waitMs(int ms, bool forBytes) {
     }
 }
 
-// Ends all connections and pending connects, because the port or the modem is lost.
+// Ends all connections and pending connects, because the port or the modem is lost. Logs a failure
+// that repeats only once as an error.
 void Engine::fail(const std::string& text) {
-    log(complained_ ? 1 : 0, text);
-    complained_ = failed_ = true;
+    log(complaint_ == text ? 1 : 0, text);
+    complaint_ = text;
+    failed_ = true;
     longest_ = 0;
     for (auto& [address, peer] : peers_)
         peer->fail();
@@ -181,8 +184,12 @@ bool Engine::any(bool (Peer::*is)() const) const {
 void Engine::run() {
     std::unique_lock<std::mutex> lock(mutex);
     while (!stop_) {
-        if (failed_)
+        if (failed_) {
+            // An adapter that returns gets another name as long as its old device is open.
+            if (serial_.isGone())
+                serial_.close();
             waitForReason(lock);
+        }
         if (!stop_)
             fly(lock);
     }
@@ -193,7 +200,7 @@ void Engine::waitForReason(std::unique_lock<std::mutex>& lock) {
     if (!any(&Peer::listens))
         changed_.wait(lock, [&] { return reason() || any(&Peer::listens); });
     else
-        changed_.wait_for(lock, retryEvery, reason);
+        changed_.wait_for(lock, serial_.fd() < 0 ? reopenEvery : retryEvery, reason);
 }
 
 // Runs the links until the port is lost. If the modem was reset during operation, it has its stored
@@ -228,7 +235,10 @@ void Engine::fly(std::unique_lock<std::mutex>& lock) {
             return fail(trouble + "; the next connection will try again");
         if (!trouble.empty())
             log(0, trouble);
-        failed_ = complained_ = false;
+        if (!complaint_.empty())
+            log(-1, "serial port '" + device + "' is in use again");
+        complaint_.clear();
+        failed_ = false;
         for (auto& [address, peer] : peers_)
             start(*peer);
         upAt_ = clock.nowUs();
@@ -258,7 +268,9 @@ void Engine::readSerial(U32 now) {
         [&](int source, const U8* data, size_t size) { deliver(source, data, size, now); },
         [&](bool isThere) { answer(isThere, now); });
     if (count == 0 || (count < 0 && errno != EAGAIN && errno != EINTR))
-        fail("serial port '" + device + "': " + (count == 0 ? "closed" : std::strerror(errno)));
+        fail("serial port '" + device + "' has disappeared (" +
+             (count == 0 ? "closed" : std::strerror(errno)) +
+             "): check its cable. Opening it is retried");
 }
 
 // Passes received bytes to the peer with the address `source`. Bytes from a modem without a 16-bit

@@ -56,9 +56,9 @@ private:
     SerialPort serial_{clock};
     PacketLine packets_{serial_};
     int wakePipe_[2] = {-1, -1};
-    // failed_: the port is lost, or no modem has answered. complained_: this failure was already
-    // logged.
-    bool stop_ = false, failed_ = false, complained_ = false;
+    // failed_: the port is lost, or no modem has answered
+    bool stop_ = false, failed_ = false;
+    std::string complaint_; // last failure that was logged as an error; empty after a success
     // size of the largest frame, bytes; 0 until the modem is ready
     U32 longest_ = 0;
     std::map<int, std::unique_ptr<Peer>> peers_; // peers by address; a peer is never removed

@@ -86,7 +86,9 @@ public:
             Settings settings = o.serial;
             settings.keys = keys_.of(settings.target);
             auto peer = Engine::get(settings, [logger, trace](int level, const std::string& text) {
-                if (level == 0)
+                if (level < 0)
+                    logger->print("xbee-at: " + text);
+                else if (level == 0)
                     logger->error("xbee-at: " + text);
                 else if (level <= trace)
                     logger->trace("XBeeAT", text);

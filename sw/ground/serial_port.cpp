@@ -7,6 +7,7 @@
 #include <asm/termbits.h> // defines struct termios2, which allows any rate, including 111,111
 #include <cerrno>
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
@@ -61,6 +62,11 @@ void SerialPort::close() {
     if (fd_ >= 0)
         ::close(fd_);
     fd_ = -1;
+}
+
+bool SerialPort::isGone() const {
+    pollfd port{fd_, 0, 0};
+    return fd_ >= 0 && poll(&port, 1, 0) > 0;
 }
 
 ssize_t SerialPort::read(void* bytes, size_t room) {

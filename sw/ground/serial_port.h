@@ -23,7 +23,9 @@ public:
     // or is in exclusive use by another process.
     void open(const std::string& device);
     void close();
-    int fd() const { return fd_; }
+    int fd() const { return fd_; } // -1 while the port is closed
+    // Returns whether the device of the open port has disappeared.
+    bool isGone() const;
     // Work like the system calls read and write; never wait.
     ssize_t read(void* bytes, size_t room);
     ssize_t write(const void* bytes, size_t size);

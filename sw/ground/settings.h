@@ -50,7 +50,8 @@ struct Settings {
     double characterUs() const { return 1e7 / (baud == 115200 ? 111111 : baud); }
 };
 
-// Log function. Levels: 0 errors, 1 link and connections, 2 AT commands.
+// Log function. Levels: -1 notices that are always logged, 0 errors, 1 link and connections, 2 AT
+// commands.
 using Log = std::function<void(int level, const std::string& text)>;
 
 } // namespace XBeeAT

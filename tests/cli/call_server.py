@@ -72,6 +72,10 @@ class Try(Trial.Try):
     def refuse(self, current=None):
         raise ValueError("no reason")
 
+    def unreachable(self, current=None):  # as a gateway without a modem answers
+        raise Ice.UnknownLocalException(
+            "icesoc-gateway: cannot reach the vehicle: the modem is lost; see the log")
+
     def sleep(self, ms, current=None):
         time.sleep(ms / 1000)
 

@@ -123,7 +123,8 @@ FAILURES = {
     "sleep 2000 --timeout 0.2": (4, "no answer from 127.0.0.1:"),
     "nothing --gateway 127.0.0.1:1": (4, "cannot reach 127.0.0.1:1: Connection refused"),
     "nothing --facet none": (5, "'try' has no facet 'none'"),
-    "refuse": (6, "the call was refused: ValueError: no reason")}
+    "refuse": (6, "the call was refused: ValueError: no reason"),
+    "unreachable": (4, "cannot reach the vehicle: the modem is lost; see the log\n")}
 
 
 class Call(unittest.TestCase):

@@ -3,8 +3,9 @@
 #
 # service: uses the gateway's service on a machine that machine.sh has prepared. Python, C++,
 # icesoc-call and the gateway's page call a simulated vehicle through the service, with a key. Then
-# the script upgrades the packages, which must keep keys, permissions and settings and restart the
-# service, and removes and purges the packages. Run as root, with systemd running (boot.sh). Usage:
+# the modem disappears and returns while the service runs. Then the script upgrades the packages,
+# which must keep keys, permissions and settings and restart the service, and removes and purges the
+# packages. Run as root, with systemd running (boot.sh). Usage:
 # service.sh [FOLDER]    FOLDER as for machine.sh
 set -eu
 here=$(cd "${1:-.}" && pwd)
@@ -46,11 +47,6 @@ echo "Vehicle.uav1=tcp -h 127.0.0.1 -p 11093" >/etc/icesoc/vehicles.conf
 cat >by_service <<'END'
 #!/bin/bash
 set -e
-until [ -e device ]; do
-    kill -0 "$2" # the simulator
-    sleep 0.1
-done
-ln -sf "$(cat device)" /run/icesoc-modem
 systemctl start icesoc-gateway@uav1
 until true 2>/dev/null >/dev/tcp/127.0.0.1/11093; do
     systemctl is-active -q icesoc-gateway@uav1
@@ -62,28 +58,51 @@ echo "icesoc-call: $(icesoc-call uav.isAlive 7)"
 python3 "$1/page.py" 127.0.0.1:11094
 systemctl show -P User -P DynamicUser -P NoNewPrivileges -P ProtectSystem icesoc-gateway@uav1
 END
-rm -rf device ended service
+rm -rf ended service
 simulate="icesoc-sim --image /usr/share/xplanet/images/earth.jpg --size 96x64 --guard 20"
 simulate="$simulate --speed real"
-install -d -o icesoc /home/tester/service
 chmod a+x /home/tester # in Debian 13, only the user can enter the user's home folder
-# The simulator runs as the gateway's user, because the simulated modem belongs to the user who runs
-# the simulator.
-runuser -u icesoc -- $simulate --key /etc/icesoc/uav1.key --out service -- \
-    sh -c 'echo "$0" >service/device; until [ -e ended ]; do sleep 0.1; done' '{device}' \
-    >simulator.log 2>&1 &
-simulator=$!
-ln -sf service/device device
-bash by_service "$here" "$simulator" >log 2>&1 || {
+# Starts a simulated vehicle and plugs its modem in. The simulator runs as the gateway's user,
+# because the simulated modem belongs to the user who runs the simulator.
+plug_in() {
+    rm -rf ended service
+    install -d -o icesoc service
+    runuser -u icesoc -- $simulate --key /etc/icesoc/uav1.key --out service -- \
+        sh -c 'echo "$0" >service/device; until [ -e ended ]; do sleep 0.1; done' '{device}' \
+        >simulator.log 2>&1 &
+    simulator=$!
+    until [ -e service/device ]; do
+        kill -0 $simulator
+        sleep 0.1
+    done
+    ln -sf "$(cat service/device)" /run/icesoc-modem
+}
+# Fails with the logs of all programs.
+no_answer() {
     cat log simulator.log
     journalctl --no-pager -u icesoc-gateway@uav1 | tail -20
-    fail "no answer by the service"
+    fail "$*"
 }
+plug_in
+bash by_service "$here" >log 2>&1 || no_answer "no answer by the service"
 grep "^corners: 1" log
 grep "type: ::Autopilot" log
 grep "^icesoc-call: true" log
 grep "^isAlive: True" log
 grep "^strict" log
+
+step "the modem is unplugged, and plugged in again"
+pid=$(systemctl show -P MainPID icesoc-gateway@uav1)
+rm /run/icesoc-modem
+touch ended
+wait $simulator || true
+! icesoc-call uav.isAlive 7 >log 2>&1 || fail "a call without a modem succeeds"
+grep "cannot reach the vehicle: " log || no_answer "a call without a modem fails without a reason"
+plug_in
+icesoc-call uav.isAlive 7 >log 2>&1 || no_answer "no answer after the modem has returned"
+[ "$pid" = "$(systemctl show -P MainPID icesoc-gateway@uav1)" ] || fail "the service was restarted"
+journalctl --no-pager -o cat -u icesoc-gateway@uav1 >log
+grep "has disappeared" log && grep "is in use again" log || no_answer "the log does not name it"
 
 step "upgrade keeps keys, rights and settings, and restarts the service"
 state() { stat -c '%n %U:%G %a %Y' /etc/icesoc /etc/icesoc/*; sha256sum /etc/icesoc/*; }

@@ -31,6 +31,32 @@ std::exception_ptr refusal(const Ice::Identity& maintained) {
                    "' is a maintenance object: call it at the endpoint given with --maintenance");
 }
 
+std::exception_ptr unreachable(const std::string& why) {
+    return std::make_exception_ptr(Ice::UnknownLocalException(
+        __FILE__, __LINE__, "icesoc-gateway: cannot reach the vehicle: " + why));
+}
+
+// Returns the exception that a client gets if its request could not be sent, or if the connection
+// was lost before the reply. Errors of the connection to the vehicle get a text for the user.
+std::exception_ptr explained(std::exception_ptr why) {
+    try {
+        std::rethrow_exception(why);
+    } catch (const Ice::ConnectTimeoutException&) {
+        return unreachable("it does not answer: check that it is on, in range, and has the same "
+                           "key as this gateway");
+    } catch (const Ice::ConnectFailedException& e) {
+        return unreachable(e.error == EBUSY
+                               ? "another ground station with the same address is connected to it"
+                               : "the modem is lost or does not answer: check its cable and its "
+                                 "power; the gateway's log has the reason");
+    } catch (const Ice::ConnectionLostException&) {
+        return unreachable("the connection was lost during the call; the vehicle may have executed "
+                           "the call");
+    } catch (...) {
+        return why;
+    }
+}
+
 } // namespace
 
 Forwarder::Forwarder(const std::shared_ptr<Ice::ObjectPrx>& vehicle, std::chrono::seconds wait)
@@ -226,7 +252,8 @@ void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
     }
     if (why || isMaintenance)
         for (const auto& request : waiting)
-            finish(request, false, [&] { fail({request}, why ? why : refusal(object.first)); });
+            finish(request, false,
+                   [&] { fail({request}, why ? explained(why) : refusal(object.first)); });
     send();
 }
 
@@ -246,7 +273,7 @@ void Forwarder::recordProxies(const Request& request) {
 void Forwarder::sendOne(const std::shared_ptr<Request>& request) {
     recordProxies(*request);
     const auto failed = [this, request](std::exception_ptr why) {
-        finish(request, false, [&] { fail({request}, why); });
+        finish(request, false, [&] { fail({request}, explained(why)); });
     };
     Connection connection;
     // true if it is unknown whether the one-way requests sent so far have arrived
@@ -377,7 +404,7 @@ void Forwarder::closed(int number, const Connection& connection) {
 void Forwarder::connect(int lane) {
     const auto failed = [this, lane](std::exception_ptr why) {
         if (lane == shortCalls)
-            return failAll(std::move(why));
+            return failAll(explained(why));
         // the lane for long calls gets no connection: the vehicle or this ground station has no
         // free channel
         {

@@ -360,7 +360,9 @@ int main(int argc, char** argv) {
         for (const char* prefix : {"IceSSL", "XBeeAT"})
             words = data.properties->parseCommandLineOptions(prefix, words);
         std::reverse(words.begin(), words.end());
-        app.parse(words);
+        app.parse(words); // reports unknown options, even if the device is missing as well
+        if (o.device.empty())
+            throw CLI::RequiredError("--device");
         setProperties(data.properties, o);
         Ice::CommunicatorHolder ic(data);
         serve(ic.communicator(), o);

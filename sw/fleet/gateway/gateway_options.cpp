@@ -55,7 +55,7 @@ std::string readModemKey(const std::string& path) {
 } // namespace
 
 void addOptions(CLI::App& app, Options& o) {
-    app.add_option("-d,--device", o.device, "serial port of the modem")->required();
+    app.add_option("-d,--device", o.device, "serial port of the modem; must be given");
     app.add_option(
            "-b,--baud", o.baud,
            "baud rate of the modem (default 115200, the modem's BD 7, whose real rate is 111,111)")

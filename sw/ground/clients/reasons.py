@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: MIT
 """reasons: turns errors of the system and of Ice into short texts for a user."""
+import errno
 import os
 import re
 import termios
 
 import Ice
+
+LOST = "the modem is lost or does not answer: check its cable and its power"
 
 
 def reason_of(error, connecting="cannot connect: "):
@@ -23,7 +26,9 @@ def reason_of(error, connecting="cannot connect: "):
             return getattr(error, field).strip().rpartition("\n")[2]
     if getattr(error, "error", 0):
         prefix = connecting if isinstance(error, Ice.ConnectFailedException) else ""
-        return prefix + os.strerror(error.error)
+        # the plugin uses ENOLINK, "Link has been severed", for a modem that it cannot use
+        is_lost = error.error == errno.ENOLINK
+        return prefix + (LOST if is_lost else os.strerror(error.error))
     # Other exceptions have no text. Their reason is the name of the exception, split into words,
     # such as "Connection lost".
     name = error.ice_id().rpartition(":")[2].replace("Exception", "")

@@ -217,6 +217,13 @@ TEST_F(Gateway, CompressedCallsArrive) {
     expectNoted(30);
 }
 
+TEST_F(Gateway, ACallWithoutAModemFailsWithTheReason) {
+    world_.rig.with([&] { world_.rig.ground->power(false, world_.rig.ns()); });
+    start();
+    expectRefusal([&] { echo_->ice_ping(); },
+                  "icesoc-gateway: cannot reach the vehicle: the modem is lost or does not answer");
+}
+
 // One-way calls to an absent vehicle are discarded after --wait, even if their program has ended.
 TEST_F(Gateway, AOnewayThatWaitsTooLongIsNeverCarriedOut) {
     start({"--wait", "3"});
@@ -284,6 +291,16 @@ TEST(GatewayOptions, WrongOnesAreRefusedByName) {
         // texts that a message must not contain: a place in the source, a class name
         for (const char* internal : {".h:", ".cpp:", "::Ice::"})
             EXPECT_EQ(gateway.said().find(internal), std::string::npos) << gateway.said();
+    }
+}
+
+TEST(GatewayOptions, AnUnknownOneIsReportedEvenIfTheDeviceIsMissing) {
+    for (const auto& [words, expected] :
+         {std::pair<std::vector<std::string>, std::string>{{GATEWAY, "--wrong"}, "--wrong"},
+          {{GATEWAY}, "--device is required"}}) {
+        Server gateway(words);
+        EXPECT_GT(gateway.wait(), 0);
+        EXPECT_NE(gateway.said().find(expected), std::string::npos) << gateway.said();
     }
 }
 

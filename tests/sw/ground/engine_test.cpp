@@ -7,6 +7,7 @@
 #include "rig.h"
 #include "wire.h"
 #include <csignal>
+#include <filesystem>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
@@ -376,6 +377,63 @@ TEST(Engine, RandomBytesFromTheLineAndFromProgramsAreSurvived) {
     EXPECT_EQ(answer, m);
     std::printf("engine: %zu bytes of noise from the line, the link works\n", total);
     close(fd);
+}
+
+// Waits for a condition on the machine clock. Returns whether it was met within 30 s.
+template <class F> bool becomes(F condition) {
+    for (int looks = 0; looks < 3000 && !condition(); ++looks)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    return condition();
+}
+
+// Returns the number of descriptors of this process that are open on a device, even if the device
+// has disappeared.
+size_t usersOf(const std::string& device) {
+    const std::filesystem::directory_iterator descriptors("/proc/self/fd"), end;
+    return static_cast<size_t>(std::count_if(descriptors, end, [&](const auto& entry) {
+        std::error_code closed;
+        return read_symlink(entry.path(), closed).string().compare(0, device.size(), device) == 0;
+    }));
+}
+
+// A USB adapter that is unplugged and plugged in again: a symbolic link names its device, as udev
+// makes it. If the old device stayed open, the kernel would give the adapter another name.
+TEST(Engine, AnAdapterThatIsUnpluggedIsReleasedAndOpenedAgainWhenItReturns) {
+    EngineLog log;
+    auto adapter = std::make_unique<Wire>();
+    const std::string device = adapter->path();
+    const std::string link = "engine-" + std::to_string(getpid());
+    std::filesystem::create_symlink(device, link);
+    XBeeAT::Settings settings = Wire::settings();
+    settings.device = link;
+    auto engine = XBeeAT::Engine::get(settings, log.taker());
+    ASSERT_GE(engine->listen(), 0);
+    int fd = engine->connect(0);
+    ASSERT_TRUE(adapter->until([&] { return adapter->open[0]; }));
+
+    std::filesystem::remove(link);
+    adapter.reset();
+    EXPECT_TRUE(becomes([&] { return log.has("0 serial port '" + link + "' has disappeared"); }))
+        << log.text();
+    EXPECT_TRUE(becomes([&] { return usersOf(device) == 0; }));
+    pollfd ended{fd, POLLIN, 0};
+    EXPECT_EQ(poll(&ended, 1, 30'000), 1);
+    EXPECT_EQ(recv(fd, &ended, sizeof ended, 0), 0) << "a program learns that the port is lost";
+    close(fd);
+    EXPECT_TRUE(becomes([&] { return log.has("0 cannot open serial port '" + link); }))
+        << log.text();
+
+    adapter = std::make_unique<Wire>();
+    std::filesystem::create_symlink(adapter->path(), link);
+    EXPECT_TRUE(becomes([&] { return log.has("-1 serial port '" + link + "' is in use again"); }))
+        << log.text();
+    fd = engine->connect(0);
+    EXPECT_TRUE(adapter->until([&] { return adapter->open[0]; })) << log.text();
+    close(fd);
+    engine.reset();
+    std::filesystem::remove(link);
+    EXPECT_EQ(log.count(0), 2u) << "the loss, and that the device is missing, are errors once:\n"
+                                << log.text();
 }
 
 std::string refusal(const std::string& device) {

@@ -56,6 +56,14 @@ public:
         return text_;
     }
     bool has(const std::string& part) { return text().find(part) != std::string::npos; }
+    // Returns the number of messages of a level.
+    size_t count(int level) {
+        const std::string all = "\n" + text(), start = "\n" + std::to_string(level) + " ";
+        size_t found = 0;
+        for (size_t at = 0; (at = all.find(start, at)) != std::string::npos; ++at)
+            ++found;
+        return found;
+    }
 
 private:
     std::mutex mutex_;
@@ -79,12 +87,17 @@ public:
         close(slave_);
         close(master_);
     }
-    // Starts an engine at the other end of the wire; it runs as fast as the machine.
-    std::shared_ptr<XBeeAT::Peer> engine(int idleMs = 0) {
+    // Returns settings for an engine at the other end of a wire, as fast as the machine.
+    static XBeeAT::Settings settings() {
         XBeeAT::Settings s;
-        s.device = name_;
         s.setUp = false;
         s.baud = 10'000'000;
+        return s;
+    }
+    // Returns an engine at the other end of this wire.
+    std::shared_ptr<XBeeAT::Peer> engine(int idleMs = 0) {
+        XBeeAT::Settings s = settings();
+        s.device = name_;
         s.idleMs = idleMs;
         return XBeeAT::Engine::get(s, log_.taker());
     }

@@ -175,9 +175,14 @@ class Client:
                           "vehicle; check that its firmware was built from the same Slice "
                           "files", ABSENT,
                           "Ice.OperationNotExistException") from None
+        except Ice.UnknownLocalException as error:
+            # A gateway that cannot reach the vehicle answers with its name and the reason.
+            gateway, _, reason = reason_of(error).partition("icesoc-gateway: ")
+            if gateway or not reason:
+                raise self.refused(error) from None
+            raise Failure(reason, SILENT, "Ice.UnknownLocalException") from None
         except Ice.UnknownException as error:
-            raise Failure(f"the call was refused: {reason_of(error)}", REFUSED,
-                          error.ice_id().lstrip(":").replace("::", ".")) from None
+            raise self.refused(error) from None
         except Ice.NotRegisteredException as error:
             raise Failure(f"IceGrid has no vehicle '{error.id}'; check that its gateway is running "
                           "and the vehicle is in reach", SILENT,
@@ -190,6 +195,12 @@ class Client:
             raise Failure(f"cannot reach {self.target.place}: "
                           f"{reason_of(error, connecting='')}", SILENT,
                           error.ice_id().lstrip(":").replace("::", ".")) from None
+
+    @staticmethod
+    def refused(error):
+        """Returns the Failure for an exception that Slice does not declare."""
+        return Failure(f"the call was refused: {reason_of(error)}", REFUSED,
+                       error.ice_id().lstrip(":").replace("::", "."))
 
     def thrown(self, error):
         """Returns the Failure for an exception that Slice declares."""

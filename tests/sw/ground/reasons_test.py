@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: MIT
+"""reasons_test: reasons.py gives a short text, with a remedy if there is one, for errors of the
+system and of Ice."""
+import errno
+import unittest
+
+import Ice
+
+from reasons import reason_of
+
+
+def failed(number):
+    error = Ice.ConnectFailedException()
+    error.error = number
+    return error
+
+
+class Reasons(unittest.TestCase):
+    def test_a_lost_modem_has_a_remedy(self):
+        self.assertEqual(reason_of(failed(errno.ENOLINK), ""),
+                         "the modem is lost or does not answer: check its cable and its power")
+
+    def test_other_errors_have_the_system_s_text(self):
+        self.assertEqual(reason_of(failed(errno.ECONNREFUSED)),
+                         "cannot connect: Connection refused")
+        self.assertEqual(reason_of(OSError(errno.ENOENT, "No such file or directory", "a.key")),
+                         "a.key: No such file or directory")
+
+    def test_an_exception_without_text_is_named_in_words(self):
+        self.assertEqual(reason_of(Ice.ConnectTimeoutException()), "Connect timeout")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -33,14 +33,26 @@ class Cases(Script):
     def setUp(self):
         self.out = fresh(sys.argv[2])
         self.prefix = self.out / "installed"
+        self.use_prefix()
+
+    def use_prefix(self):
+        """Sets the folders in the prefix, and an environment without paths to the tree."""
         self.bin = self.prefix / "bin"
-        self.python = self.prefix / "lib/python3/dist-packages"
         self.hdl = self.prefix / "share/icesoc/hdl"
-        # An environment that contains no path to the source tree.
         self.env = {"PATH": f"{self.bin}:/usr/bin:/bin", "HOME": str(self.out), "LC_ALL": "C.UTF-8",
-                    "PYTHONPATH": str(self.python), "PYTHONDONTWRITEBYTECODE": "1"}
+                    "PYTHONPATH": str(self.prefix / "lib/python3/dist-packages"),
+                    "PYTHONDONTWRITEBYTECODE": "1"}
         if "CCACHE_DIR" in os.environ:
             self.env["CCACHE_DIR"] = os.environ["CCACHE_DIR"]
+
+    def move(self):
+        """Moves the installation and the home folder to folders with unusual names."""
+        old, self.prefix = self.prefix, self.out / "moved, été 1"
+        old.rename(self.prefix)
+        self.use_prefix()
+        home = self.out / "zoé müller"
+        home.mkdir()
+        self.env["HOME"] = str(home)
 
     def install(self, *components):
         for component in components:
@@ -75,13 +87,16 @@ class Cases(Script):
             self.has("^OPTIONS|options")
 
     def test_fly(self):
-        """The installed simulator flies the mission with the host build and with the ARM binary."""
+        """The installed simulator flies the mission with the host build and with the ARM binary,
+        after the installation was moved to another folder."""
         self.install("icesoc-ground", "icesoc-sim")
+        self.move()
         for cpu in "host", "m3":
             self.use("icesoc-fly", "--size", "96x64", "--guard", "20", "--out", cpu, "--cpu", cpu)
             self.has("the result equals the C\\+\\+ reference", "ms simulated")
             self.assertTrue((self.out / cpu / "after.png").stat().st_size)
-        self.assertEqual((self.out / ".config/icesoc/demo.key").stat().st_mode & 0o777, 0o600)
+        key = Path(self.env["HOME"], ".config/icesoc/demo.key")
+        self.assertEqual(key.stat().st_mode & 0o777, 0o600)
 
     def test_gateway(self):
         """A user's program calls a core through the plugin, then through the gateway."""
@@ -142,6 +157,8 @@ class Cases(Script):
         write("two.conf", "Vehicle.a=tcp -p 1\nVehicle.b=tcp -p 2\n")
         self.use("icesoc-call", "uav.isAlive", "7", status=2, env={"ICESOC_VEHICLES": "two.conf"})
         self.has("--vehicle: expected a name, as two.conf lists several: a, b$")
+        self.use("icesoc-call", "uav.isAlive", "7", status=2, env={"ICESOC_VEHICLES": "none.conf"})
+        self.has("^icesoc: no file lists the vehicles: expected none.conf with a line such as$")
         self.use("icesoc-call", "uav.isAlive", "7", "--gateway", "nohost.invalid:1", status=4)
         self.has("cannot reach nohost.invalid:1: nohost.invalid: host not found$")
         self.use("icesoc-update", "missing", status=1)

@@ -325,7 +325,7 @@ class Mission:
             self.log.follow({"who": "ground", "what": f"the mission failed: {e}"})
             raise
         self.log.note("the result equals the C++ reference, bit by bit")
-        if result.found < ENOUGH:
+        if result.found < ENOUGH and not places.IS_INSTALLED:
             self.log.note(f"{result.found} corners test only a part of the core: make ip-test "
                           "IP=vision tests all of it")
 

@@ -20,7 +20,9 @@ def initialize(settings, plugin, guard, key):
     contains libxbeeat.so.37; empty or None means no radio. guard: guard time of the modem, ms. key:
     file with the key of the link; empty means no key."""
     if plugin:
-        settings = {"Ice.Plugin.XBeeAT": os.path.join(plugin, "xbeeat") + ":createXBeeAT",
+        entry = os.path.join(plugin, "xbeeat") + ":createXBeeAT"
+        # Ice divides the value at spaces, which the name of the folder may contain.
+        settings = {"Ice.Plugin.XBeeAT": '"%s"' % entry.replace("\\", "\\\\").replace('"', '\\"'),
                     "XBeeAT.Guard": str(guard),
                     "XBeeAT.KeyFile": key, **settings}
     data = Ice.InitializationData()

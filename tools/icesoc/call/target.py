@@ -76,7 +76,8 @@ def of_settings(values):
     try:
         suffix, properties = vehicles.find(values.vehicle)
     except vehicles.Unknown as error:
-        raise Stop(("" if values.vehicle else "--") + str(error), 2) from None
+        is_option_missing = str(error).startswith("vehicle:")
+        raise Stop(("--" if is_option_missing else "") + str(error), 2) from None
     radio = re.match(r':(xbee-at|serial)\b.* (-d ("[^"]*"|\S+))', suffix)
     return Target(f"'{values.vehicle}'" if values.vehicle else suffix[1:], suffix, properties,
                   build=values.build, plugin=values.plugin or places.plugin() if radio else "",

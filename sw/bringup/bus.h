@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * bus: tests the FSMC bus, the DDR3 memory, the interrupt and the modem, after the chip was loaded
- * into the FPGA. Until the timing of the bus itself is tested, accesses are slow and do not use
- * NWAIT, so that none of them can hang.
+ * into the FPGA. Until the timing of the bus has been tested, accesses are slow and do not use
+ * NWAIT, so no access can hang.
  */
 #pragma once
 
@@ -24,7 +24,7 @@ void Bus_testTiming(void);
 void Bus_testInterrupt(void);
 void Bus_testModem(void);
 
-/* Accesses that the files of these steps share. */
+/* Functions for accesses, which the files of these steps share. */
 typedef struct Bus_Timing {
     U32 addset, datast; /* HCLK cycles */
     int isModeA;        /* 1 if NOE falls after the address phase */

@@ -46,7 +46,8 @@ typedef struct Pins {
 typedef struct Answer {
     U32 id, clocks, edges; /* clocks: clocks of the board in units of 64, modulo 65536 */
     Pins pins;
-    Pins early; /* levels of the modem's pins shortly after the last frame set their drivers */
+    /* levels of the modem's pins shortly after the last frame has set the tester's outputs */
+    Pins early;
 } Answer;
 
 /* Levels and enables of the tester's outputs. */
@@ -69,11 +70,11 @@ void Pins_set(Pins* pins, U32 pin, int high);
 /* Tries to reach the tester on each channel. Returns a bit for each channel that answers, and keeps
  * the first one for Lines_exchange. */
 U32 Lines_find(void);
-/* Returns 1 if the line belongs to the channel in use. Its three lines work, because the tester
- * answers. */
+/* Returns 1 if the line is one of the three lines of the channel in use. These lines work, because
+ * the tester answers. */
 int Lines_isChannels(U32 line);
-/* Sets what the tester drives, and returns in `answer` what it saw before. Returns 0 if the
- * tester does not answer. */
+/* Sets the levels that the tester must drive, and returns in `answer` the levels that it has seen
+ * before. Returns 0 if the tester does not answer. */
 int Lines_exchange(Answer* answer);
 
 /* Steps of the test. `found` is the result of Lines_find: the channels that work; 0 if the

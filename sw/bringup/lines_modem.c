@@ -3,9 +3,10 @@
  * lines_modem: finds bad wires between FPGA and modem, without sending a command to the modem.
  *
  * An idle XBee drives DOUT (our RXD) high and CTS low, and has pull-ups at DIN (our TXD), RTS and
- * RESET. While RESET is low it drives nothing. The tester has a pull-down at RXD, and a pull-up at
- * CTS (synth/ise/lines.ucf). A pin that the tester has driven and releases follows a driver at
- * once, a pull after a microsecond, and nothing if it is open.
+ * RESET. While RESET is low, the XBee drives no pin. The tester has a pull-down at RXD and a
+ * pull-up at CTS (synth/ise/lines.ucf). After the tester has driven a pin and released it, the
+ * level shows what is connected: a driver changes it at once, a pull-up or pull-down after a
+ * microsecond, and an open pin keeps its level.
  */
 #include "board_pins.h"
 #include "bringup.h"
@@ -39,7 +40,7 @@ static void set(U32 pin, U32 level) {
     Pins_set(&lines_value, pin, level == 1U);
 }
 
-/* Applies the settings and reads the levels twice: shortly afterwards (early), and when they have
+/* Applies the settings, and reads the levels twice: shortly afterwards (early), and when they have
  * settled (now). */
 static void look(void) {
     Answer answer;
@@ -87,7 +88,7 @@ static int follows(U32 pin) {
     return 1;
 }
 
-/* Tests a line to the modem, whose pull-up lifts it slowly after it was driven low. */
+/* Tests a line to the modem, whose pull-up slowly raises the line after it was driven low. */
 static void testOutput(U32 pin) {
     if (!follows(pin))
         return;
@@ -173,7 +174,7 @@ static void testSilentCts(void) {
          "the wire, the socket's contact (pin 12), and that the modem's D7 is 1");
 }
 
-/* Returns 1 if the modem obeys RESET. */
+/* Returns 1 if the modem reacts to RESET. */
 static int testReset(void) {
     set(PIN_RESET, 1);
     look();
@@ -220,7 +221,8 @@ void Lines_testModem(void) {
     look();
     if (!testReset())
         return;
-    (void)follows(PIN_RXD); /* in reset the modem drives neither */
+    /* both lines can be tested, because the modem drives no pin during a reset */
+    (void)follows(PIN_RXD);
     (void)follows(PIN_CTS);
     if (!Report_stepFailures() && testShorts()) {
         waitForModem();

@@ -3,8 +3,9 @@
  * lines_test: finds stuck, shorted, open, swapped and inverted lines, and names them.
  *
  * Without the FPGA, the microcontroller drives one line at a time and holds all others by weak
- * pulls: a line that follows is shorted. With the FPGA, each line transmits a different number, bit
- * by bit and then inverted. The received number identifies the line at the other end.
+ * pull-ups or pull-downs: a line that follows is shorted to the driven line. With the FPGA, each
+ * line transmits a different number, bit by bit and then inverted. The received number identifies
+ * the line at the other end.
  */
 #include "board_pins.h"
 #include "bringup.h"
@@ -13,7 +14,7 @@
 #include "timing.h"
 
 #define SETTLE_US 20U /* settling time: an open line of 100 pF with a pull of 40 kOhm */
-/* one bit more than needed, so that no number is the inverse of another one */
+/* one bit more than needed, so that no number is the inverse of another number */
 #define CODE_BITS 7U
 #define CODE_MASK 127U
 #define NONE 255U

@@ -9,7 +9,7 @@
 
 #define CYCLES_MASK 0xFFFFFFUL
 #define HSI_HZ 16000000UL
-#define READY_POLLS 200000UL /* enough for a crystal, which starts within some ms */
+#define READY_POLLS 200000UL /* limit of polls; a crystal starts within some ms */
 
 static Timing_Clock now;
 
@@ -37,7 +37,7 @@ void Timing_wait(U32 us) {
 /* Sets the PLL to 2 * hz, from an input of 1 MHz, and HCLK to hz. */
 static void startPll(U32 hz) {
     U32 mhz = hz / 1000000UL, source = now.isCrystal ? BOARD_HSE_HZ : HSI_HZ;
-    RCC_CFGR &= ~3UL; /* runs from HSI while the PLL changes */
+    RCC_CFGR &= ~3UL; /* uses HSI as the clock while the PLL changes */
     while (RCC_CFGR & RCC_CFGR_SWS_MASK)
         ;
     RCC_CR &= ~RCC_CR_PLLON;

@@ -51,8 +51,8 @@ public:
     bool isMuxed() const { return isMuxed_; }
     // Returns the kind of the board's modem (xbee_profile.h); empty if unknown.
     const std::string& modem() const { return modem_; }
-    // Sets the function that returns what a pin does; without this function all pins are switched
-    // to their signals, as a program that does not model pins needs it.
+    // Sets the function that returns the setting of a pin. Without this function, every pin counts
+    // as switched to its signal, which suits programs that do not model pins.
     void follow(std::function<PinSetting(unsigned port, unsigned pin)> setting);
     // Plants a fault of a wire or of a bank's supply. Returns false for other kinds of faults.
     bool plant(const WireFault& fault);
@@ -98,7 +98,8 @@ private:
         bool isPowered;
     };
     std::map<std::string, Ball> balls_;
-    std::array<int, Lines> from_;      // signal that arrives at each port; -1 without a signal
+    // index of the signal that arrives at each port; -1 if no signal arrives
+    std::array<int, Lines> from_;
     std::array<int, Lines> bank_;      // bank of each port; -1 if unknown
     std::array<bool, Lines> isHigh_{}; // level of each port at which no signal arrives
     std::array<bool, Lines> isSwitched_;

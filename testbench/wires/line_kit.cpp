@@ -127,7 +127,7 @@ void LineKit::followSecondMemory() {
                         now_);
 }
 
-// Passes edges of NWE on, with an echo if the line rings.
+// Passes edges of NWE to the FPGA, and adds a second edge if the line rings.
 void LineKit::pulseNwe(bool level) {
     const uint64_t bit = 1ull << nwe;
     for (int i = wires_.isRinging(nwe) ? 1 : 0; i >= 0; --i) {

@@ -252,6 +252,9 @@ void SerialPort::open(const std::string&) {
     fd_ = world->serial;
 }
 void SerialPort::close() {}
+bool SerialPort::isGone() const {
+    return false;
+}
 void SerialPort::setSpeed(int) {}
 ssize_t SerialPort::read(void* bytes, size_t room) {
     std::deque<uint8_t>& from = world->toEngine;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// counter: a counter with an enable, for tests; it has WIDTH flip-flops, and one carry segment for
-// every four bits.
+// counter: WIDTH flip-flops that count while enabled, with a carry segment for every four bits.
 
 `default_nettype none
 

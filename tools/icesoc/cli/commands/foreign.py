@@ -33,8 +33,9 @@ def foreign_words(values):
     Option("params", WORDS, "parameters of the top module, such as DEPTH=16"),
     Option("defines", WORDS, "Verilog macros to define, such as WIDE"),
     Option("clock", COUNT, "frequency of a separate clock, Hz"),
-    Option("library", WORDS, "VHDL library of the files; NAME=FILE for a file in another library, such as "
-                             "util=pkg.vhd"),
+    Option("library", WORDS,
+           "VHDL library of the files; NAME=FILE for a file in another library, such as "
+           "util=pkg.vhd"),
     Option("address", one_of("words", "bytes"),
            "unit of the core's address: words or bytes; detected by default"),
     REPOSITORY, BUILD, JOBS

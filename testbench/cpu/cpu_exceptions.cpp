@@ -122,9 +122,14 @@ uint32_t CortexM3::reg(int number) const {
 }
 
 void CortexM3::setReg(int number, uint32_t value) {
-    if (number == Pc)
+    if (number == Pc) {
         pc_ = value & ~1u;
-    else
+        // A debugger has moved the program counter, so the fault of the instruction that it was at
+        // does not happen: an empty flash has no valid reset vector, but a program in RAM can
+        // start.
+        synchronous_.number = 0;
+        updateAttention();
+    } else
         uc_reg_write(uc_, UnicornCalls::registerId(number), &value);
     if (number >= Primask)
         exceptions_.setMasks(reg(Primask), reg(Basepri), reg(Faultmask));

@@ -146,8 +146,8 @@ class Nets:
         return seen[bit]
 
     def glitches(self, ports):
-        """Returns the outputs to pins that neither a flip-flop nor pins alone drive. A block without
-        the pins of the FSMC is inside the chip, so its outputs are not pins."""
+        """Returns the outputs to pins that neither a flip-flop nor pins alone drive. A block
+        without the pins of the FSMC is inside the chip, so its outputs are not pins."""
         bad = set()
         if "fsmc_a_i" not in ports:
             return bad

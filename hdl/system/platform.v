@@ -91,11 +91,12 @@ module platform #(
     wire        npi_wr_almost_full, npi_wr_flush, npi_rd_pop, npi_rd_empty, npi_rd_flush;
     wire        npi_init_done;
 
-    // The macro selects the bridge: fsmc_bridge, or fsmc_sync_bridge (docs/fsmc.md).
-`ifndef FSMC_BRIDGE
-    `define FSMC_BRIDGE fsmc_bridge
+    // The macro FSMC_SYNC_BRIDGE selects the bridge that samples its pins (docs/fsmc.md).
+`ifdef FSMC_SYNC_BRIDGE
+    fsmc_sync_bridge u_fsmc_bridge (
+`else
+    fsmc_bridge u_fsmc_bridge (
 `endif
-    `FSMC_BRIDGE u_fsmc_bridge (
         .clk_i(clk_i), .rst_i(rst_i),
         .fsmc_a_i(fsmc_a_i), .fsmc_d_i(fsmc_d_i), .fsmc_d_o(fsmc_d_o), .fsmc_d_oe_o(fsmc_d_oe_o),
         .fsmc_ne_n_i(fsmc_ne_n_i), .fsmc_noe_n_i(fsmc_noe_n_i), .fsmc_nwe_n_i(fsmc_nwe_n_i),

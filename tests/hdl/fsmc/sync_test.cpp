@@ -39,8 +39,8 @@ class SyncBridge : public ::testing::Test {
 protected:
     void SetUp() override {
         RecordProperty("seed", static_cast<int>(testSeed()));
-        ASSERT_EQ(b_.init(bankA), FSMC_OK);
-        doorbell(); // its last write is posted
+        ASSERT_EQ(b_.init(), FSMC_OK); // with the settings of the driver (FSMC_SYNC)
+        doorbell();                    // its last write is posted
     }
     static uint32_t at(uint32_t word) { return control + 4 * word; }
     // Waits by a register access, after which all writes have reached the memory.

@@ -27,7 +27,8 @@
 #define INCLUDE_vTaskDelay 1
 #define INCLUDE_xTaskGetCurrentTaskHandle 1
 
-/* The MPS2's Cortex-M3 has three bits of priority. Interrupts that call the kernel have 4 to 7. */
+/* The MPS2's Cortex-M3 has three bits of priority. Interrupts that call the kernel must have a
+ * priority from 4 to 7; 0 is the most urgent priority. */
 #define configPRIO_BITS 3
 #define configKERNEL_INTERRUPT_PRIORITY (7 << 5)
 #define configMAX_SYSCALL_INTERRUPT_PRIORITY (4 << 5)

@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * bare_metal: serves and calls Ice objects without a kernel, over the link layer on a serial port.
+ * bare_metal: serves and calls Ice objects without an operating system. Messages pass through the
+ * link layer on a serial port.
  *
- * The ports are at the top: Link_Port for the radio (here the serial port), XBeeATEndpoint_Port for
- * the transport. Ice_Os is not set, because there is one task.
+ * Two structs of functions adapt the libraries to this program: Link_Port for the radio (here the
+ * serial port), and XBeeATEndpoint_Port for the transport. Ice_Os is not set, because there is only
+ * one task.
  */
 #include "icec_radio.h"
 #include "meter.h"
@@ -28,7 +30,8 @@ static int transmit(void* context, const U8* frame, U32 size) {
     return Mps2_send(frame, size);
 }
 
-/* An example's random numbers. A link with keys needs a true random source here. */
+/* Returns a pseudo-random number, which is sufficient for an example. A link with keys needs a true
+ * random source here. */
 static U32 randomWord(void* context) {
     static U32 state = 0x2545F491U;
     (void)context;
@@ -58,12 +61,12 @@ static void pollLink(void) {
 
 /* ---- XBeeATEndpoint_Port ---- */
 
-/* One task uses the link, so that a lock is not necessary. */
+/* Does nothing: there is only one task, so the link needs no lock and no wake-up. */
 static void nothing(void* context) {
     (void)context;
 }
 
-/* Polls the link until it has an event for the transport, or the time is over. */
+/* Polls the link until the transport has an event, or until `timeoutMs` have passed. */
 static int work(void* context, Ice_Int timeoutMs) {
     U32 begin = Mps2_nowMs();
     (void)context;
@@ -93,7 +96,7 @@ int main(void) {
     XBeeATEndpoint_init(&ic, "xbee-at", &endpoint, &radio, OWN_ADDRESS, &endpointPort, 0);
     if (Meter_serve(&ic, "xbee-at", "bare metal") != ICE_OK)
         return 1;
-    /* Calls are served while this one waits for its reply. */
+    /* While this call waits for its reply, incoming calls are served. */
     while (Meter_report(&ic, "station:xbee-at -a 0x0000") != ICE_OK)
         (void)Ice_Communicator_poll(&ic, 1000);
     Ice_Communicator_waitForShutdown(&ic);

@@ -1,12 +1,11 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""call: calls the meter of a porting example with stock ZeroC Ice, and takes its report.
+"""call: calls the meter of a porting example with stock ZeroC Ice, and receives the meter's report.
 
 Usage: call.py KERNEL ENDPOINT [STATION-ENDPOINT] [Ice options]
 
-KERNEL is the name that the meter must report. With a STATION-ENDPOINT the program serves the
-station there, and waits for the meter's call.
-"""
+KERNEL is the name that the meter must report. With a STATION-ENDPOINT, this program also serves an
+object Station at this endpoint, and waits until the meter calls it. """
 import os
 import sys
 import threading
@@ -23,7 +22,7 @@ SECONDS = 30
 
 
 class StationI(Demo.Station):
-    """Keeps the kernel of the first report."""
+    """Stores the name of the kernel that the meter reports."""
 
     def __init__(self):
         self.reported = threading.Event()

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * freertos: serves and calls Ice objects from several tasks of FreeRTOS, over the link layer on a
- * serial port.
+ * freertos: serves and calls Ice objects from several tasks of FreeRTOS. Messages pass through the
+ * link layer on a serial port.
  *
- * The ports are at the top: Ice_Os for IceC's tasks, Link_Port for the radio (here the serial
- * port), XBeeATEndpoint_Port between IceC and the task that owns the link.
+ * Three structs of functions adapt the libraries to FreeRTOS: Ice_Os for the tasks that use IceC,
+ * Link_Port for the radio (here the serial port), and XBeeATEndpoint_Port between IceC and the task
+ * that owns the link.
  */
 #include "icec_radio.h"
 #include "meter.h"
@@ -17,7 +18,7 @@
 #define BYTE_TIME_US16 1440U /* 111,111 baud */
 #define OWN_ADDRESS 1
 
-enum { RADIO, SERVER, CALLER, TASKS }; /* a task's number, and its local storage */
+enum { RADIO, SERVER, CALLER, TASKS }; /* numbers of the tasks */
 #define STACK_WORDS 2048U
 
 static Ice_Communicator ic; /* large: not on a stack */
@@ -32,7 +33,7 @@ static TickType_t ticksOf(Ice_Int ms) {
 
 /* ---- Ice_Os: two locks, and a binary semaphore for each call and for waiting servers ---- */
 
-static SemaphoreHandle_t locks[2]; /* by ICE_LOCK_STATE and ICE_LOCK_SEND */
+static SemaphoreHandle_t locks[2]; /* indexed by ICE_LOCK_STATE and ICE_LOCK_SEND */
 static SemaphoreHandle_t slots[ICE_CALLS + 1];
 
 static void lockIce(void* context, int which) {
@@ -45,7 +46,8 @@ static void unlockIce(void* context, int which) {
     (void)xSemaphoreGive(locks[which]);
 }
 
-/* A semaphore keeps a wake that comes early, as Ice_Os requires. */
+/* Waits for a wake. Ice_Os requires that a wake which precedes the wait is not lost; a semaphore
+ * has this property. */
 static int waitSlot(void* context, int slot, Ice_Int timeoutMs) {
     (void)context;
     return xSemaphoreTake(slots[slot], ticksOf(timeoutMs)) == pdTRUE;
@@ -79,7 +81,8 @@ static int transmit(void* context, const U8* frame, U32 size) {
     return Mps2_send(frame, size);
 }
 
-/* An example's random numbers. A link with keys needs a true random source here. */
+/* Returns a pseudo-random number, which is sufficient for an example. A link with keys needs a true
+ * random source here. */
 static U32 randomWord(void* context) {
     static U32 state = 0x9E3779B9U;
     (void)context;
@@ -143,7 +146,8 @@ void Mps2_onReceive(void) {
     portYIELD_FROM_ISR(higher);
 }
 
-/* Owns the link: passes bytes to it, and polls it when it is due. */
+/* Runs the link: passes received bytes to the link, and polls the link when it has work that is
+ * due. */
 static void radioTask(void* argument) {
     (void)argument;
     Mps2_start();
@@ -173,7 +177,7 @@ static void serverTask(void* argument) {
         vTaskDelay(portMAX_DELAY);
 }
 
-/* Calls the ground while the server's task receives. */
+/* Calls the ground station; the server's task receives messages at the same time. */
 static void callerTask(void* argument) {
     (void)argument;
     while (Meter_report(&ic, "station:xbee-at -a 0x0000") != ICE_OK)

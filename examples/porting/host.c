@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * host: serves the meter over TCP on a POSIX system; prints its port.
+ * host: serves the meter over TCP on a POSIX system, and prints the number of the TCP port.
  */
 #include "icec_tcp.h"
 #include "meter.h"

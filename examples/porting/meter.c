@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * meter: the servant of the porting examples, and its call to the ground. It does not depend on
+ * meter: the servant of the porting examples, and a call to the ground station. Neither depends on
  * the kernel or the transport.
  */
 #include "meter.h"

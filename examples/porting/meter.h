@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * meter: what the porting examples share: the servant, and the call to the ground.
+ * meter: the parts that all porting examples share: the servant, and a call to the ground station.
  */
 #ifndef METER_H
 #define METER_H
@@ -8,11 +8,12 @@
 #include "Meter.h"
 #include "Station.h"
 
-/* Creates the adapter of `endpoints` and adds the servant "meter" to it. `kernel` is the answer of
- * the operation of that name; it must stay valid. */
+/* Creates an adapter with these endpoints, and adds the servant "meter" to the adapter. `kernel` is
+ * the string that the operation Meter.kernel returns; the pointer must stay valid. */
 Ice_Status Meter_serve(Ice_CommunicatorPtr ic, const char* endpoints, const char* kernel);
 
-/* Calls the ground's Station.report with the number of calls so far. */
+/* Calls Station.report of the ground station, with the name of the kernel and the number of calls
+ * of Meter.add so far. */
 Ice_Status Meter_report(Ice_CommunicatorPtr ic, const char* station);
 
 #endif

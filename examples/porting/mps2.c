@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * mps2: start-up, serial port and clock of ARM's MPS2 board with a Cortex-M3 (application note 385;
- * the UART is the one of the CMSDK, DDI 0479).
+ * mps2: start-up, serial port and clock of ARM's MPS2 board with a Cortex-M3 (application note
+ * 385). The UART is that of ARM's CMSDK (DDI 0479).
  */
 #include "mps2.h"
 
@@ -22,7 +22,8 @@ enum { DATA = 0, STATE = 1, CTRL = 2, INTERRUPT = 3, DIVISOR = 4 };
 
 static volatile U32 milliseconds;
 
-/* Received bytes; one writer (the interrupt) and one reader. */
+/* Ring of received bytes. Only the interrupt routine writes bytes, and only Mps2_read removes
+ * them. */
 #define RING 512U
 static U8 ring[RING];
 static volatile U32 written, taken;
@@ -77,11 +78,12 @@ void Mps2_sleep(void) {
 }
 
 static void onUart(void) {
-    /* Cleared first: a byte that arrives after the loop interrupts again. */
+    /* The interrupt is cleared before the loop, so that a byte which arrives after the loop causes
+     * another interrupt. */
     UART[INTERRUPT] = INTERRUPT_RX;
     while (UART[STATE] & STATE_RX_FULL) {
         U8 byte = (U8)UART[DATA];
-        if (written - taken < RING) { /* the link layer repeats what is lost */
+        if (written - taken < RING) { /* a byte that is lost is repeated by the link layer */
             ring[written % RING] = byte;
             ++written;
         }
@@ -98,14 +100,15 @@ static void halt(void) {
         Mps2_sleep();
 }
 
-/* A kernel defines its handlers under CMSIS' names. */
+/* Handlers for a program without a kernel. A kernel replaces them by its own handlers with these
+ * names, which are those of CMSIS. */
 void SVC_Handler(void) __attribute__((weak, alias("halt")));
 void PendSV_Handler(void) __attribute__((weak, alias("halt")));
 void SysTick_Handler(void) __attribute__((weak, alias("onTick")));
 
 extern U8 data_load[], data_begin[], data_end[], bss_begin[], bss_end[];
 int main(void);
-void stack_top(void); /* not a function: the first word is the stack pointer */
+void stack_top(void); /* initial stack pointer, not a function */
 
 void Mps2_reset(void);
 void Mps2_reset(void) {

@@ -8,30 +8,31 @@
 
 #include "icec_link.h"
 
-#define MPS2_HZ 25000000U     /* clock of the CPU, Hz */
-#define MPS2_UART_PRIORITY 5U /* priority of its interrupt, 0 (urgent) to 7 */
+#define MPS2_HZ 25000000U     /* clock frequency of the CPU, Hz */
+#define MPS2_UART_PRIORITY 5U /* priority of the UART's interrupt, 0 (most urgent) to 7 */
 
-/* Switches the serial port and its receive interrupt on. */
+/* Enables the serial port and its receive interrupt. */
 void Mps2_start(void);
 
-/* Switches the clock on, if no kernel owns the SysTick. Mps2_nowMs then counts. */
+/* Starts SysTick, which counts the time for Mps2_nowMs. Not to be called if a kernel uses
+ * SysTick. */
 void Mps2_startClock(void);
 U32 Mps2_nowMs(void);
 
-/* Takes received bytes, at most `size`; returns how many. */
+/* Copies up to `size` received bytes to `to`, and returns their number. */
 U32 Mps2_read(U8* to, U32 size);
 
-/* Queues a frame for the serial port. Returns 0 if it is taken, as Link_Port.transmit does; 1 while
- * the previous frame is being sent. */
+/* Queues a frame for the serial port. Returns 0 if the frame was queued; returns 1 if the previous
+ * frame is still being sent. Link_Port.transmit has the same results. */
 int Mps2_send(const U8* frame, U32 size);
 
-/* Moves queued bytes to the serial port; returns 1 while some are left. */
+/* Moves queued bytes to the serial port. Returns 1 if bytes remain in the queue. */
 int Mps2_pump(void);
 
 /* Sleeps until the next interrupt. */
 void Mps2_sleep(void);
 
-/* Called by the receive interrupt; the program defines it. */
+/* Called by the receive interrupt. Each program defines this function. */
 void Mps2_onReceive(void);
 
 #endif

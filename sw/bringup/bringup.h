@@ -14,7 +14,7 @@ typedef struct Bringup_Limits {
     U32 guardMs;     /* guard time of the modem's command mode, ms (GT) */
     U32 patternKib;  /* size of the tested memory, KiB; 0 means all of DDR3 */
     U32 retentionMs; /* time for which DDR3 must keep its values, ms */
-    U32 watchdogMs;  /* time-out of a step that hangs, ms */
+    U32 watchdogMs;  /* time after which a step counts as hung, ms */
 } Bringup_Limits;
 
 #define BRINGUP_WIRES 1UL /* wires between microcontroller and FPGA */

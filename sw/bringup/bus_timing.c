@@ -17,7 +17,7 @@
 #include "timing.h"
 
 #define BLOCK_HALFWORDS 32U
-#define READ_SETUP 40U /* read set-up time of the FSMC in addition to one HCLK, 0.1 ns */
+#define READ_SETUP 40U /* read set-up time of the FSMC, minus one HCLK period, 0.1 ns */
 #define DRIVER_ADDSET 2U
 #define MOST_ADDSET 12U
 
@@ -25,7 +25,7 @@ typedef struct Point {
     U8 datast, mhz;
 } Point;
 
-/* Points of measurement, from the shortest read to the longest. */
+/* Timings to test, from the shortest read to the longest. */
 static const Point points[] = {{3, 120}, {3, 110}, {3, 100}, {3, 90}, {4, 120}, {4, 110}, {4, 100},
                                {4, 90},  {4, 80},  {4, 70},  {4, 60}, {5, 60},  {6, 60}};
 #define POINTS (sizeof points / sizeof points[0])

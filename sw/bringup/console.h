@@ -32,8 +32,8 @@ void Report_step(const char* name, const char* passes);
 /* Reports a failure of the current step. `second` is the other wire of a pair, or 0. */
 void Report_fail(const char* wire, const char* second, const char* kind, const char* seen,
                  const char* check);
-/* If this step has no failure, begins the line PASS and returns 1; the caller then writes the
- * figures and calls Console_end. */
+/* If the step has no failure, prints the beginning of the line PASS and returns 1. The caller then
+ * prints the measured values and calls Console_end. */
 int Report_pass(void);
 /* Return the number of failures of this step, and of all steps. */
 U32 Report_stepFailures(void);

@@ -26,7 +26,7 @@ typedef struct Line {
 #define ROW(name, place) {#name, place},
 static const Line lines[LINES] = {BRINGUP_LINES(ROW)};
 
-/* Lines for clock, data and answer of each channel. */
+/* The three lines of each channel: for its clock, its data and the tester's answer. */
 static const U8 channels[CHANNELS][3] = {{LINE_NE1, LINE_NE2, LINE_NWAIT},
                                          {LINE_NOE, LINE_NWE, LINE_IRQ},
                                          {LINE_NBL0, LINE_NBL1, LINE_D0}};

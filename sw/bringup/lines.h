@@ -9,7 +9,7 @@
 #include "base.h"
 
 #define LINES 50U     /* lines of the microcontroller */
-#define FPGA_PINS 55U /* number of the FPGA's pins, for these lines and for the modem */
+#define FPGA_PINS 55U /* number of tested FPGA pins, for these lines and for the modem */
 #define CHANNELS 3U
 
 /* The value of a macro as a text. */
@@ -38,13 +38,13 @@ enum {
 
 typedef enum Pull { PULL_NONE, PULL_UP, PULL_DOWN } Pull;
 
-/* A bit for each of the FPGA's pins. */
+/* One bit for each tested pin of the FPGA. */
 typedef struct Pins {
     U8 bytes[(FPGA_PINS + 7U) / 8U];
 } Pins;
 
 typedef struct Answer {
-    U32 id, clocks, edges; /* clocks: clocks of the board in units of 64, modulo 65536 */
+    U32 id, clocks, edges; /* clocks: clock cycles of the board / 64, modulo 65536 */
     Pins pins;
     /* levels of the modem's pins shortly after the last frame has set the tester's outputs */
     Pins early;
@@ -58,30 +58,30 @@ int Lines_isWired(U32 line);
 void Lines_input(U32 line, Pull pull);
 void Lines_drive(U32 line, int high);
 int Lines_read(U32 line);
-/* Makes all lines inputs with this pull. */
+/* Makes all lines inputs with this pull-up, pull-down or neither. */
 void Lines_release(Pull pull);
 /* Switches all lines but IRQ to the FSMC. */
 void Lines_useForFsmc(void);
-/* Returns the level of NWAIT without an access. */
+/* Returns the level of NWAIT while there is no access. */
 int Lines_idleNwait(void);
 int Pins_get(const Pins* pins, U32 pin);
 void Pins_set(Pins* pins, U32 pin, int high);
 
-/* Tries to reach the tester on each channel. Returns a bit for each channel that answers, and keeps
- * the first one for Lines_exchange. */
+/* Tries to reach the tester on each channel. Returns one bit for each channel that answers.
+ * Lines_exchange then uses the first of these channels. */
 U32 Lines_find(void);
-/* Returns 1 if the line is one of the three lines of the channel in use. These lines work, because
- * the tester answers. */
+/* Returns 1 if the line is one of the three lines of the channel in use. These lines need no test,
+ * because the tester answers over them. */
 int Lines_isChannels(U32 line);
-/* Sets the levels that the tester must drive, and returns in `answer` the levels that it has seen
- * before. Returns 0 if the tester does not answer. */
+/* Sends the tester the levels that it must drive, and returns in `answer` the levels that the
+ * tester has read before it drives them. Returns 0 if the tester does not answer. */
 int Lines_exchange(Answer* answer);
 
-/* Steps of the test. `found` is the result of Lines_find: the channels that work; 0 if the
- * tester does not answer. */
-/* Stuck lines and shorts, without the FPGA. Returns 0 if another chip on the bus makes the other
- * steps of the wires meaningless. */
+/* Steps of the test. `found` is the result of Lines_find: one bit for each channel that works; 0 if
+ * the tester does not answer. */
+/* Finds stuck lines and shorts, without the FPGA. Returns 0 if another chip drives the bus, because
+ * the other steps for the wires would then be meaningless. */
 int Lines_testAlone(U32 found);
-void Lines_testThrough(U32 found); /* open, swapped and inverted lines */
-void Lines_testClock(void);        /* the FPGA's clock, and the edges of NWE */
-void Lines_testModem(void);        /* the wires between FPGA and modem */
+void Lines_testThrough(U32 found); /* finds open, swapped and inverted lines */
+void Lines_testClock(void);        /* tests the FPGA's clock and the edges of NWE */
+void Lines_testModem(void);        /* tests the wires between FPGA and modem */

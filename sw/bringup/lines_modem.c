@@ -34,7 +34,7 @@ static Levels levelsOf(const Pins* pins) {
     return l;
 }
 
-/* Drives an additional pin. Level 2 releases the pin. */
+/* Sets the level with which the tester must drive a pin; level 2 releases the pin. */
 static void set(U32 pin, U32 level) {
     Pins_set(&lines_enable, pin, level != 2U);
     Pins_set(&lines_value, pin, level == 1U);
@@ -72,7 +72,7 @@ static U32 levelOf(const Levels* levels, U32 pin) {
                             : levels->reset;
 }
 
-/* Drives a pin to both levels and reads it back. Returns 0 if it is stuck. */
+/* Drives a pin to both levels and reads the levels back. Returns 0 if the pin is stuck. */
 static int follows(U32 pin) {
     U32 level;
     for (level = 0; level < 2U; ++level) {
@@ -88,7 +88,8 @@ static int follows(U32 pin) {
     return 1;
 }
 
-/* Tests a line to the modem, whose pull-up slowly raises the line after it was driven low. */
+/* Tests a line to the modem. After the tester has driven the line low and released it, the modem's
+ * pull-up must slowly raise it. */
 static void testOutput(U32 pin) {
     if (!follows(pin))
         return;

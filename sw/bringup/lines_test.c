@@ -14,7 +14,7 @@
 #include "timing.h"
 
 #define SETTLE_US 20U /* settling time: an open line of 100 pF with a pull of 40 kOhm */
-/* one bit more than needed, so that no number is the inverse of another number */
+/* one bit more than the numbers need, so that no number is the inverse of another one */
 #define CODE_BITS 7U
 #define CODE_MASK 127U
 #define NONE 255U
@@ -32,7 +32,7 @@ typedef enum Fate {
 } Fate;
 
 static U8 fate[LINES];
-/* arrives[i]: the line whose number has arrived at the FPGA's pin of line i */
+/* arrives[i]: the FPGA's pin for line i has received the number of the line arrives[i] */
 static U8 arrives[LINES];
 
 /* Returns whether only the FPGA drives this line in operation. Such a line may contain a buffer. */
@@ -40,7 +40,8 @@ static int isOutput(U32 line) {
     return line == LINE_NWAIT || line == LINE_IRQ;
 }
 
-/* Returns 1 if another part holds this line against the pulls of the microcontroller. */
+/* Returns 1 if the line does not follow the pulls of the microcontroller, because another part
+ * holds its level. */
 static int isHeld(U32 line) {
     return fate[line] == STUCK || fate[line] == PULLED || fate[line] == DRIVEN_LOW ||
            fate[line] == DRIVEN_HIGH;
@@ -77,7 +78,8 @@ static void reportStuck(U32 line, int high) {
                     "a short to ground, or another part that drives it");
 }
 
-/* Drives a line against the level that it keeps. Returns 1 if the line takes the new level. */
+/* Drives a line that has the same level with a pull-up and with a pull-down, to the other level
+ * `high`. Returns 1 if the line follows. */
 static int follows(U32 line, int high) {
     int now;
     Lines_drive(line, high);
@@ -94,8 +96,8 @@ static void reportPulled(U32 line, int high) {
                 "another part on the line: an LED, a resistor, a solder bridge that is not open");
 }
 
-/* `found` is not 0 if the tester answers; the tester can then detect an inverter in a line that it
- * drives. */
+/* `found` is not 0 if the tester answers. A held line that the FPGA drives is then not reported
+ * yet: a later step with the tester can distinguish it from an inverted line. */
 static void testStuck(U32 found) {
     U8 down[LINES], up[LINES];
     U32 i;
@@ -141,9 +143,9 @@ static void testShorts(void) {
     Timing_wait(SETTLE_US);
 }
 
-#define LEAST_DRIVEN 4U /* data lines; fewer may be shorted to NE1 or NOE */
+#define LEAST_DRIVEN 4U /* fewer driven data lines may be shorts to NE1 or NOE */
 
-/* Returns the data lines that another chip drives while NE1 and NOE are low. */
+/* Returns the number of data lines that another chip drives while NE1 and NOE are low. */
 static U32 drivenWhenSelected(void) {
     U8 apart[LINES], selected[LINES];
     U32 i, driven = 0, pull;
@@ -200,8 +202,8 @@ static int failExchange(void) {
     return 0;
 }
 
-/* Sends numbers from the microcontroller, and fills `first` and `second` with the numbers that each
- * pin of the FPGA has received in the normal and the inverted passes. */
+/* Sends the number of each line from the microcontroller: first normal, then inverted. Fills
+ * `first` and `second` with the numbers that the pins of the FPGA have received. */
 static int sendCodes(U8* first, U8* second) {
     Answer answer;
     U32 i, pass;
@@ -224,8 +226,8 @@ static int sendCodes(U8* first, U8* second) {
     return 1;
 }
 
-/* Sends numbers from the FPGA on the lines that it drives in operation; the microcontroller listens
- * on all. */
+/* Makes the FPGA send the numbers of the lines that it drives in operation. The microcontroller
+ * reads all lines. */
 static int receiveCodes(U8* first, U8* second) {
     Answer answer;
     U32 i, pass;
@@ -293,7 +295,7 @@ static void judgeSent(const U8* first, const U8* second) {
 #define ADDRESS_LINES 25U
 #define LEAST_SHIFTED 4U
 
-/* Finds address lines that are all wired to the next number. */
+/* Detects whether the address lines are all wired to the next address pin, for example A0 to A1. */
 static void testShift(void) {
     U32 i, count = 0;
     for (i = LINE_A0 + 1U; i < LINE_A0 + ADDRESS_LINES; ++i)
@@ -308,7 +310,7 @@ static void testShift(void) {
                 "that A0 goes to A0: with 16 bits of data, A0 is the address of a halfword");
 }
 
-/* Looks for lines of the FPGA that arrive at another line. */
+/* Finds lines that the FPGA drives and that arrive at the microcontroller's pin of another line. */
 static void judgeReceived(const U8* first, const U8* second) {
     U32 i, from;
     for (i = 0; i < LINES; ++i) {

@@ -35,7 +35,7 @@ static const char* numbered(const char* text, U32 number) {
     return name;
 }
 
-/* Reads once with NWAIT, which reports an error if the memory never answers. */
+/* Reads once with NWAIT. If the memory never answers, this read ends with an error. */
 static int isCalibrated(void) {
     static const Bus_Timing patient = {15, 60, 0, 1};
     U32 event;
@@ -54,7 +54,8 @@ static void flush(void) {
     (void)Bus_read(MAP_SLOT_SYSTEM, SYSTEM_ID);
 }
 
-/* Returns the bits that differ in every beat of a burst of `pattern` and its inverse. */
+/* Writes a burst in which `pattern` and its inverse alternate, and reads it back. Returns the bits
+ * that were wrong in at least one beat. */
 static U32 dataErrors(U16 pattern, U32* ones, U32* zeros) {
     U32 beat, seen, wrong = 0;
     for (beat = 0; beat < BEATS; ++beat)

@@ -8,14 +8,13 @@
 
 typedef struct Timing_Clock {
     U32 hclkHz;
-    int isCrystal; /* 0 if the crystal does not oscillate; the internal oscillator is used then */
+    int isCrystal; /* 0 if the crystal does not oscillate, and the internal oscillator is used */
 } Timing_Clock;
 
 /* Switches to the highest clock that the board allows, 120 MHz. */
 const Timing_Clock* Timing_start(void);
-/* Switches HCLK to `hz`, 20 to 120 MHz in steps of 1 MHz. The bus timings, in cycles, do not
- * change.
- */
+/* Switches HCLK to `hz`, 20 to 120 MHz in steps of 1 MHz. The bus timings keep their numbers of
+ * cycles. */
 void Timing_setHclk(U32 hz);
 U32 Timing_mhz(void); /* HCLK */
 /* Waits for at least this number of HCLK cycles. */

@@ -9,13 +9,14 @@
 
 #include "base.h"
 
-/* Starts the watchdog. `ms` is the time without a refresh after which it resets, 8 to 32000; the
- * error of its oscillator is up to 50 %. */
+/* Starts the watchdog. `ms` is the time without a refresh after which the watchdog resets the
+ * processor, 8 to 32000. The error of this time is up to 50 %, because of the watchdog's
+ * oscillator. */
 void Watchdog_start(U32 ms);
 /* Refreshes the watchdog. */
 void Watchdog_feed(void);
 /* Stores the name of the current step. */
 void Watchdog_enter(const char* step);
-/* Returns the step that hung if the watchdog has caused the last reset, or 0. A second call returns
- * 0. */
+/* Returns the step that hung, if the watchdog has caused the last reset; otherwise returns 0. A
+ * second call returns 0. */
 const char* Watchdog_hungStep(void);

@@ -40,8 +40,8 @@
     x2 = ~y2;
 
 /* XORs a word with itself rotated right by m and by n. (l, h) and (k, i) are the halves of the
- * word, low half first, for the two rotations. For a rotation by more than 32, the halves are
- * exchanged and the number is reduced by 32. */
+ * word, low half first, for the two rotations. For a rotation by more than 32, the caller passes
+ * the halves in the opposite order, and the rotation minus 32. */
 #define DIFFUSE(low, high, l, h, m, k, i, n)   \
     y0 = JOIN(JOIN(low, l, h, m), k, i, n);    \
     high = JOIN(JOIN(high, h, l, m), i, k, n); \

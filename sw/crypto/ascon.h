@@ -40,5 +40,6 @@ void Ascon_end(Ascon* ascon, const U8* key, U8* tag);
 /* Returns 1 if the bytes are equal. The time does not depend on where they differ. */
 int Ascon_isSame(const U8* a, const U8* b, U32 size);
 
-/* Overwrites bytes with zeros, even if the compiler sees no later read of them. */
+/* Overwrites bytes with zeros. The compiler does not remove these writes, even if nothing reads the
+ * bytes later. */
 void Ascon_wipe(void* bytes, U32 size);

@@ -84,8 +84,8 @@ static void multiply(U16* r, const U16* a, const U16* b) {
     fold(r, carry);
 }
 
-/* Multiplies by A24, which has 17 bits: multiplies by the lower 16 bits of A24, and adds the number
- * shifted by one word for bit 16. */
+/* Multiplies a number by A24, which has 17 bits: multiplies by the lower 16 bits of A24; then, for
+ * bit 16, adds the number shifted by one word. */
 static void multiplyA24(U16* r, const U16* a) {
     U32 carry = 0;
     U32 below = 0;
@@ -124,7 +124,7 @@ static void exchange(U16* a, U16* b, U32 isWanted) {
     }
 }
 
-/* Reduces a number below p: replaces bit 255 by 19, then subtracts p if the result is not
+/* Reduces a number modulo p: replaces bit 255 by 19, then subtracts p unless the result would be
  * negative. */
 static void normalize(U16* r) {
     Number less;
@@ -146,8 +146,8 @@ static void normalize(U16* r) {
     r[WORDS - 1] &= 0x7FFFU;
 }
 
-/* The variables of the Montgomery ladder, named as in RFC 7748; `da` doubles as c, and `cb` as d.
- */
+/* The variables of the Montgomery ladder, named as in RFC 7748. The variable `da` also holds C, and
+ * `cb` also holds D. */
 typedef struct Ladder {
     Number x1, x2, z2, x3, z3, a, b, da, cb;
 } Ladder;

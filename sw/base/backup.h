@@ -11,7 +11,7 @@
 #include <stddef.h>
 
 #define BACKUP_KEY_WORDS 4U
-#define BACKUP_SLOTS 2U /* keys of a peer: the one in use and the next one */
+#define BACKUP_SLOTS 2U /* slots for the keys of a peer: the current key and the next key */
 #define BACKUP_OTHERS 3U
 /* value of `flight` while the vehicle flies; any other value means that it is on the ground */
 #define BACKUP_FLYING 0x464C5921U
@@ -24,8 +24,8 @@ typedef struct Backup_Slot {
 typedef struct Backup_Keys {
     Backup_Slot slots[BACKUP_SLOTS];
     /* number of the slot with the next key. For the first ground station, this word also stores
-     * whether the vehicle accepts links without a key. For the group, it is the number of the
-     * newest call to all vehicles instead. */
+     * whether the vehicle accepts links without a key. In the entry of the group, this word is
+     * instead the number of the newest call to all vehicles. */
     U32 state;
 } Backup_Keys;
 

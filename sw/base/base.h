@@ -10,6 +10,7 @@ typedef unsigned int U32;
 typedef signed short S16;
 typedef signed int S32;
 
-/* These lines do not compile if the integer types of the compiler have other widths. */
+/* Compile-time check of the integer types: each line fails to compile if its type has another
+ * width. */
 typedef char base_check_u16[sizeof(U16) == 2 ? 1 : -1];
 typedef char base_check_u32[sizeof(U32) == 4 ? 1 : -1];

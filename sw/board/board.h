@@ -6,7 +6,8 @@
 
 #include "fsmc.h"
 
-/* Port of the FSMC driver to this processor's loads and stores; the context is not used. */
+/* Functions with which the FSMC driver makes loads and stores on this processor. They do not use
+ * the context. */
 extern const FSMC_Port board_fsmc;
 
 /* Configures the clock (120 MHz), the flash wait states and the pins of the FSMC; board_pins.h
@@ -18,7 +19,7 @@ int Board_isWired(void);
 /* Starts SysTick, the FPGA's interrupt and the watchdog. Call this with interrupts masked, before
  * OSStart. */
 void Board_startInterrupts(void);
-/* Serves the watchdog. It resets the processor if it is not served for one second. */
+/* Refreshes the watchdog, which resets the processor after one second without a refresh. */
 void Board_serveWatchdog(void);
 /* Returns the priority of the running task; 255 before the first task runs. */
 U32 Board_task(void);

@@ -11,7 +11,7 @@
 
 #define MAGIC 0x1CE50C01UL
 
-/* symbols from firmware.ld; the checksum is the word at image_end */
+/* symbols that firmware.ld defines; the word at image_end is the checksum */
 extern U32 image_begin[], image_end[];
 
 Boot_Record boot_record __attribute__((section(".noinit")));

@@ -16,10 +16,10 @@
 typedef enum Boot_Reason {
     BOOT_POWER_ON = 1,
     BOOT_SOFTWARE = 2,       /* a software reset was requested, without a fault */
-    BOOT_WATCHDOG = 3,       /* the watchdog was not served for one second */
+    BOOT_WATCHDOG = 3,       /* the watchdog was not refreshed for one second */
     BOOT_IMAGE_CORRUPT = 4,  /* the checksum of the image is wrong: the firmware did not start */
     BOOT_STACK_OVERFLOW = 5, /* a task overflowed its stack */
-    BOOT_BUS_FAULT = 6,      /* a bus access was not answered */
+    BOOT_BUS_FAULT = 6,      /* a bus access got no response */
     BOOT_USAGE_FAULT = 7,    /* an undefined instruction was executed */
     BOOT_HARD_FAULT = 8,
     BOOT_NO_FPGA = 9, /* the system slot does not respond; used only in Boot_record */

@@ -14,8 +14,8 @@
 /* Never executable, read-only (OSTaskStkChk reads it), 2^(4+1) bytes, enabled. */
 #define GUARD_RASR (1UL << 28 | 5UL << 24 | 4UL << 1 | 1UL)
 
-/* Makes the lowest 32 bytes of a stack (aligned to 32) read-only; 0 removes the guard. Called at
- * each task switch with interrupts disabled. */
+/* Makes the lowest 32 bytes of a stack, aligned to 32, read-only; a `bottom` of 0 removes this
+ * guard. Called at each task switch with interrupts disabled. */
 static void Guard_place(const OS_STK* bottom) {
     if (!bottom) {
         MPU_CTRL = 0;

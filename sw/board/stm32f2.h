@@ -81,7 +81,8 @@
 #define RNG_SR_SEIS (1UL << 6)
 #define RNG_DR REG(0x50060808UL)
 
-/* Power control (RM0033, 4.4), and the 4 KiB backup SRAM kept by VBAT (4.1.2), in words. */
+/* Power control (RM0033, 4.4), and the 4 KiB of backup SRAM, as words; VBAT supplies this SRAM
+ * (4.1.2). */
 #define PWR_CR REG(0x40007000UL)
 #define PWR_CR_DBP (1UL << 8) /* DBP: write access to the backup domain */
 #define PWR_CSR REG(0x40007004UL)

@@ -8,6 +8,6 @@
 #define CPU_CFG_KA_IPL_BOUNDARY 4u
 #define CPU_CFG_NVIC_PRIO_BITS 4u
 
-/* Replaces OSTaskPrio of our kernel: returns a number that differs between tasks and does not
- * change when a task inherits a priority. */
+/* Replaces OSTaskPrio of our kernel: returns a number of the running task. The number is different
+ * for each task, and does not change when the task inherits a priority. */
 #define OSTaskPrio() ((INT8U)(OSTCBCur - OSTCBTbl))

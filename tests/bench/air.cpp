@@ -2,10 +2,10 @@
 //
 // air: measures the radio link over two modems and the air between them, without chip and kernel:
 // goodput in one direction and in both directions at the same time, and round trips, unencrypted
-// and encrypted (docs/link.md). Both modems are in API mode, unless --api selects another number.
-// The ground modem uses 111,111 baud and the vehicle modem 250,000, as with the firmware. Goodput
-// in one direction is measured from ground to vehicle. If calls are measured during a picture
-// transfer, the vehicle sends the pictures.
+// and encrypted (docs/link.md). The option --api sets how many of the modems are in API mode
+// (default: both). The ground modem uses 111,111 baud and the vehicle modem 250,000, as with the
+// firmware. Goodput in one direction is measured from ground to vehicle. If calls are measured
+// during a picture transfer, the vehicle sends the pictures.
 
 #include "figures.h"
 #include "modem_pair.h"
@@ -41,8 +41,8 @@ public:
     // echoSize: size of the reply to a call, bytes; called: number of messages received on channel
     // `calls`
     U32 echoSize = 0, called = 0;
-    // bytes: number of bytes received on channel `pictures`; lastAt: time of the last of them;
-    // calledAt: time of the last call
+    // bytes: number of bytes received on channel `pictures`; lastAt: time at which the last of them
+    // arrived; calledAt: time of the last call
     uint64_t bytes = 0, lastAt = 0, calledAt = 0;
     bool feed = false; // true: pictures are sent continuously
     // Queues pictures for sending; all bytes of a picture are its number.
@@ -90,8 +90,8 @@ public:
 
 Figures figures("The radio link on a half-duplex air with the modems' own limits.");
 
-// Returns the number of bytes per second that arrive at both modems together, measured for this
-// time.
+// Sends for `seconds`, from the first end or (`both`) from both ends. Returns the number of bytes
+// per second that arrive at the two ends together.
 double flow(AirPair& w, bool both, uint64_t seconds) {
     const uint64_t start = w.now;
     w.until(
@@ -109,8 +109,8 @@ double flow(AirPair& w, bool both, uint64_t seconds) {
     return rate;
 }
 
-// Returns the number of bytes per second that modems and air can transfer in this weather, with the
-// best RN. A key of the link does not change this limit.
+// Returns the largest number of bytes per second that the modems can transfer in this weather, over
+// all values of RN. A key of the link does not change this limit.
 double limitOf(const std::string& what, const RfWeather& weather, bool isEncrypted, bool both) {
     static std::map<std::string, double> known;
     double& most = known[what + (isEncrypted ? ", encrypted" : "") + (both ? ", both ways" : "")];
@@ -203,7 +203,7 @@ void roundTrips(Mode mode) {
         const U32 check = mode == Keyed || size <= LINK_UNCHECKED ? 0 : LINK_CHECK;
         const U32 frames = size + check + overhead > packet ? 2 : 1;
         const U32 onLine = size + check + frames * overhead;
-        // The reply has one byte more, because it also contains the acknowledgement.
+        // The reply is one byte longer than the call, because it also contains the acknowledgement.
         const double floor = floorMs(onLine, onLine + 1, mode == Encrypted);
         figures.add("round trip of " + std::to_string(size) + " bytes " + names[mode], median, "ms",
                     floor);
@@ -211,7 +211,7 @@ void roundTrips(Mode mode) {
 }
 
 // Measures MAVLink 2's COMMAND_LONG and COMMAND_ACK, sent as plain bytes without retransmission
-// over the same air. With a key, they are signed.
+// over the same air. With a key, these messages are signed.
 void peers(Mode mode) {
     const bool isSigned = mode == Keyed;
     const double ms = floorMs(isSigned ? 58 : 45, isSigned ? 35 : 22, mode == Encrypted);
@@ -227,7 +227,7 @@ void headOfLine(Mode mode) {
     for (double loss : {0.0, 0.1}) {
         RfWeather weather;
         weather.loss = loss;
-        double median[2] = {0, 0}, late = 0; // late: time that one of twenty calls exceeds
+        double median[2] = {0, 0}, late = 0; // late: 95th percentile
         for (bool isBusy : {false, true}) {
             AirPair w(weather, mode);
             w.b.feed = isBusy;

@@ -47,7 +47,7 @@ def seconds(*words):
 
 def first_test(build, brief):
     """Measures two durations: the test of fir in a fresh clone, and Verilator alone, with the same
-    core and a minimal program. Brief: the test in this build instead of a clone."""
+    core and a minimal program. With --brief, runs the test in this build instead of in a clone."""
     source = Path(__file__).resolve().parents[2]
     with tempfile.TemporaryDirectory() as work:
         clone, words = Path(work, "icesoc"), []

@@ -7,7 +7,7 @@ and `firmware` have written. Benches in Python write their files with the functi
     figures.py OUTPUT.md FILE.json...
 
 A file is a list of entries, or an object with this list in "entries". An entry has name, value and
-unit. It may also have limit and share (value / limit; gross: value / a limit that includes
+unit. It may also have limit and share (value / limit), gross (value / a limit that includes
 overhead), or peer and ratio.
 """
 import datetime
@@ -79,7 +79,9 @@ def compared(entry):
 
 
 def split(name):
-    """Splits a name. Returns the name without its first axis, and the text of this axis."""
+    """Finds the part of a name that one of the patterns AXES matches, such as "5 vehicles". Returns
+    (the pattern, the rest of the name) and this part; (None, name) and None if no pattern
+    matches."""
     for axis in AXES:
         found = re.search(f",? ({axis})", name)
         if found:
@@ -89,7 +91,8 @@ def split(name):
 
 def tables(rows):
     """Returns the lines of the tables for rows of (name, value, unit, compared)."""
-    # series: cells by axis and by the rest of the name; plain: rows without an axis
+    # series: the cells of each row with several columns, by pattern, rest of the name and unit;
+    # plain: a row for each single figure, with the cells of its series
     series, plain = {}, []
     for name, value, unit, limit in rows:
         key, column = split(name)

@@ -2,8 +2,9 @@
 //
 // firmware: measures the cost of the firmware on the Cortex-M3, while it flies against the RTL.
 //
-// Cycles are those of the board: processor cycles, and for accesses the HCLK cycles at the FSMC
-// pins (the simulator's fabric is slower than the board's, but its pins keep the ratio of 6 to 5).
+// Figures are in cycles of the board: processor cycles and, during an access, HCLK cycles at the
+// FSMC pins. (The simulated fabric is slower than the board's. As on the board, however, HCLK at
+// its pins is 1.2 times as fast as the fabric's clock.)
 
 #include "figures.h"
 #include "ground.h"
@@ -54,8 +55,8 @@ public:
         ground.replies.clear();
         until(ground.calling(calls), seconds, "the calls");
     }
-    // awake: cycles on the board in which the processor was awake; the other functions return the
-    // part in which it computed and the part in which it waited for the FSMC.
+    // awake: number of board cycles in which the processor did not sleep; own: the part of them in
+    // which it computed; waiting: the part in which it waited for the FSMC.
     double awake() { return own() + waiting(); }
     double waiting() { return static_cast<double>(cpu().busCycles()) / warp; }
     double own() {
@@ -90,8 +91,7 @@ private:
 
 constexpr double hclkPerClk = 1.2;
 constexpr double entering = 12,
-                 // cycles of exception entry and exit, which are added to the cycles between the
-                 // calls of the listener
+                 // cycles of exception entry and exit, which pass after the call of the listener
     leaving = 10;
 constexpr unsigned fpgaInterrupt = FirstInterrupt + 6; // EXTI0
 constexpr uint8_t fpgaPriority = 0x50;
@@ -221,7 +221,7 @@ void measureStream(MeasuredFlight& f, const std::string& what) {
             f.ground.call(0, "missing", "listen", 0, load);
         return false;
     };
-    double end = f.seconds() + 1; // time at which calls have been in progress long enough
+    double end = f.seconds() + 1; // the measurement begins after a second of calls
     f.until([&] { return feed() || f.seconds() > end; }, 3, "the stream");
     double awake = f.awake(), waiting = f.waiting(), began = f.seconds();
     bytes = f.ground.deliveredBytes;

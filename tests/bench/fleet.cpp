@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// fleet: measures calls per second on one channel, to several vehicles. They are called one after
-// the other or all at once, by one ground station, by one ground station for each vehicle, or by
-// two ground stations that share the vehicles. Links, modems in API mode and air are the same as in
-// air.cpp; the links of a ground station share its modem, as in the engine.
+// fleet: measures calls per second on one channel, to several vehicles. The vehicles are called one
+// after the other or all at once. The callers are one ground station, one ground station per
+// vehicle, or two ground stations that share the vehicles. Links, modems in API mode and air are
+// the same as in air.cpp; the links of a ground station share its modem, as in the engine.
 
 #include "figures.h"
 #include "modem_pair.h"
@@ -24,7 +24,7 @@ public:
         : ModemEnd(air, options(address, isGround), seed, targets), isGround_(isGround),
           calls_(targets.size()) {
         for (size_t i = 0; i < peers(); ++i) {
-            // number of the vehicle, which has a key of its own
+            // number of the vehicle; each vehicle has a different key
             const int vehicle = isGround ? targets[i] : address;
             const std::vector<U8> key(LINK_KEY_BYTES, static_cast<U8>(vehicle));
             if (isKeyed)

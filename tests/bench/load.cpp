@@ -22,7 +22,7 @@ double residentKiB(const std::string& process) {
     return static_cast<double>(resident) * 4;
 }
 
-// Programs in this process that use the engine, eight at a time. Each call has a number of its own.
+// Programs in this process that use the engine, eight at a time. No two calls have the same number.
 class Programs {
 public:
     Programs(unsigned programs, unsigned calls)

@@ -301,7 +301,7 @@ struct BareModems {
 
 // Returns the lower limit of a round trip on half-duplex air (formula in docs/link.md), ms, as the
 // median of simulated trips. `out` bytes are sent; after the last of them has arrived, `back` bytes
-// are returned. Each of the two fits into one packet. RN is 2.
+// are returned. Each of these two messages fits into one packet. RN is 2.
 inline double floorMs(size_t out, size_t back, bool isEncrypted = false) {
     BareModems w(RfWeather(), 1, isEncrypted, 2);
     const std::vector<uint8_t> bytes(std::max(out, back), 1);

@@ -57,7 +57,7 @@ public:
         std::snprintf(name, sizeof name, "Ice, goodput %s %s, loss %.2f",
                       down ? "UAV to ground" : "ground to UAV", modes[hasKey_], loss);
         figures_.add(name, rate, "bytes/s", mostBytesPerSecond);
-        echo_->ice_ping(); // after this call no late message can disturb the next measurement
+        echo_->ice_ping(); // when it returns, no late message can disturb the next figure
     }
 
     // Makes small calls, one after another. Returns their durations in ms, sorted.
@@ -73,8 +73,9 @@ public:
         std::sort(ms.begin(), ms.end());
         return ms;
     }
-    // Measures round trips. `out` and `back` are the numbers of bytes of the two frames
-    // (docs/link.md, heads of Ice messages); the reply also contains the acknowledgement.
+    // Measures round trips. `out` and `back` are the sizes of the request's frame and of the
+    // reply's frame in bytes, without overhead and without the acknowledgement (docs/link.md, heads
+    // of Ice messages).
     void roundTrip(const char* what, size_t out, size_t back, const std::function<void()>& call) {
         const size_t overhead = hasKey_ ? LINK_SECURE_OVERHEAD : LINK_OVERHEAD;
         const auto ms = times(31, call);

@@ -72,7 +72,7 @@ class Try(Trial.Try):
     def refuse(self, current=None):
         raise ValueError("no reason")
 
-    def unreachable(self, current=None):  # as a gateway without a modem answers
+    def unreachable(self, current=None):  # the answer of a gateway without a modem
         raise Ice.UnknownLocalException(
             "icesoc-gateway: cannot reach the vehicle: the modem is lost; see the log")
 

@@ -334,8 +334,7 @@ class Mistakes(Work):
         run.send_signal(2)
         self.assertEqual(run.communicate()[1], "icesoc: stopped\n")
         self.assertEqual(run.returncode, 130)
-        # A child that had just been started may receive the signal about its parent's end a little
-        # later.
+        # If the child had just been started, it may end a little later than its parent.
         while Path("/proc", child.read_text().strip()).exists():
             time.sleep(0.01)
 

@@ -41,8 +41,8 @@ def workflows(tree):
 
 
 def linked(tree):
-    """Fills a folder with links to the entries of this tree, but with folders ip and build of its
-    own. Returns this folder."""
+    """Fills a folder with links to the entries of this tree, but with separate folders ip and
+    build. Returns this folder."""
     for path in TREE.iterdir():
         if path.name not in ("build", "ip", ".git"):
             (tree / path.name).symlink_to(path)
@@ -61,8 +61,8 @@ def entries(tree):
 
 class Cases(Script):
     def test_repository_in_chip(self):
-        """A build folder keeps the cores of a repository, and the list of the repository, until a
-        command names other cores."""
+        """A command can name a repository of cores. The build folder then uses the cores and the
+        list of this repository, until a later command names other cores."""
         work = fresh(WORK)
         mine, list_ = work / "mine", work / "mine/cores.list"
         for name in "first", "second":
@@ -164,7 +164,7 @@ class Cases(Script):
         self.has("^changed$", file=mine / ".gitlab-ci.yml")
         self.ask(*new, "second", status=2)
         self.has("second already exists")
-        # The same for a repository with a third-party core, whose files are found wherever the
+        # A repository can also contain a third-party core, whose files are found wherever the
         # repository is.
         (mine / "others").mkdir()
         shutil.copy(TREE / "tests/ip/new_foreign/wb_port.v", mine / "others")

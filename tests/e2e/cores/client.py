@@ -152,7 +152,7 @@ with Ice.initialize(data) as ic:
     expect("my_lamps", [lamps.get("REG0"), lamps.get("REG1"), lamps.get("REG1")], [0x1234, 1, 2])
     expect("port.wait, still high", waits.result(), ["CORE"])
 
-    # A core that has more words than a slot, so that some words are accessed through PAGE.
+    # This core has more words than a slot, so some of its words are accessed through PAGE.
     many = Demo.ManyPrx.checkedCast(ic.stringToProxy("many" + where))
     for seed in (1, 1000003):
         p, q = ([(seed * i * 0x123456789ABCDEF + i & 2**64 - 1) - 2**63 for i in range(n, n + 5)]

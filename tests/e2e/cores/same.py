@@ -11,7 +11,8 @@ from icesoc.cores.replay import read_vcd
 
 
 def clocks(moments, keys, clock_of):
-    """Returns the values of the signals with these keys in each clock that `moments` contains."""
+    """Returns {clock: {key: value}} for the signals with these keys. `moments` is a list of pairs
+    of a time and the changes at this time; `clock_of` returns the clock to which a time belongs."""
     values, found = dict.fromkeys(keys), {}
     for time, changes in moments:
         values = {key: int(changes[key], 2) if key in changes and "x" not in changes[key] else old

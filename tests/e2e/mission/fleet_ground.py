@@ -4,13 +4,14 @@
 states from a second ground station, until a given simulated time. Then each vehicle has to answer
 once more. At the beginning, one call to all vehicles starts the first frame of each.
 
-    fleet_ground.py '{"out": FOLDER, ...}'      words_of writes all options
+    fleet_ground.py '{"out": FOLDER, ...}'      words_of() writes all options
 
 For each vehicle, FOLDER/fleet.json contains the numbers of frames that were started, answered and
-reported, and the states that the second ground station received, with their times. With "new_key",
-the vehicle "changed" first gets its next key, and must accept only this key at the end. With
-"rival", the second ground station starts at that time, and has the address and key of the first
-ground station."""
+reported. It also contains the times at which the second ground station received a state, each with
+the vehicle's address. If "changed" is the address of a vehicle, the key file also contains the next
+key of this vehicle, "new_key"; at the end, the vehicle must accept this key only. If "rival" is not
+0, it is the time at which the second ground station starts, and this station has the address and
+the key of the first one."""
 
 import json
 import os
@@ -169,8 +170,8 @@ class Ground:
         observer.destroy()
 
     def call_all(self):
-        """Starts a frame in each vehicle with one call, once all vehicles have sessions. When the
-        communicator has been destroyed, the call has been sent."""
+        """Starts a frame in each vehicle with one call, once all vehicles have sessions. Destroying
+        the communicator waits until the call has been sent."""
         for address in range(1, self.args.vehicles + 1):
             self.proxy("uav", address).ice_ping()
         ic = self.communicator(self.args.device, self.args.key)
@@ -181,8 +182,8 @@ class Ground:
         ic.destroy()
 
     def keep_new_key(self):
-        """Calls the vehicle `changed` with its new key, as change_key.py does; from then on the
-        vehicle accepts only this key. Returns an error message, or an empty text."""
+        """Calls the vehicle `changed` with its new key, as change_key.py does; after that, the
+        vehicle accepts only this key. Returns the error, or None."""
         lines = Path(self.args.key).read_text().split("\n")
         lines[self.args.changed - 1] = f"0x{self.args.changed:04x} {self.args.new_key}"
         Path(self.args.key).write_text("\n".join(lines))

@@ -28,7 +28,7 @@ module memories_proof (
         .bus_addr_i(addr_i), .bus_wdata_i(wdata_i), .fill_result_base_o(middle_base),
         .fill_result_count_i(13'd4096), .fill_done_i(1'b0), .fill_refused_i(1'b0));
 
-    (* anyconst *) reg [31:0] little, middle; // base addresses that were allocated for the list
+    (* anyconst *) reg [31:0] little, middle; // base addresses, as allocated by coremap
     always @* begin
         assume (little[LITTLE-1:0] == 0 && middle[MIDDLE-1:0] == 0);
         assume (little + 33'd128 <= middle || middle + 33'd4096 <= little);

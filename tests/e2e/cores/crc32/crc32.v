@@ -19,7 +19,7 @@ module crc32 (
     reg  [31:0] crc;
     wire        read_valid, read_idle;
     wire [63:0] read_data;
-    // a transfer of an aborted call may still be in progress
+    // waits for read_idle, because a transfer of an aborted call may still be in progress
     wire        go   = busy && !begun && read_idle;
     wire        take = begun && read_valid;
     wire        done = begun && left == 13'd0;
@@ -34,7 +34,8 @@ module crc32 (
     wire write_ready, write_idle;
     npi_stream u_stream (
         `include "memory_connect.vh"
-        // not core_rst: words that were requested must be received even after a reset of the core
+        // rst_i instead of core_rst: requested words must be received even after a reset of the
+        // core
         .clk_i(clk_i), .rst_i(rst_i),
         .read_start_i(go && !core_rst), .read_base_i(base[31:6]),
         .read_words_i({14'd0, left[12:3]} + {23'd0, |left[2:0]}), .read_stop_i(core_rst),
@@ -44,7 +45,8 @@ module crc32 (
         .write_be_i(8'd0), .write_ready_o(write_ready), .write_flush_i(1'b0),
         .write_idle_o(write_idle));
 
-    // Returns the CRC of the earlier bytes, with CRC `old`, and the byte `value`.
+    // Returns the CRC of a message that ends with the byte `value`; `old` is the CRC of the bytes
+    // before it.
     function [31:0] with_byte(input [31:0] old, input [7:0] value);
         integer i;
         begin

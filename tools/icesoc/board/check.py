@@ -131,8 +131,8 @@ def twice(board: Board):
 
 
 def occupied(board: Board):
-    """Finds nets at a pin that the module uses itself, or that is not connected to a connector of
-    the module. A net is left out if another check reports it."""
+    """Finds nets at pins that the module itself uses, and nets at pins that are on no connector of
+    the module. Nets that another check reports are left out."""
     judged = {text.split(":")[0].removeprefix("net ")
               for check in (functions, balls, memory) for text in check(board)}
     opened = set(board.facts.get("open", []))
@@ -159,8 +159,8 @@ def occupied(board: Board):
 
 
 def loads(use, net: Net, end):
-    """Returns whether the part of the module on this pin does not drive the net but is only a load
-    for the output that drives it."""
+    """Returns whether the module's part at this pin is only a load, and the net is driven from this
+    end."""
     return use.get("load") and (net.signal.driver in (BOTH, MCU) if end == "mcu"
                                 else net.signal.driver in (BOTH, FPGA))
 
@@ -205,7 +205,8 @@ def levels(board: Board):
 
 
 def clocks(board: Board):
-    """Finds oscillators from which the clocks of the CPU and of the chip cannot be derived."""
+    """Finds oscillators with a frequency from which the clock of the CPU or of the chip cannot be
+    derived."""
     hse, clock = board.facts["mcu"].get("hse_hz"), board.facts["fpga"].get("clock_hz")
     if hse is None:
         yield "mcu.hse_hz: missing; the frequency of the microcontroller's clock in Hz"
@@ -242,7 +243,7 @@ CHECKS = (complete, functions, balls, memory, twice, occupied, levels, clocks, s
 
 def problems(board: Board):
     """Returns the problems of a board; the list is empty if the board can be built. If the
-    description says that facts are unknown, missing items are not reported."""
+    description has a list `unknown`, missing nets and unsuitable oscillators are not reported."""
     unknown = [f"unknown: {text}" for text in board.facts.get("unknown", [])]
     found = list(unknown)
     for check in CHECKS:

@@ -104,8 +104,8 @@ class Board:
 
     @property
     def modem(self):
-        """Returns the kind of the modem, in the form of the option --modem; None if the board has
-        no modem."""
+        """Returns the kind of the modem as a value of the option --modem; None if the board has no
+        modem."""
         return self.facts.get("modem", {}).get("profile")
 
     @property
@@ -135,14 +135,15 @@ def names(boards=BOARDS):
 
 
 def rows(path):
-    """Returns the rows of a file of facts, without comments."""
+    """Returns the rows of a CSV file of facts, without its comments."""
     lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
     return list(csv.DictReader(lines))
 
 
 def part_file(name, column, where, boards):
-    """Returns the path of a part's facts. `column` is a column that files of its kind have. Raises
-    Wrong if boards/parts has no such part of this kind; `where` starts the message."""
+    """Returns the path of a part's facts. `column` is the column by which files of this kind of
+    part are recognised. Raises Wrong if boards/parts has no part of this kind and name; `where`
+    starts the message."""
     known = {path.stem: path for path in sorted((boards / "parts").glob("*.csv"))
              if column in rows(path)[0]}
     if name not in known:
@@ -153,7 +154,7 @@ def part_file(name, column, where, boards):
 
 def read_module(name, part, where, boards):
     """Returns the Module with this name. Raises Wrong if boards/modules has no such module, or if
-    it has another part; `where` starts the message."""
+    the module has another part than `part`; `where` starts the message."""
     known = {path.stem: path for path in sorted((boards / "modules").glob("*.toml"))}
     if name not in known:
         raise Wrong(f"{where}.module: expected {' or '.join(known)}, got '{name}'"

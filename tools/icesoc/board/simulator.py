@@ -7,9 +7,9 @@ KNOWN = {signal.function for signal in SIGNALS.values() if signal.function.start
 
 
 def at_pin(pin, function):
-    """Returns the first alternate function of a pin that the board's signals use, even if the net
-    expects another one: a wire at the wrong pin carries the signal of that pin. Returns `function`
-    if the pin has no such function."""
+    """Returns the first alternate function of a pin that any signal of boards uses. The net may
+    expect another function: a wire at the wrong pin carries the signal of that pin. Returns
+    `function` if no signal uses a function of the pin."""
     return next((name for name in pin.functions if name in KNOWN), function or "-")
 
 

@@ -113,7 +113,7 @@ def bom(board: Board):
 
 
 def plain(text):
-    """Returns a text for Markdown: it cannot begin an HTML tag."""
+    """Returns a text, escaped so that it begins no HTML tag in Markdown."""
     return str(text).replace("<", "&lt;")
 
 

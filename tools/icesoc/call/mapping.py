@@ -87,8 +87,8 @@ class Mapping:
         return self.of(interface, "Prx").uncheckedCast(found)
 
     def outof(self, value, kind):
-        """Converts a value of stock Ice to a checked value. It consists of the types that JSON has,
-        except that bytes remain bytes."""
+        """Converts a value of stock Ice to a checked value, which consists of JSON's types and of
+        bytes."""
         if kind.endswith("*"):
             return None if value is None else str(value)
         if value is None or value is Ice.Unset:

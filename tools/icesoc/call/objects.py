@@ -33,14 +33,14 @@ def read_json(path):
 @dataclass
 class Object:
     identity: str
-    interface: str = ""  # name of the interface; empty if unknown: the object is then asked for it
+    interface: str = ""  # empty: unknown; the object is asked for its interface
     registers: str = ""  # path of the *.regs.json of the object's core
     core: str = ""  # name of the object's core and of the core's register block
 
 
 def only_interface(slices, files):
     """Returns the interface of a core's servant: the interface with the metadata [":hw"], or the
-    only interface of the files. Returns "" if neither is unique."""
+    only interface of the files. Returns "" if neither of the two is exactly one."""
     folders = {os.path.realpath(file) for file in files}
     found = [name for name in slices.interfaces()
              if os.path.realpath(slices.get(name)["file"]) in folders]

@@ -24,7 +24,7 @@ OBJECT = [{"name": "ice_ping", "result": "void", "parameters": [],
 
 
 def listed(words, most=12):
-    """Returns words separated by commas. Of many words, only the first `most` are listed."""
+    """Returns words separated by commas, but at most the first `most` of them."""
     words = list(words)
     more = f", ... ({len(words)} in all)" if len(words) > most else ""
     return ", ".join(words[:most]) + more

@@ -12,8 +12,7 @@ from icesoc.util.errors import Stop
 
 @dataclass
 class Target:
-    """The target of a call: properties of the communicator, and the part of a proxy after the
-    identity."""
+    """The target of a call: the properties of the communicator, and the address in proxies."""
     place: str  # for messages
     suffix: str = ""  # part of the proxy after the identity: ":tcp -h ..." or "@uav1"
     properties: dict = field(default_factory=dict)

@@ -67,7 +67,7 @@ def map_of(chip, base):
 
 
 def contract_of(block):
-    """Returns a hash of the properties of the registers on which software relies."""
+    """Returns a hash of the register properties on which software relies."""
     lines = [json.dumps(block.description["type"])]
     for r in block.own_registers:
         lines.append(f"{r.word} {r.page} {r.name} {r.access} {r.width}")
@@ -203,7 +203,7 @@ def constraints_of(chip):
 
 
 def waits(core):
-    """Returns whether a call of the servant of this core may wait for the core."""
+    """Returns whether an operation of the core's servant may wait for the core."""
     return not core.servant or core.servant.get("waits", True)
 
 

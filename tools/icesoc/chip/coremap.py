@@ -79,7 +79,7 @@ class Core:
     @property
     def clock_hz(self):
         """Returns the frequency of the core's separate clock, Hz. If the clock comes from a pin,
-        this is its highest frequency."""
+        returns the highest frequency of that clock."""
         return 100e6 / self.divide * self.multiply if self.multiply else self.own_clock
 
     def fail(self, text):
@@ -92,8 +92,7 @@ class Core:
 
 @dataclass
 class Slot:
-    """A slot that contains a block: a core or a part of the platform. It has the block's
-    *.regs.json."""
+    """A slot with its block, which is a core or a part of the platform."""
 
     name: str
     number: int
@@ -103,7 +102,7 @@ class Slot:
 
 
 class Chip:
-    """The cores of a list, with the resources that the chip gives each."""
+    """The cores of a list, with the resources that the chip assigns to each of them."""
 
     def __init__(self, text, base, manifests, descriptions):
         constants = {c["name"]: c["value"] for c in base["constants"]}

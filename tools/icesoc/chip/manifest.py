@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """manifest: reads a core's core.toml, the only description of the core (docs/hw-mapping.md).
 
-CMake gets the facts as code that sets variables, in a global property for each manifest:
-python -m icesoc.chip.manifest ip/fir/core.toml ip/probe/core.toml. Python programs use read() and
-block_of().
+For CMake, `python -m icesoc.chip.manifest ip/fir/core.toml ip/probe/core.toml` prints a global
+property for each manifest. Its value is CMake code that sets variables to the facts. Python
+programs use read() and block_of().
 """
 import json
 import re

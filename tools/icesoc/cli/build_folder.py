@@ -28,8 +28,8 @@ def writable(folder, otherwise):
 
 
 def cores_in(folder):
-    """Returns the folders of the cores in a folder: all cores of a repository, which has a
-    cores.list, or else the folder itself as the only core."""
+    """Returns the folders of the cores in a folder. A folder with a cores.list is a repository, and
+    has several cores. Any other folder is itself the only core."""
     return sorted(path.parent for path in folder.glob("*/core.toml")) \
         if (folder / "cores.list").is_file() else [folder]
 
@@ -58,8 +58,8 @@ class BuildFolder:
         return self
 
     def configure(self, *arguments):
-        """Runs CMake, unless the folder is configured. If the folder was made for another path,
-        CMake refuses it, so it is removed first."""
+        """Runs CMake, unless the folder is configured. A folder that was configured under another
+        path is removed first, because CMake would refuse it."""
         writable(self.folder, "the build is written there: use a clone of your own, or give "
                  "--build (BUILD=) a folder that you can write")
         cache = os.environ.get("XDG_CACHE_HOME") or os.path.join(os.environ["HOME"], ".cache")
@@ -75,8 +75,8 @@ class BuildFolder:
             if not (self / "build.ninja").exists():
                 run(["cmake", "-S", ".", "-B", self.folder, "-G", "Ninja", *arguments])
         commands = Path("compile_commands.json")
-        # Editors look for compile_commands.json in the tree. If the build folder is outside, the
-        # tree is not changed.
+        # Editors look for compile_commands.json in the tree. A build folder outside the tree does
+        # not change the tree.
         if not commands.exists() and self.folder.absolute().is_relative_to(Path.cwd()):
             with contextlib.suppress(OSError):
                 commands.unlink(missing_ok=True)
@@ -108,8 +108,8 @@ class BuildFolder:
             raise Stop("CMake refuses " + " ".join(words[1:-1]) + "\n" + "\n".join(reasons))
 
     def other_cores(self):
-        """Returns the folders of cores outside ip/ that the command names, otherwise those of the
-        earlier configuration."""
+        """Returns the folders of cores outside ip/: those that the command names or, if it names
+        none, those of the earlier configuration."""
         if self.core_folders == "none":
             return []
         folders = self.core_folders or self.cached("CORE_FOLDERS")
@@ -117,9 +117,9 @@ class BuildFolder:
                 for core in cores_in(Path(folder).absolute())]
 
     def chip_list(self):
-        """Returns the path of the list of the chip's cores: the cores.list of the first repository
-        among the folders that the command names, or ip/cores.list if the command leaves these
-        folders. Returns None if the command does not change the list."""
+        """Returns the path of the list of the chip's cores if the command changes it, otherwise
+        None. It is the cores.list of the first repository among the folders that the command names.
+        It is ip/cores.list if the command selects the cores of the tree again (`none`)."""
         if self.core_folders == "none":
             return Path("ip/cores.list").absolute() if self.cached("CORES") else None
         lists = (Path(folder).absolute() / "cores.list" for folder in self.core_folders.split(";"))

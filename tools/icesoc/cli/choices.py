@@ -47,7 +47,7 @@ def noun(function):
 
 @expecting("the name of a core")
 def cores(values=None):
-    """Returns the cores of the tree, and those in folders that this command or an earlier one
+    """Returns the cores of the tree, and the cores in folders that this or an earlier command
     named."""
     found = {path.parent.name for path in Path("ip").glob("*/core.toml")}
     if values is None:
@@ -113,7 +113,7 @@ def seeded(values=None):
 
 
 def blocks(values=None):
-    """Returns the folders of tests, in the form that --block takes."""
+    """Returns the folders of tests, as values of the option --block."""
     found = {path.parent.name for folder in ("tests", "ip")
              for path in Path(folder).rglob("CMakeLists.txt")}
     return sorted((found | set(cores())) - {"tests", "ip"})
@@ -134,9 +134,9 @@ def words_of_tests(values=None):
 
 
 def may_name_test(text, values):
-    """Returns whether a text may match a test. An expression always may. A plain word may if each
-    part of it occurs in the source of a test, or if cores outside the tree are used, because their
-    tests may have any name."""
+    """Returns whether a text may match a test. A regular expression may always match. A plain word
+    may match if each part of it occurs in the source of a test, or if the build has cores outside
+    the tree, because their tests may have any name."""
     from icesoc.cli.build_folder import BuildFolder  # the installed icesoc-call does not contain
                                                      # this module
     if not re.fullmatch(r"[A-Za-z]\w*", text) or \

@@ -16,7 +16,7 @@ from icesoc.util.errors import Stop, nearest
 
 COMMANDS = {}  # commands by name, such as "core new", in the order of their declaration
 GROUPS = {}  # help text of each group of commands, by the first word of their names
-DEFAULTS = {}  # name of a group -> the command that is run if the name stands alone
+DEFAULTS = {}  # name of a group -> the command that runs if no further word follows
 SECTIONS = {  # sections of the overview by purpose: title -> commands and groups
     "Fly": ("run", "call", "replay", "gdb", "key", "fly"),
     "Add cores, look at the chip": ("core", "contract", "synth", "board"),
@@ -128,7 +128,7 @@ class Command:
                 values.given.add(option.field)
                 called = option.name.upper() if option.positional else called
             elif self.takes_environment and (option.variable != "LANG" or option.variable in (
-                    # LANG in the environment is ignored, because it is the language of the user
+                    # LANG in the environment is ignored: it is the user's language, not the option
                     makes or ())):
                 text, called = os.environ.get(option.variable), option.variable
                 if text and option.variable in (makes or ()):
@@ -268,8 +268,8 @@ complete -o bashdefault -o default -F _icesoc_make make
 
 
 def short(text, width):
-    """Returns the beginning of a help text, up to its first comma or semicolon if that is short
-    enough."""
+    """Returns a help text, shortened to `width` columns: cut at a comma, colon, semicolon or
+    parenthesis, or else anywhere, with "..." at the end."""
     while len(text) > width:
         text = re.sub(r"[,;:(][^,;:(]*$", "", text).rstrip() if re.search("[,;:(]", text) \
             else text[:width - 3] + "..."

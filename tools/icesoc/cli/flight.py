@@ -221,8 +221,9 @@ def complete(values):
 
 
 def take_board(values):
-    """Completes a flight with a board or faults: it runs the ARM binary, which sets the pins, and
-    has the kind of modem of the board. Writes the board's wires into OUT/board."""
+    """Completes the options of a flight with a board or with faults. The flight runs the ARM
+    binary, because only this sets the pins, and has the board's kind of modem. Writes the board's
+    wires into OUT/board."""
     if (values.board or values.fault) and "cpu" not in values.given:
         values.cpu = "m3"
     if not values.board or (Path(values.board) / "board.wires").is_file():

@@ -93,9 +93,9 @@ def check_authority(authority, signs):
 
 
 def sign(name, cert, key, constraint, *by):
-    # A plus sign or a slash in the name would start another part of the subject.
+    # An unescaped plus sign or slash would begin another part of the subject.
     name = name.replace("\\", "\\\\").replace("+", "\\+").replace("/", "\\/")
-    # with the settings of the machine, every certificate could sign others
+    # the machine's openssl.cnf may make every certificate an authority
     settings = cert.with_name("openssl.cnf")
     settings.write_text("[req]\ndistinguished_name = name\n[name]\n")
     run(["openssl", "req", "-x509", "-utf8", "-config", settings, "-newkey", "ec", "-pkeyopt",

@@ -75,7 +75,8 @@ def act(words):
         return say(tree.version())
     else:
         found, values = command.by_words(words, place)
-    # Programs do not see these variables; each command passes on those that are needed.
+    # The programs that a command starts do not inherit the variables of its options. The command
+    # passes the values that they need.
     for option in found.options:
         os.environ.pop(option.variable if option.variable != "LANG" else "", None)
     return found.function(values)
@@ -105,8 +106,8 @@ def main(words, function=act):
 
 def path_of(error):
     """Returns the path of the file to which an exception refers. If a write fails, for example on a
-    full disk, Python omits the path. In this case the path is that of a file that the innermost
-    function has open, or the value of a path in that function."""
+    full disk, the exception has no path. The path is then guessed: a file that the innermost
+    function of the traceback has open, or a local variable of this function that is a path."""
     found = error.filename or ""
     for frame, _ in [] if found else traceback.walk_tb(error.__traceback__):
         local = frame.f_locals.values()

@@ -117,8 +117,8 @@ def connection(core, role, port, interrupts):
 
 
 def answers(core):
-    """Returns the declarations, the lines, and the expressions of ack and err. For a core without
-    answers, they generate these."""
+    """Returns the declarations, the lines, and the expressions of ack and err. For a core that does
+    not answer, the lines generate the answers."""
     if core.acks:
         acks = list(core.acks.values())
         return [f"    wire {', '.join(acks)};"], [], {"ack": " || ".join(acks)}
@@ -177,7 +177,7 @@ def module(core):
     takes_strobes = core.bus == "own" and core.has_strobes or {"stall", "valid", "strobe"} & set(
         core.by_role)
     options = ", .PIPELINED(1)" if takes_strobes or core.latency else ""
-    # after 250 chip clocks, the adapter aborts an access, before bus_crossing does
+    # the adapter aborts an access after 250 chip clocks, earlier than bus_crossing would
     if core.clock:
         options += f", .TIMEOUT({max(2, 250 * core.clock // 100000000 - 6)})"
     kind = "bus_to_axi4lite" if core.bus == "axil" else "bus_to_wishbone"

@@ -50,8 +50,8 @@ def has_mark(file):
 
 
 def check_number(name, value):
-    """Ends the program if a number of Verilog has a digit that its base does not have, or needs
-    more bits than it has. Tools read such numbers differently, and some without a message."""
+    """Ends the program if a Verilog number has a digit that its base does not have, or a value that
+    does not fit its size. Tools disagree about such numbers, and some print no message."""
     m = re.fullmatch(r"([-+]?)(\d*)'?([sS]?)([bodhBODH]?)([\w?]+)", value)
     if not m or not (m[4] or m[5].replace("_", "").isdigit()):
         return  # a text, or a number with a fraction

@@ -9,7 +9,7 @@ from icesoc.cores.foreign_files import fail
 
 CLOCK = r"[aph]?(clk|clock)g?"
 RESET = r"[aph]?n?(rst|reset)[nb]?"
-# Words in the name of a signal that exclude these roles: clk_en, gate_clk_pad_i.
+# Words in a signal's name which show that it is no clock or reset: clk_en, gate_clk_pad_i.
 NO_CLOCK = {"en", "ena", "enable", "ce", "sel", "div", "gate", "ext", "pad"}
 INTERRUPTS = {"int", "inta", "intr", "irq", "interrupt"}
 AXI = ["awvalid", "awready", "awaddr", "awprot", "wvalid", "wready", "wdata", "wstrb", "bvalid",

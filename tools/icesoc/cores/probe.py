@@ -20,7 +20,7 @@ import time
 from icesoc import TREE
 
 RING_BYTES, READ_BYTES = 1 << 18, 4096  # probe.regs.json, probe_servant.h
-# gap: True if changes before this one were lost
+# gap: True if changes directly before this change were lost
 Change = collections.namedtuple("Change", "clock gap value")
 
 
@@ -91,7 +91,8 @@ def signed(value):
 
 def read(probe, state, before, after):
     """Returns the change that triggered, up to `before` changes before it and up to `after` changes
-    after it. If the trigger has not occurred, the newest change is used in its place."""
+    after it. If the trigger has not occurred, the newest change is used instead of the change that
+    triggered."""
     size = 8 * state.words
     ring = RING_BYTES // size
     count = ring if state.wrapped else state.next
@@ -113,7 +114,8 @@ def read(probe, state, before, after):
 
 
 def write_vcd(path, signals, changes, clk_hz):
-    """Returns the changes as VCD. After a loss all signals are x until the next stored change."""
+    """Returns the changes as VCD. Where changes were lost, all signals are x until the next stored
+    change."""
     unit, name = (10**9, "1ns") if 10**9 % clk_hz == 0 else (10**12, "1ps")
     ids = {s: "".join(chr(33 + d) for d in divmod(i, 94)) for i, (s, _) in enumerate(signals.list)}
     widths = dict(signals.list)

@@ -126,8 +126,8 @@ def attempt(proof, index, mutant):
     """Tries one mutant. Returns its row: proof, module, source line, change, result, seconds."""
     start = time.monotonic()
     folder = proof.work / str(index)
-    # A proof gets four times the time that it takes without a mutant, because a slower proof does
-    # not count as caught.
+    # The limit is four times the CPU time of the proof without a mutant, because a mutant that only
+    # makes the proof slower is not caught.
     limit = max(int(SECONDS), int(4 * float((proof.work / "cpu").read_text())))
     status, text = proof.run(folder, mutant, str(limit))
     if status and not re.search("an assertion fails|not proven|not reached", text):
@@ -157,8 +157,8 @@ def programs(row):
 
 
 def by_tests(rows, copy, pool):
-    """Tries mutants that the proofs missed against the modules' tests and sets each row's result.
-    Returns the programs that fail without a mutant."""
+    """Runs the modules' tests on the mutants that the proofs missed, and sets the result of each
+    row. Returns the programs that fail without a mutant."""
     os.chdir(run.TOP)
     run.prepare(copy, f"-DVERILATOR={TREE}/tools/icesoc/mutants/model.py")
     (copy / "build/drawn.json").write_text(json.dumps(rows))

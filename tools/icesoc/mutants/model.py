@@ -52,8 +52,8 @@ def cells(path):
     for module, content in json.load(open(path))["modules"].items():
         alike = found[module] = collections.defaultdict(list)
         for name, cell in sorted(content["cells"].items(), key=made):
-            # Of several locations the last one is used, because the location of a condition that
-            # Yosys could not resolve precedes it.
+            # Of several locations, the last is that of the cell: Yosys puts the location of a
+            # condition that it could not resolve in front of it.
             source = cell["attributes"].get("src", "").split("|")[-1]
             source = re.sub(r".*/((bus|hdl|ip)/)", r"\1", source)
             widths = {port: len(bits) for port, bits in cell["connections"].items()}

@@ -86,7 +86,7 @@ def prepare(copy, *options):
     there = {name for name in os.fsdecode(listed.stdout).split("\0") if os.path.exists(name)}
     for top in copy.iterdir():
         for file in [top, *top.rglob("*")] if top.name != "build" else []:
-            # file that was removed from the tree
+            # the tree no longer has this file
             if not file.is_dir() and str(file.relative_to(copy)) not in there:
                 file.unlink()
     subprocess.run(["xargs", "-0", "cp", "-pu", "--parents", "-t", copy], input=listed.stdout,

@@ -44,8 +44,8 @@ class Changes:
     @functools.cache
     def differing(self, since):
         """Returns {path: (first different line, number of different lines)} for the changes since a
-        tree or a commit; None if git no longer has it. Uncommitted files are listed first, and
-        sources before other files."""
+        tree or a commit; None if git no longer has this tree or commit. Uncommitted files are
+        listed first, and sources before other files."""
         status, text = self.git("diff", "--unified=0", "--no-color", "--no-ext-diff",
                                 "--no-renames", "--src-prefix=a/", "--dst-prefix=b/", since,
                                 self.tree)
@@ -103,8 +103,8 @@ class Changes:
                       if each and self.differing(each) is not None), None)
         if not since or not (end or self.differing(since)):
             return ""
-        # A script may read files that are not known here, so without a known change, all changes
-        # are listed.
+        # A script may read files that are not known here. All changes are therefore listed if none
+        # of the known files has changed.
         files = self.of_test(test, since) or self.differing(since)
         text = "the commit; it is not known to have passed" if not end else \
             f"it passed at {commit}" + (

@@ -60,9 +60,9 @@ class History:
         return self.ends[name][-1][0][1] if self.ends[name] else None
 
     def usual(self, name):
-        """Returns the usual duration of a test in s. This is its longest passing run, but at least
-        the value in tests/costs.txt, because a reused result takes no time. Returns None if neither
-        is known."""
+        """Returns the usual duration of a test in s. It is the longest duration of a passing run,
+        but at least the value in tests/costs.txt, because the history also contains runs that only
+        printed a stored result. Returns None if neither is known."""
         times = [end[1] for end, _ in self.ends[name] if end[0] == "p"]
         return max([*times, *self.costs.get(name, [])], default=None)
 
@@ -79,7 +79,8 @@ class History:
     def failing(self, tests):
         """Returns the seeds with which these tests have failed, as {(test, seed): {"test", "seed",
         "since" (seconds, Unix), "commit", "times" (how often it failed)}}. A seed is left out if
-        the test has passed with it since, or passed with it earlier with the current sources."""
+        the test has passed with it after the failure, or if the last run with this seed and the
+        current sources passed."""
         known, found = {test.name: test for test in tests}, {}
         for run in self.runs:
             for name, how, _, _, seed in run["ends"]:

@@ -50,8 +50,8 @@ def digest(data):
 
 
 def state(path, listed):
-    """Returns the observable state of a path: that it does not exist, or a file's state, or that it
-    is a folder, with the names in the folder if the test listed it."""
+    """Returns the state of a path as far as a test can observe it: whether it is missing, a file or
+    a folder; the state of the file; the names in the folder, if the test listed them."""
     try:
         status = os.stat(path)
         if stat.S_ISDIR(status.st_mode):
@@ -143,8 +143,8 @@ def main():
                     continue
             read = not written and (listed or os.path.isfile(path)) and os.path.exists(path)
             if read and os.stat(path).st_mtime_ns > begin:
-                # another process has changed the file since, so the state that the test read is
-                # unknown
+                # another process has changed the file meanwhile, so it is unknown what the test has
+                # read
                 return 0
             seen[portable(path)] = (listed, state(path, listed))
     date = datetime.datetime.now().strftime("%Y-%m-%d %H:%M")

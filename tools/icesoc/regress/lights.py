@@ -40,8 +40,8 @@ def of_tests(data, name):
 
 
 def of_mutants(rows, drawn, source):
-    """Returns the status of mutants. The result of drawn mutants is the score of each module, if
-    the sources have not changed since they were drawn."""
+    """Returns the status of mutants. The scores of modules with drawn mutants count only if the
+    sources have not changed since the mutants were drawn."""
     tree = drawn.get("tree", "")
     if tree and tree_state(source, tree.split(":")[0]) == tree:
         if bad := [m for m, s in drawn["modules"].items() if s["score"] < drawn["gate"]]:
@@ -70,8 +70,8 @@ def of_coverage(coverage):
 
 
 def of_entries(name, entries, command):
-    """Returns the status of the entries that have a limit. It is a maximum, or a minimum if the
-    unit begins with "at least"."""
+    """Returns the status of the entries that have a limit. A limit is a minimum if the unit
+    contains "at least", otherwise a maximum."""
     limits = [each for each in entries if "limit" in each]
     bad = []
     for each in limits:
@@ -83,8 +83,8 @@ def of_entries(name, entries, command):
 
 
 def of_size(utilisation):
-    """Returns the status of size, which depends on the result of `make synth`. A design without a
-    figure counts as failed there."""
+    """Returns the status of size, which depends on the result of `make synth`. In that result, a
+    design without a figure counts as failed."""
     if not utilisation:
         return missing("size", "make synth")
     if utilisation["failures"]:

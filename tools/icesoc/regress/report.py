@@ -56,8 +56,8 @@ def gather(history, tests, results, failures, source):
             "proofs": proofs_of(results)}
     del data["ends"]
     known = {test.name: test for test in tests}
-    # after a run with one seed, these tests are left out of the failing seeds: their failures are
-    # among the results
+    # tests of this run with their seeds; their failures are in the results already, so the list of
+    # failing seeds omits them
     now = {(r.name, r.seed) for r in results}
     data["seeds"] = [kept for test, kept in history.failing(tests).items()
                      if test not in now or len({r.seed for r in results}) > 1]

@@ -14,8 +14,7 @@ from icesoc.regress.tests import write_numbers
 from icesoc.util.errors import Interrupted, Stop
 from icesoc.util.process import children, collect, descendants, end_descendants
 
-# s; a test is ended at the earliest after this CPU time, or after it has run for this time without
-# using the CPU
+# s; shortest CPU time, or time without use of the CPU, after which a test may be ended
 SHORTEST_HANG = 30
 IDLE = 10  # s; a test that uses less than 1 s of CPU time within this period counts as idle
 

@@ -95,8 +95,8 @@ def rdl_register(r):
 
 
 def rdl_access(r, f):
-    """Returns the access to a field in SystemRDL's terms. The core itself may change values that it
-    stores."""
+    """Returns the access to a field in SystemRDL's terms. If the core stores the register, its
+    hardware may also change the value."""
     more = "".join(f" {flag};" for flag in ("hwset", "hwclr") if getattr(f, flag))
     if f.access == "rw" and r.storage == "core":
         return "sw=rw; hw=rw;" + more

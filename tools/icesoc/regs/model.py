@@ -131,7 +131,7 @@ class Register:
         return self.lower if alone else f"{self.lower}_{part.name.lower()}"
 
     def is_pulse(self, part):
-        """Returns whether the part is a bit of a `ws` register: writing 1 gives a pulse of one
+        """Returns whether the field is one bit of a `ws` register: writing 1 gives a pulse of one
         clock."""
         return part.access == "ws" and not self.is_stored and bool(part.name) and part.width == 1
 
@@ -140,7 +140,7 @@ class Register:
         return [p for p in self.parts if self.is_pulse(p)]
 
     def written_bits(self, part):
-        """Returns whether the part has an output with the written value, which the core stores."""
+        """Returns whether the field has an output with the written value, which the core stores."""
         return (part.access != "ro" and self.storage == "core" and bool(part.name)
                 and not self.is_pulse(part))
 

@@ -105,8 +105,8 @@ def make_self_contained(html):
 
     In Debian's package of the theme, the style sheet imports /javascript/normalize.css, and the
     script is a module that imports another module. A browser loads neither from files, so the menu
-    that follows the reader and the choice between light and dark would not work. Raises SiteError
-    if a page still uses a file with an absolute path.
+    of the current page and the choice between light and dark would not work. Raises SiteError if a
+    page still uses a file with an absolute path.
     """
     style = html / "_static/styles/furo.css"
     text = style.read_text()

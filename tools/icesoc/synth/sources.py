@@ -64,8 +64,8 @@ class Module:
     """A module, or a SystemVerilog package, which is treated as an instance of its users."""
     file: pathlib.Path
     is_package: bool = False
-    # Instance name -> module names. There are several if branches of `ifdef or generate use the
-    # same name.
+    # Instance name -> module names. A name has several modules if branches of `ifdef or generate
+    # use the same name.
     instances: dict = dataclasses.field(default_factory=dict)
     includes: set = dataclasses.field(default_factory=set)
 

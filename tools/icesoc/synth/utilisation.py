@@ -164,7 +164,7 @@ def run(o, libraries):
         runs = synthesise(plan, library, options, o) if o.design else []
         return tell_cores(library, options, o, accepted, runs)
     yosys = runner.version_of(o.yosys)
-    # git determines state and history at the same time
+    # git reads the tree's state and the history in parallel
     with concurrent.futures.ThreadPoolExecutor() as pool:
         tree = pool.submit(tree_state, o.source, STATE_OF)
         past = pool.submit(baseline.history, o.source)

@@ -45,8 +45,7 @@ from icesoc.web import bridge
 HERE = os.path.dirname(os.path.abspath(__file__))
 
 PATIENCE = 10  # seconds
-# bytes at the end of events.jsonl that a page shows; a limit, because a long flight writes a large
-# file
+# bytes at the end of events.jsonl that a page shows; the file of a long flight is large
 NEWEST = 128 << 10
 MOST_VEHICLES = 32  # vehicles per modem on the ground
 FILES = {  # path -> MIME type, file
@@ -327,8 +326,7 @@ class Server(http.server.ThreadingHTTPServer):
     request_queue_size = 128
 
     def handle_error(self, *_):
-        # an error of one client is ignored: it has closed the connection, or has been silent for
-        # too long
+        # an error is ignored: the client has closed the connection or was silent for too long
         pass
 
 

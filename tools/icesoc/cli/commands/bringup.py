@@ -19,7 +19,7 @@ from icesoc.util.console import say
 from icesoc.util.errors import Stop
 
 CALL_TIMEOUT = 30  # s; time-out of a call
-BREAK_SECONDS = 1.0  # s; the line is in the break state for this time before the reset
+BREAK_SECONDS = 1.0  # s; duration of the break on the serial line before the reset
 LOAD_TIMEOUT = 120  # s; OpenOCD or a call is ended after this time
 SILENCE = 60  # s; the report ends if no line of text arrives for this time
 CONSOLE = "/dev/ttyUSB0"

@@ -19,8 +19,8 @@ from icesoc.util.lock import lock
 from icesoc.util.process import output, run, tool
 
 GROUPS["check"] = "proofs, sanitizers, fuzzing, faults, coverage"
-# Test programs that are built with sanitizers: name -> its folder, and other programs that it
-# starts.
+# Test programs that are built with sanitizers: name -> folder of the test, and the programs that
+# the test starts.
 GUARDED: dict[str, tuple[str, list[str]]] = {
     "test_icec": ("icec", []), "test_ground_engine": ("ground", []),
     "test_ground_ice": ("ground/ice", ["gateway"])}
@@ -121,7 +121,7 @@ def sanitizers(values):
     it fuzzes the simulator's GDB stub.
     """
     build, status = configured(values, tests=True), 0
-    # build/sanitized is for `make test`, so these programs are built in a folder for each kind
+    # the programs of each sanitizer are built in a separate build folder
     for name in values.kinds:
         kind, option = SANITIZERS[name]
         folder = BuildFolder(f"build/{kind}", values)
@@ -258,8 +258,8 @@ def soak(values):
 
 
 def measure(benches, folder):
-    """Runs benches one after the other; returns the first status that is not 0. Other commands may
-    build in the build folder meanwhile, but a second command that measures waits."""
+    """Runs benches one after the other; returns the first status that is not 0. Meanwhile, other
+    commands may build in the build folder, but a second run of the benches has to wait."""
     folder.mkdir(parents=True, exist_ok=True)
     status = 0
     with lock("build/bench.lock", busy="waiting for another bench in this folder ..."):

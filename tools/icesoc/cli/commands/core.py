@@ -59,7 +59,7 @@ def check_name(name, room="ip"):
 
 
 def write_own(build, name, lang, ice, folder):
-    """Writes a new core for the interface of the user."""
+    """Writes a new core for the user's interface, the Slice file `ice`."""
     included = re.findall(r'^ *# *include *[<"]([^>"]*)', Path(ice).read_text(), re.M)
     if included:
         raise Stop(f"{ice} includes {' '.join(included)}: expected a Slice file without includes; "
@@ -85,8 +85,8 @@ def write_own(build, name, lang, ice, folder):
 
 
 def interface_of(described):
-    """Returns the outermost module of the interface in hardware, and the Python class of the
-    interface's proxy. `described` is the description by slice2c."""
+    """Returns the outermost Slice module of the interface with the metadata [":hw"], and the Python
+    class of its proxy. `described`: output of slice2c --describe."""
     name = next(name for name, facts in described.items() if facts["kind"] == "interface"
                 and any(word.startswith(":hw") for word in facts.get("metadata", [])))
     modules = name.removeprefix("::").split("::")
@@ -168,8 +168,8 @@ def new(values):
     if values.repository:
         say(written)
         return put_into_repository(room, name)
-    # A later build would detect the new folder by itself. CMake runs now, because on an error the
-    # folder can still be removed.
+    # CMake runs now, although a later build would find the new folder by itself: if CMake fails
+    # now, the folder can still be removed.
     if (build / "build.ninja").exists():
         try:
             logged(["cmake", build.folder], build / "new-ip.log",

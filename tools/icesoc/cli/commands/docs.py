@@ -43,7 +43,7 @@ def docs(values):
 
 TUTORIAL = "docs/tutorial.md"
 CHIP = Path("ip/cores.list")
-# last of the tutorial's commands that are skipped because this tree already exists
+# last command of the tutorial that creates the tree; the commands up to it are skipped
 BEGIN = "cd icesoc"
 MADE = ["LowPass.ice", "ip/low_pass"]
 

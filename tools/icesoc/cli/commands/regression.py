@@ -96,7 +96,7 @@ def changed_tests(build, values, tests, seed, label=""):
     (build / "junit.xml").unlink(missing_ok=True)
     try:
         return build.ctest("-I", numbers.absolute(), tests=tests, check=False, **seed)
-    finally:  # also after Ctrl-C, when junit.xml contains the tests that have finished
+    finally:  # also after Ctrl-C: junit.xml then has the finished tests
         passes.note(build / "junit.xml")
 
 

@@ -22,8 +22,8 @@ public:
                 client.objects += owners_[object].insert(client.connection).second;
     }
     // Removes a client that has disconnected. Its objects keep an entry without an owner. If there
-    // are too many such entries, they are dropped; from then on, a client only receives calls to
-    // objects of which it has passed a proxy.
+    // are too many such entries, drops them; from then on, a client only receives calls to objects
+    // of which it has passed a proxy.
     void leave(const Connection& connection) {
         size_t ownerless = 0;
         for (auto& each : owners_) {
@@ -37,7 +37,7 @@ public:
             each = each->second.empty() ? owners_.erase(each) : std::next(each);
     }
     // Returns the client that receives a call to `object`; null if no client or several clients
-    // qualify. `sent`: requests of clients that have no reply yet.
+    // qualify. `sent`: the sent requests that have no reply yet.
     Connection of(const Ice::Identity& object,
                   const std::set<std::shared_ptr<Request>>& sent) const {
         std::set<Connection> candidates;

@@ -10,7 +10,7 @@ namespace gateway {
 
 namespace {
 
-// number of bytes that each request costs in addition to its size, when shares are computed
+// number of bytes that is added to the size of each request when shares are computed
 constexpr size_t requestCost = 100;
 
 size_t costOf(const Client& client) {
@@ -32,8 +32,8 @@ std::shared_ptr<Client> ClientQueues::clientOf(const Request& request) {
     return client;
 }
 
-// Takes a client that has nothing more to send out of the turns. Does the same with the client's
-// subject if none of its clients has anything to send.
+// Removes a client from the turns of its subject if the client has no waiting requests. Removes the
+// subject from the turns if none of its clients has waiting requests.
 void ClientQueues::restIfEmpty(const Client& client) {
     if (!client.requests.empty())
         return;

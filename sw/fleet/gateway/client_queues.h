@@ -32,13 +32,14 @@ struct Client {
 class ClientQueues {
 public:
     static constexpr size_t mostBytes = size_t{1} << 18; // limit of the queued bytes of one subject
-    // limit of the clients of one subject; each client may queue one request
+    // limit of the clients of a subject that may each queue one request although mostBytes is
+    // reached
     static constexpr size_t mostClients = 200;
-    // limit of the threads that wait for room for one subject
+    // limit of the threads that wait until the queues have room for requests of one subject
     static constexpr size_t mostBlocked = 16;
 
-    // `onClosed` is called when a client's connection has closed; the caller's lock is not held
-    // then.
+    // `onClosed` is called when a client's connection has closed, and must acquire the forwarder's
+    // lock itself.
     explicit ClientQueues(std::function<void(const Connection&)> onClosed)
         : onClosed_(std::move(onClosed)) {}
 

@@ -19,8 +19,8 @@ const char* const maintenanceType = "::IceSoC::Maintenance";
 // size in bytes above which a call or reply uses the lane for long messages
 constexpr size_t longBytes = 512;
 constexpr size_t mostUnderWay = 8; // limit of the requests in flight on one lane
-// limit of the bytes in flight on the short and the long lane; a lane without other requests
-// accepts a larger one
+// limits of the bytes in flight, for the lane of short calls and the lane of long calls; if no
+// request is in flight on a lane, the lane accepts a request of any size
 constexpr size_t mostBytesUnderWay[] = {1536, 8192};
 // number of one-way requests after which a ping is sent, whose reply confirms that the requests
 // have arrived
@@ -37,7 +37,8 @@ std::exception_ptr unreachable(const std::string& why) {
 }
 
 // Returns the exception that a client gets if its request could not be sent, or if the connection
-// was lost before the reply. Errors of the connection to the vehicle get a text for the user.
+// was lost before the reply. If the connection to the vehicle has failed, the text of the exception
+// explains the error to the user.
 std::exception_ptr explained(std::exception_ptr why) {
     try {
         std::rethrow_exception(why);
@@ -61,7 +62,7 @@ std::exception_ptr explained(std::exception_ptr why) {
 
 Forwarder::Forwarder(const std::shared_ptr<Ice::ObjectPrx>& vehicle, std::chrono::seconds wait)
     : vehicle_(vehicle->ice_connectionCached(false)), wait_(wait) {
-    // The proxy does not cache its connection: a cached connection could be one that is already
+    // The proxy does not cache its connection, because a cached connection may already be
     // lost.
 }
 
@@ -153,7 +154,7 @@ std::shared_ptr<Request> Forwarder::nextRequest() {
     return request;
 }
 
-// Ends the counting of a request as in flight, because the request has arrived or can no longer
+// Stops counting a request as in flight, because the request has arrived or can no longer
 // arrive.
 void Forwarder::release(Request& request) {
     if (!request.isCounted)
@@ -165,8 +166,8 @@ void Forwarder::release(Request& request) {
         --request.client->underWay;
 }
 
-// Sends all requests that may be sent. Only one thread at a time is in this function; it also sends
-// the requests that arrive in the meantime.
+// Sends all requests that may be sent. Only one thread at a time executes this loop. This thread
+// also sends the requests that other threads queue in the meantime.
 void Forwarder::send() {
     std::unique_lock<std::mutex> lock(mutex_);
     if (isSending_)
@@ -233,8 +234,9 @@ void Forwarder::ask(const Connection& connection, const Object& object) {
     }
 }
 
-// Sends the requests that waited for an object's type; if it is a maintenance object, fails them
-// instead. If the type remains unknown because of an error, fails the requests with `why`.
+// Handles the requests that waited for an object's type: fails them if the object is a maintenance
+// object, otherwise sends them. If the question for the type has failed with the error `why`, fails
+// them with this error.
 void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
                          std::exception_ptr why) {
     Requests waiting;
@@ -244,7 +246,7 @@ void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
         if (isKnown && lanes_[shortCalls].connection)
             types_.record(object, isMaintenance);
         for (const auto& request : waiting) {
-            // this request is sent now, without another question for the type
+            // send() then sends this request without asking for the type again
             request->mayMaintain = !isMaintenance;
             if (!why && !isMaintenance)
                 ready_.push_back(request);
@@ -260,7 +262,7 @@ void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
 // ---- the lanes ----
 
 // Records the client as an owner of the objects whose proxies a request passes to the vehicle.
-// Operations such as ice_ping pass no proxies, so they are skipped.
+// Skips operations of every object, such as ice_ping, because they pass no proxies.
 void Forwarder::recordProxies(const Request& request) {
     if (!request.client || request.current.operation.compare(0, 4, "ice_") == 0)
         return;
@@ -483,8 +485,9 @@ void Forwarder::failLateRequests() {
     failWaiting(std::chrono::steady_clock::now() - wait_,
                 unknown("waited " + std::to_string(wait_.count()) +
                         " s for the radio (limit: --wait); the call was not sent to the vehicle"));
-    // Calls that the vehicle answers late use up the limits of a lane. The reply to a ping confirms
-    // that these calls have arrived.
+    // Calls in flight count against the limits of their lane, even if the vehicle replies late. A
+    // ping is therefore sent: its reply confirms that these calls have arrived, so that they no
+    // longer count.
     for (int number = 0; number < lanes; ++number) {
         Ice::Current last;
         {
@@ -509,8 +512,8 @@ void Forwarder::stop() {
         stopped_ = true;
         room_.notify_all();
     }
-    // The replies are sent here because Ice, when it is destroyed, waits for the replies to all
-    // requests.
+    // The waiting requests fail here, because the destruction of the communicator waits until all
+    // requests have a reply.
     failAll(std::make_exception_ptr(Ice::CommunicatorDestroyedException(__FILE__, __LINE__)));
 }
 

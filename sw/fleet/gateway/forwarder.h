@@ -30,23 +30,22 @@ public:
     // time for which a request may wait to be sent; after this time the request fails.
     Forwarder(const std::shared_ptr<Ice::ObjectPrx>& vehicle, std::chrono::seconds wait);
 
-    // Queues a client's request. Blocks while the queue holds 256 KiB of requests of the client's
-    // subject. The first request of each of the subject's 200 clients does not block. At most 16
-    // requests of a subject block at a time; any further request fails, and if it is one-way, its
-    // connection is closed.
+    // Queues a client's request. Blocks while the queues hold 256 KiB of requests of the client's
+    // subject. A client's only request does not block, unless the subject has more than 200
+    // clients. At most 16 requests of a subject block at a time; any further request fails, and if
+    // this request is one-way, the client's connection is closed.
     void take(std::shared_ptr<Request> request);
     // Passes a request of the vehicle to the only client that gave the vehicle a proxy with this
     // identity. If no client has ever given such a proxy, passes the request to the only client
     // with a two-way call in progress. If no client or several clients qualify, replies
     // ObjectNotExistException.
     void takeCallback(std::shared_ptr<Request> request);
-    // Sets the adapter that dispatches requests which the vehicle sends on the clients'
-    // connections.
+    // Sets the adapter that dispatches requests of the vehicle which arrive on the lanes.
     void setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter);
 
     // Connects to the vehicle and keeps the connection; must be called periodically. Before the
-    // first call, requests wait for a connection. After it, a request that arrives while there is
-    // no connection fails with ObjectNotExistException.
+    // first call of hold(), requests wait for a connection. After this call, a request that arrives
+    // while there is no connection fails with ObjectNotExistException.
     void hold();
     unsigned session() const; // number of the current connection; 0 without one
     void refuseWaiting();     // fails waiting requests with ObjectNotExistException
@@ -64,7 +63,8 @@ private:
         // isMissing: the lane has no connection, because no channel was free
         bool isConnecting = false, isMissing = false;
         std::deque<std::shared_ptr<Request>> underWay; // requests that were sent, oldest first
-        // number of requests that are chosen or in flight, and the sum of their bytes
+        // number of requests that have been chosen for sending or are in flight, and the sum of
+        // their bytes
         size_t requests = 0, bytes = 0;
         bool isConfirming = false;
     };

@@ -84,9 +84,9 @@ std::string turnOf(const std::shared_ptr<Ice::Connection>& connection, const std
     return "";
 }
 
-// Returns a function that passes a client's call to the vehicle if --rights permits the call and if
-// it does not come from a foreign web page. Without `allowsMaintenance`, this function refuses
-// calls to objects that change keys or programs.
+// Returns a function that passes a client's call to the vehicle if --rights permits the call, and
+// if `pages` does not refuse the web page from which the call comes. Without `allowsMaintenance`,
+// this function refuses calls to objects that change keys or programs.
 Take toVehicle(Forwarder& forwarder, const Rights& rights, const Pages& pages,
                bool allowsMaintenance) {
     return [&forwarder, &rights, &pages, allowsMaintenance](std::shared_ptr<Request> request) {
@@ -246,7 +246,7 @@ public:
                                  ? ic->stringToProxy("uav@" + name)
                                  : opened->createDirectProxy(Ice::stringToIdentity("uav"));
         if (ic->getDefaultLocator())
-            opened->destroy(); // returns when the vehicle is connected
+            opened->destroy(); // Registration opens it again when the vehicle is connected
         else
             adapters_.push_back(opened);
         if (!o.maintenance.empty())

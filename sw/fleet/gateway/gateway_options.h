@@ -31,11 +31,11 @@ void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o);
 // Returns the address of each vehicle by the vehicle's name. Throws an exception if a name or an
 // address is not valid.
 std::map<std::string, int> fleetOf(const Options& o);
-// Returns the endpoint that reaches a vehicle by the modem at the serial port; the vehicle's calls
-// use the same endpoint.
+// Returns the endpoint of a vehicle on the radio. A proxy with this endpoint reaches the vehicle;
+// an adapter with this endpoint receives the vehicle's calls.
 std::string radioEndpoint(const Options& o, int address);
-// Returns Ice endpoints for "HOST:PORT" or "[::1]:PORT", or for text that already is an endpoint.
-// Ports are increased by `place`; port 0 (any) stays 0.
+// Returns Ice endpoints for "HOST:PORT" or "[::1]:PORT", or for a text that already consists of
+// endpoints. Adds `place` to each port; port 0 (any free port) stays 0.
 std::string endpointsOf(const std::string& text, int place = 0);
 
 } // namespace gateway

@@ -22,8 +22,9 @@ public:
         return {request.current.id, request.current.facet};
     }
 
-    // Decision about a request: send it, keep it waiting, or refuse it. Asks: keep it waiting, and
-    // the caller must ask the vehicle for the object's type and report the answer to answered().
+    // Decision about a request. Goes: the caller must send the request. Waits: the request waits
+    // here for the object's type. Asks: the request also waits, and the caller must ask the vehicle
+    // for the type and then call answered(). Refused: the caller must fail the request.
     enum class Verdict { Goes, Waits, Asks, Refused };
     Verdict verdictOn(const std::shared_ptr<Request>& request) {
         const Object object = objectOf(*request);

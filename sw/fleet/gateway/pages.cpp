@@ -26,9 +26,9 @@ std::string drawSecret() {
     return secret;
 }
 
-// Returns the information about a connection or endpoint that has the class `Wanted`. The
-// information is a chain, with one link for each layer of the transport; returns null if no link
-// has this class.
+// Finds an object of class `Wanted` in the information about a connection or endpoint. The
+// information is a chain of objects, one for each layer of the transport. Returns null if none of
+// them has this class.
 template <class Wanted, class Info> std::shared_ptr<Wanted> layer(std::shared_ptr<Info> info) {
     for (; info; info = info->underlying)
         if (auto found = std::dynamic_pointer_cast<Wanted>(info))

@@ -11,11 +11,11 @@ namespace {
 
 // size of the header of an encapsulation (size and encoding), bytes
 constexpr size_t head = 6;
-// length of the longest name, bytes; the length itself then takes one byte
+// length of the longest accepted name, bytes; up to this length, the encoded length has one byte
 constexpr size_t longestName = 254;
 
-// Reads bytes, starting at `at`. Clears isRight after the last byte, and if a byte is outside its
-// expected range.
+// Reads bytes, starting at `at`. Clears isRight if there are no more bytes, or if a byte is outside
+// its expected range.
 struct Reader {
     const std::vector<Ice::Byte>& bytes;
     size_t at;

@@ -5,8 +5,8 @@
 //
 // The gateway does not know the types of the parameters. It therefore searches for the bytes of
 // such a proxy: name and category, an optional facet, mode, security, protocol 1.0, encoding 1.x,
-// no endpoints, no adapter. In an encapsulation of encoding 1.0, a proxy has no protocol and
-// encoding.
+// no endpoints, no adapter. In an encapsulation of encoding 1.0, a proxy contains neither protocol
+// nor encoding.
 
 #pragma once
 

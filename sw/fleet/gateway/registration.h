@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 //
-// registration: one vehicle's entry in IceGrid's registry, and the object adapter that it refers
-// to. Both exist while this ground station holds the vehicle.
+// registration: one vehicle's entry in IceGrid's registry, and the object adapter to which the
+// entry refers. Both exist while this ground station serves the vehicle.
 //
-// A ground station holds a vehicle while it has a connection to it. The registry contains the
-// ground station that connected last; another one that still receives the vehicle stands by.
+// Among the ground stations that are connected to a vehicle, the one that connected last serves it.
+// The others close their adapters. One of them takes over when the station in the registry no
+// longer listens.
 
 #pragma once
 
@@ -21,10 +22,10 @@ public:
     // `publisher` is the publisher of the topic; null disables events.
     Events(std::string vehicle, std::shared_ptr<Ice::ObjectPrx> publisher)
         : vehicle_(std::move(vehicle)), publisher_(std::move(publisher)) {}
-    // publishes the vehicle's proxy; a null proxy if the vehicle is not connected
+    // publishes the vehicle's proxy; if the vehicle is not connected, publishes a null proxy
     void tell(bool isHere) const;
-    // Publishes a call of the vehicle. If the call contains a vehicleState, its proxy is replaced
-    // by one by which clients reach the vehicle.
+    // Publishes a call of the vehicle. In a call of vehicleState, replaces the vehicle's proxy by a
+    // proxy with which clients reach the vehicle.
     void pass(const Request& request, Response onResponse, Failure onError) const;
 
 private:
@@ -32,8 +33,8 @@ private:
     const std::shared_ptr<Ice::ObjectPrx> publisher_;
 };
 
-// In the parameters of a call of Station.vehicleState, replaces the vehicle's proxy by `reached`, a
-// proxy by which clients reach the vehicle. A null proxy stays null.
+// In the parameters of a call of Station.vehicleState, replaces the vehicle's proxy by the result
+// of `reached`: a proxy with which clients reach the vehicle. A null proxy stays null.
 void replaceVehicle(
     Request& call, const std::shared_ptr<Ice::Communicator>& ic,
     const std::function<std::shared_ptr<Ice::ObjectPrx>(const std::shared_ptr<Ice::ObjectPrx>&)>&

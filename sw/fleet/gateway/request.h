@@ -29,8 +29,8 @@ struct Request {
     Request(const Parameters& in, Response onResponse, Failure onError, const Ice::Current& current)
         : parameters(in.first, in.second), response(std::move(onResponse)),
           failed(std::move(onError)), current(current) {}
-    // Sends the request to `target`, whose identity is replaced by that of the called object.
-    // Rethrows exceptions that Ice throws at once.
+    // Sends the request with the connection or endpoints of the proxy `target`, and the identity of
+    // the called object. Throws the exceptions that ice_invokeAsync throws.
     void sendTo(const std::shared_ptr<Ice::ObjectPrx>& target, Response onResponse,
                 Failure onError) const;
     bool isOneway() const { return current.requestId == 0; }
@@ -53,8 +53,8 @@ using Requests = std::vector<std::shared_ptr<Request>>;
 // Returns an Ice UnknownException whose text is "icesoc-gateway: " and `why`.
 std::exception_ptr unknown(const std::string& why);
 
-// Fails the requests with this exception. Logs how many of them are one-way, because the clients
-// that sent these receive no error.
+// Fails the requests with this exception. Logs how many of them are one-way, because the senders of
+// one-way requests receive no error.
 void fail(const Requests& requests, std::exception_ptr why);
 
 } // namespace gateway

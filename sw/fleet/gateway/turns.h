@@ -19,7 +19,7 @@ namespace gateway {
 
 template <class Flow> class Turns {
 public:
-    // Records that a flow has something to send. Its turn then comes.
+    // Records that a flow has something to send, so that it takes part in the turns.
     void wait(const Flow& flow) {
         Entry& entry = entries_[flow];
         if (!entry.isWaiting)
@@ -40,8 +40,8 @@ public:
         if (entry == entries_.end())
             return;
         entry->second.isWaiting = false;
-        // removes the flows that no longer wait and whose tag is not above the clock; a new flow
-        // would get the same tag
+        // removes each flow that does not wait and whose tag is not above the clock: when such a
+        // flow waits again, it gets the clock as its tag, like a new flow
         for (auto each = entries_.begin(); each != entries_.end();) {
             const bool isOver = !each->second.isWaiting && each->second.tag <= clock_;
             each = isOver ? entries_.erase(each) : std::next(each);

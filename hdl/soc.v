@@ -63,9 +63,9 @@ module soc #(
     localparam [31:0] WRITES_BYTES = 1 << MODEM_PORT;
     localparam [PORTS-1:0] BYTES = WRITES_BYTES[PORTS-1:0];
 
-    // A flip-flop drives the reset of all blocks, so that no path leads from the reset pin through
-    // their logic. Otherwise a simulator would have to evaluate this logic at each change of an
-    // input (1.07 times slower).
+    // A flip-flop drives the reset of all blocks, so that no combinational path leads from the
+    // reset pin through their logic. A simulator would have to evaluate such a path at each change
+    // of an input, which would make it 1.07 times slower.
     wire rst;
     cdc_reset u_rst (.clk_i(clk_i), .rst_async_i(rst_i), .rst_o(rst));
 

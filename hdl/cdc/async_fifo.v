@@ -90,7 +90,7 @@ module async_fifo #(
     assign to_reader_async = (to_reader & reader_sees) | (was_to_reader & ~reader_sees);
     assign to_writer_async = (to_writer & writer_sees) | (was_to_writer & ~writer_sees);
 
-    // `value` is the word that the prover watches, at the position `place` that it chooses.
+    // `value` is the word under observation. The prover chooses its position `place`.
     localparam [LOG2:0] DEPTH = 1 << LOG2;
     (* anyconst *) reg [LOG2:0] place;
     reg [WIDTH-1:0] value;
@@ -114,8 +114,8 @@ module async_fifo #(
         assume (!(push_i && full_o));
         assume (!(pop_i && empty_o));
         assert (to_reader == (written ^ (written >> 1)) && to_writer == (taken ^ (taken >> 1)));
-        // The FIFO never holds more words than its depth. The pointer that a side receives from the
-        // other side may be old, but is never ahead.
+        // The FIFO never holds more words than its depth. A side may see an old value of the other
+        // side's pointer, but never a value ahead of this pointer.
         assert (count <= DEPTH && held_seen <= DEPTH);
         assert (full_o == (held_seen == DEPTH));
         assert (taken - t1 <= taken - t2 && taken - t2 <= held_seen);

@@ -15,10 +15,11 @@
 
 module cdc_bit #(
     parameter             WIDTH    = 1,
-    // number of upper bits that have a common delay: if one of them changes, all of them are late
-    // together; the delay of the lower bits is chosen per clock of clk_i
+    // 0: each bit has its own delay. Above 0: all bits that change in the same clock have the same
+    // delay; in simulation, they are late only if one of the upper TOGETHER bits changes in that
+    // clock.
     parameter             TOGETHER = 0,
-    // 1: this module delays no bit, because a cdc_skew in front of it does so
+    // 1: bits are never late here, because a cdc_skew in front of this module delays them
     parameter             EXACT    = 0,
     parameter [WIDTH-1:0] INITIAL  = 0
 ) (

@@ -46,7 +46,8 @@ module cdc_bus #(
     reg past = 1'b0, was_src = 1'b1, was_clk = 1'b1, was_valid = 1'b0, known = 1'b0;
     reg [WIDTH-1:0] was_data = 0;
     reg was_given = 1'b0, gave = 1'b0;
-    // up to two words that have not been transferred; if there are none, `newer` is the last word
+    // up to two words that have not been transferred; without such words, `newer` is the last word
+    // sent
     reg [WIDTH-1:0] older = 0, newer = 0;
     reg [1:0] count = 2'd0;
     // number of edges of dst_clk_i since the edge of src_clk_i that sent the last word
@@ -54,7 +55,7 @@ module cdc_bus #(
     wire rise        = past && src_clk_i && !was_src;
     wire edge_of_clk = past && dst_clk_i && !was_clk;
     wire writes      = rise && was_given;
-    wire handed      = edge_of_clk && was_valid; // the user of the module has sampled dst_valid_o
+    wire handed      = edge_of_clk && was_valid; // the receiver has sampled dst_valid_o
     wire rings       = writes && clocks == 3'd0 && count != 2'd0 && was_data == newer;
     wire new_write   = writes && !rings;
     always @(posedge step) begin
@@ -75,8 +76,8 @@ module cdc_bus #(
         end else if (edge_of_clk && clocks != 3'd7) begin
             clocks <= clocks + 3'd1;
         end
-        // Between two edges of src_clk_i that send a word there are at least three edges of
-        // dst_clk_i. Edges that are closer are ringing.
+        // From one edge of src_clk_i that sends a word to the next such edge, dst_clk_i has at
+        // least three edges. Edges of src_clk_i that are closer to each other are ringing.
         assume (!new_write || clocks >= 3'd3);
     end
     wire [1:0] left  = count - {1'b0, handed}; // number of words that are left after this step

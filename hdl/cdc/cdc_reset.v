@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // cdc_reset: reset synchroniser. The reset begins at once, even if the clock does not run. It ends
-// synchronously to clk_i, two to three clocks after rst_async_i.
+// synchronously to clk_i, two to three clocks after the end of rst_async_i.
 //
 // After configuration rst_o is active until the clock has run. Constraint: paths from rst_async_i
 // are ignored for timing; paths from rst_o are not ignored.

@@ -3,10 +3,9 @@
 // cdc_skew: models how bits that change with src_clk_i arrive in the clock domain dst_clk_i; for
 // simulation only (cdc_random.vh).
 //
-// If a bit changed at the last edge of src_clk_i, and this edge came after the last edge of
-// dst_clk_i, the bit arrives with its old or its new value, independently of the other bits.
-// Therefore a Gray-coded count arrives as one of two values, but a binary count may arrive as a
-// value that it never had.
+// If src_clk_i has had an edge since the last edge of dst_clk_i, each bit that changed at that edge
+// arrives with its old or its new value, independently of the other bits. Therefore a Gray-coded
+// count arrives as one of two values, but a binary count may arrive as a value that it never had.
 
 `default_nettype none
 

@@ -6,7 +6,8 @@
 //
 // An operation ends with the core's tlast. If the core has no tlast (LAST 0), it ends after as many
 // output beats as input beats. An operation with 0 bytes is refused. If the output is longer than
-// the buffer, the part that fits is written, and the operation is reported as refused.
+// the buffer, the part that fits into the buffer is written, and the operation is reported as
+// refused.
 
 `default_nettype none
 
@@ -89,7 +90,7 @@ module axis_filter #(
     reg         ends;      // the complete word is the last word of the packet
     reg  [63:0] out;
     reg  [7:0]  out_keep;
-    // number of bytes that the core has still to output, if it has no tlast
+    // number of bytes that a core without tlast must still output
     reg  [BYTE_BITS-1:0] awaited;
     wire        room      = bytes != ROOM[BYTE_BITS-1:0];
     wire        out_ready = writing && (write_ready || !room);
@@ -98,7 +99,7 @@ module axis_filter #(
     wire        last = LAST != 0 ? s_axis_tlast_i : awaited <= STEP;
     assign s_axis_tready_o = !full || out_ready;
 
-    reg [3:0] out_bytes; // number of bytes up to and including the last byte that is kept
+    reg [3:0] out_bytes; // number of bytes up to the last byte enabled by tkeep
     integer b;
     always @* begin
         out_bytes = 4'd0;
@@ -166,7 +167,8 @@ module axis_filter #(
     wire flush = closing || core_rst_i;
     npi_stream #(.WORD_BITS(WORD_BITS)) u_stream (
         `include "memory_connect.vh"
-        // not core_rst_i: words that were requested must be taken even after core_rst_i
+        // rst_i instead of core_rst_i: words that were requested must be taken even after
+        // core_rst_i
         .clk_i(clk_i), .rst_i(rst_i),
         .read_start_i(go), .read_base_i(source_i[31:6]),
         .read_words_i({1'b0, bytes[BYTE_BITS-1:3]} + {{(WORD_BITS-1){1'b0}}, |bytes[2:0]}),
@@ -192,8 +194,7 @@ module axis_filter #(
     (* anyconst *) reg [3:0] f_lane;
     reg [WIDTH-1:0] f_data;
     reg [KEEP-1:0]  f_keep;
-    // number of bytes of the operation, and number of bytes that have arrived (limited to the first
-    // number)
+    // number of bytes of the operation, and number of those bytes that have arrived
     reg [BYTE_BITS-1:0] f_bytes = 0, f_came = 0;
     reg [WORD_BITS-1:0] f_left = 0;   // number of words that npi_stream must still deliver
     // number of words that were passed to npi_stream in this operation
@@ -253,8 +254,8 @@ module axis_filter #(
             // The operation ends when its last burst is filled up and in memory.
             assert (closing == $past(given && ends) &&
                     (!done_o || empty || $past(closing || closed)));
-            // the number of bytes is correct: the words before the last one are complete, and the
-            // last word has the bytes that are kept
+            // the number of bytes is correct: the words before the last word are complete, and the
+            // last word counts the bytes up to the last enabled byte
             if ($past(given && ends))
                 assert (over || bytes == $past(bytes) + $past(out_bytes));
         end
@@ -275,7 +276,7 @@ module axis_filter #(
         assert (!word_valid ||
                 (word_last == (f_left == 1) &&
                  f_size == (word_last ? left >> $clog2(KEEP) : 8 / KEEP)));
-        // Splitting: all beats of a word are sent, and the word is taken together with the last
+        // Splitting: all beats of a word are sent, and the word is taken together with its last
         // beat.
         assert (beat == f_sent && m_axis_tvalid_o == word_valid);
         if (word_valid) begin
@@ -284,7 +285,7 @@ module axis_filter #(
                     m_axis_tkeep_o == word_keep[KEEP*f_sent +: KEEP]);
             assert (m_axis_tlast_o == (word_last && f_sent + 4'd1 == f_size));
         end
-        // Joining: each beat is at its position, and bytes after the last beat are not kept.
+        // Joining: each beat is at its position, and bytes after the last beat are not enabled.
         assert ({28'd0, f_count} <= BEATS &&
                 (full ? place == 4'd0 && f_count != 4'd0 : place == f_count && place <= LAST_BEAT));
         assert (f_lane >= f_count ? out_keep[KEEP*f_lane +: KEEP] == 0

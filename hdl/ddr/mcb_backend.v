@@ -4,8 +4,8 @@
 // memory controller block, MCB (UG388).
 //
 // The read FIFO of the MCB holds 64 words, and the MCB loses words that do not fit. Therefore a
-// read waits until half of this FIFO, which is the size of the longest burst, is free of words for
-// earlier reads.
+// read waits until earlier reads occupy at most half of this FIFO; the other half has room for the
+// longest burst.
 
 `default_nettype none
 
@@ -31,7 +31,7 @@ module mcb_backend #(
 );
     generate
         if (ADDR_WIDTH < 9 || ADDR_WIDTH > 30) begin : g_refused
-`ifdef VERILATOR // Stops the elaboration with an error, as in npi_arbiter.
+`ifdef VERILATOR // Stops the elaboration with an error message, in the same way as npi_arbiter.
             $error("mcb_backend: ADDR_WIDTH is 9..30");
 `elsif YOSYS
             $error("mcb_backend: ADDR_WIDTH is 9..30");
@@ -57,8 +57,8 @@ module mcb_backend #(
     assign rd_data_o   = mcb_rd_data_i;
     assign mcb_rd_en_o = rd_valid_o && rd_ready_i;
 
-    // `free` is the number of words in the read FIFO that no read has reserved, 0..64. n is
-    // subtracted by adding ~(n - 1).
+    // `free` is the number of words in the read FIFO that are not reserved by a read, 0..64. To
+    // subtract n, ~(n - 1) is added.
     reg  [6:0] free;
     wire       take = mcb_cmd_en_o && cmd_read_i;
     wire [7:0] next = {free, 1'b1} + {take ? {2'b11, ~cmd_last_i} : 7'd0, mcb_rd_en_o};
@@ -72,7 +72,7 @@ module mcb_backend #(
     // Proves that the MCB never gets a command that it would refuse, and that no word is lost.
     reg past = 1'b0;
     initial assume (rst_i);
-    reg [7:0] asked = 0; // number of words that reads have requested and that have not been taken
+    reg [7:0] asked = 0; // number of words that were requested by reads and have not been taken
     always @(posedge clk_i) begin
         past <= 1'b1;
         asked <= rst_i ? 8'd0

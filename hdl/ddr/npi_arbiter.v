@@ -62,7 +62,7 @@ module npi_arbiter #(
 
     localparam PORT_BITS = PORTS > 4 ? 3 : PORTS > 2 ? 2 : 1;
 
-    // In the cycle in which a request is acknowledged, its bit is still high.
+    // In the cycle in which a request is acknowledged, its bit in npi_addr_req_i is still high.
     wire             full, granted;
     wire [PORTS-1:0] choice;
     npi_select #(.PORTS(PORTS), .URGENT(URGENT), .URGENT_RUN(URGENT_RUN)) u_select (
@@ -157,7 +157,7 @@ module npi_arbiter #(
     always @* begin
         wr_data = wr_datas[63:0];
         wr_be   = wr_bes[7:0];
-        // Two select signals, each with half of the loads.
+        // There are two select signals, so that each of them drives only half of the loads.
         for (k = 1; k < PORTS; k = k + 1) begin
             if (move_port == k[PORT_BITS-1:0])
                 wr_data[31:0] = wr_datas[64*k +: 32];
@@ -172,8 +172,8 @@ module npi_arbiter #(
     assign wr_be_o    = wr_be;
     assign rd_ready_o = |(back_at & back_free);
 
-    // These inputs are not used: byte enables are supported, so read-modify-write is not needed,
-    // and transfers are aligned.
+    // These inputs are not used, because byte enables replace read-modify-write, and because
+    // transfers are aligned.
     wire unused =
         &{1'b0, npi_rmw_i, npi_size_i, npi_addr_i, addr[2:0], back_index[4], move_at, 1'b0};
 

@@ -4,17 +4,17 @@
 // only for the prover (formal.npi_arbiter*).
 //
 // `me` is any port that keeps the rules of docs/memory.md; the other ports may do anything, and
-// must not harm `me`. `mark` is any accepted request (every fourth request, starting with any),
-// `w_mark` is any word that `me` pushes, and `r_mark` any word that `me` pops. The prover chooses
-// them, so the assertions about them hold for all requests and words:
+// must not harm `me`. `mark` is any accepted request (every fourth request, starting with any of
+// them), `w_mark` is any word that `me` pushes, and `r_mark` is any word that `me` pops. The prover
+// chooses all three, so the assertions about them hold for all requests and words:
 // - commands are the accepted requests, in order, each once, aligned; the command of a write
 //   follows all its words;
 // - words of a write leave the FIFO of their port in order, and reach the back-end at the position
 //   that the command has in the stream;
 // - words of a read reach the port that requested them, in order, each with its position in its
 //   transfer;
-// - no FIFO of `me` overflows or is read when empty; its flags are correct; a word is in the FIFO
-//   when it is needed;
+// - no FIFO of `me` overflows or is read when empty, and the flags of these FIFOs are correct; a
+//   word of a write is in the FIFO when the back-end needs it;
 // - a request stays visible to npi_select until it is granted, so that the bound on waiting that is
 //   proven for npi_select holds.
 //
@@ -30,7 +30,7 @@
     (* hierconn *) wire [(ADDR_BITS<<QUEUE_LOG2)-1:0] \u_queue.f_addrs ;
     (* hierconn *) wire [4*QUEUE_LOG2-1:0]          \u_queue.f_places ;
     (* hierconn *) wire [4:0]                       \u_queue.f_moved ;
-    // words of a request are being transferred; the kind of this request
+    // the highest bit is 1 while words of a request are being transferred; the others are its kind
     (* hierconn *) wire [KIND:0]                    \u_queue.f_moving ;
     (* hierconn *) wire [(72<<FIFO_LOG2)-1:0]       \g_port[0].u_write.u_fifo.f_words ,
         \g_port[1].u_write.u_fifo.f_words ;
@@ -64,7 +64,7 @@
     (* anyconst *) reg [PORT_BITS-1:0] me;
     (* anyconst *) reg [Q-1:0] mark;
     (* anyconst *) reg [W-1:0] w_mark, r_mark;
-    // `me` pops every word at once, and is then allowed any number of outstanding words
+    // 1: `me` pops every word at once, and may therefore have any number of outstanding words
     (* anyconst *) reg         eager;
     reg [PORTS-1:0] was_granted;
     reg             asked = 1'b0; // `me` has a request that has not been chosen yet
@@ -126,10 +126,11 @@
     // to the back-end
     reg [W-1:0] w_pushed, w_claimed, w_moved;
     reg [W-1:0] r_claimed, r_pushed, r_popped;
-    // numbers of words of all ports: of accepted writes; of these, words passed to the back-end
+    // number of words in accepted writes of all ports, and number of these words that were passed
+    // to the back-end
     reg [W-1:0] all_w, all_moved;
-    // numbers of words of all ports: of accepted reads; of issued reads; of words that have arrived
-    // from the back-end
+    // number of words in accepted reads of all ports, in issued reads, and number of words that
+    // have arrived from the back-end
     reg [W-1:0] all_r, all_asked, all_came;
     reg [Q-1:0] accepted, issued;             // numbers of requests
     wire        moves  = wr_valid_o && wr_ready_i;
@@ -159,8 +160,8 @@
     wire         g_any   = |grant;
     wire [W-1:0] g_words = words_of(g_size);
 
-    // t_* is the marked request while it is in the arbiter. It includes, for each count, the value
-    // at which the words of this request begin.
+    // t_* is the marked request while it is in the arbiter. t_stream and t_own are the values of
+    // the two counts at which its words begin.
     reg                 t_live = 1'b0;
     reg [PORT_BITS-1:0] t_port;
     reg                 t_read;

@@ -29,8 +29,8 @@ module npi_fifo #(
     reg  [LOG2-1:0] write_place, read_place;
     wire [LOG2-1:0] write_next = after(write_place);
 
-    // full_o is a register, because paths of the requesters begin at it.
-    wire nearly; // the FIFO has room for exactly one word or is full
+    // full_o comes from a register, because long paths of the requesters begin at this output.
+    wire nearly; // the FIFO is full, or has room for exactly one word
     wire moves;  // the word at read_place can move to data_o
     reg  full;
     assign full_o = full;
@@ -66,9 +66,8 @@ module npi_fifo #(
             reg [WIDTH-1:0] words [0:(1<<LOG2)-1];
             reg [WIDTH-1:0] word;
             reg             empty;
-            // The RAM returns only words of earlier clocks, because it is never read at the address
-            // that is being written. pop_i only drives an enable, so it may arrive late in the
-            // clock.
+            // The RAM is never read at the address that is being written, so it returns only words
+            // of earlier clocks. pop_i only drives an enable, so it may arrive late in the clock.
             wire fetch = empty || pop_i;
             wire ready = read_place != write_place;
             assign moves   = fetch && ready;
@@ -89,7 +88,7 @@ module npi_fifo #(
 `ifdef FORMAL
     // Proves that words leave in order and unchanged, and that the flags agree with the number of
     // words.
-    // 1 in the proof of the FIFO itself, in which assumptions exclude errors of the user
+    // 1: this is the proof of the FIFO itself, and assumptions exclude errors of the user
     parameter PROOF = 0;
 
     // Numbers the words of the FIFO, and computes the numbers of the next word to write and to pop,

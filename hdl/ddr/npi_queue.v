@@ -187,7 +187,7 @@ module npi_queue #(
     reg [5:0]      moved = 0, came = 0;
     wire           is_read   = kind[3];
     wire [5:0]     all_words = {1'b0, last_of(kind[2:0])} + 6'd1;
-    // distance of each pointer from `back`, the oldest
+    // distance of each pointer from `back`, the oldest pointer
     wire [LOG2-1:0] f_head, f_move, f_issue, f_back;
     assign {f_head, f_move, f_issue, f_back} = f_places;
     wire [LOG2-1:0] n_head = f_head - f_back, n_move = f_move - f_back, n_issue = f_issue - f_back,
@@ -235,16 +235,16 @@ module npi_queue #(
             if (inside) begin
                 assert (addrs[place] == addr && kinds[place] == kind);
                 assert (issued == (n_place < n_issue));
-                // The words of a write are not sent before those of earlier writes, and all of them
-                // are sent before the command.
+                // The words of a write are not sent before the words of earlier writes, and all of
+                // them are sent before the command of the write.
                 if (n_place > n_move)
                     assert (moved == 6'd0);
                 if (move == place && moving)
                     assert (moved == (is_read ? 6'd0 : {1'b0, f_moved}));
                 if (n_place < n_move)
                     assert (moved == (is_read ? 6'd0 : all_words));
-                // The words of a read do not arrive before those of earlier reads; back_index
-                // counts them.
+                // The words of a read do not arrive before the words of earlier reads; back_index
+                // counts the words.
                 if (back != place)
                     assert (came == 6'd0);
                 if (back == place)
@@ -272,7 +272,8 @@ module npi_queue #(
             cover (full_o);
             cover (inside && issued && is_read && came == 6'd4);
             cover (cmd_valid_o && !cmd_read_o && cmd_last_o == 5'd3);
-            // all four actions happen in one cycle, as far as three places allow this
+            // reaches cycles with three of the four actions; the three places of this proof do not
+            // allow all four
             cover (move_done_i && cmd_valid_o && cmd_ready_i && back_done_i);
             cover (push_i && move_done_i && back_done_i);
         end

@@ -2,10 +2,10 @@
 //
 // npi_select: round-robin arbiter for PORTS requesters, with an optional urgent class.
 //
-// Ports with their bit set in URGENT are served before the others; within each class, ports are
-// served round-robin. While a port that is not urgent waits, there are at most URGENT_RUN urgent
-// grants in a row. With N ports, of which U are urgent, a request waits for at most this number of
-// grants to other ports:
+// Ports whose bit in URGENT is 1 are urgent, and are served before the other ports; within each of
+// these two classes, ports are served round-robin. While a port that is not urgent waits, there are
+// at most URGENT_RUN urgent grants in a row. With N ports, U of them urgent, a request waits for at
+// most this number of grants to other ports:
 //   no port urgent:     N - 1
 //   a port not urgent:  (N - U) * (URGENT_RUN + 1) - 1
 //   an urgent port:     U + (U - 1) / URGENT_RUN, with U < N; U - 1, with U = N
@@ -27,7 +27,7 @@ module npi_select #(
     output wire             any_o,    // high if a grant is given
     output reg  [PORTS-1:0] ack_o     // grant of the previous cycle
 );
-    // Round-robin mask: ports with a higher number than the port of the same class that was served
+    // Round-robin mask: in each class, the ports with a higher number than the port that was served
     // last.
     reg [PORTS-1:0] later;
     reg [2:0]       run;
@@ -42,8 +42,8 @@ module npi_select #(
     wire [PORTS-1:0] normal  = asking & ~URGENT;
     wire             overdue = run == URGENT_RUN;
     wire [PORTS-1:0] members = |urgent && !(overdue && |normal) ? URGENT : ~URGENT;
-    // The port that was served last is not in `later`, so req_i can be used here instead of
-    // `asking`, which saves one input per port.
+    // `later` excludes the port that was served last, so this line needs no `asking` and uses
+    // req_i, which saves one input per port.
     wire [PORTS-1:0] first   = req_i & later & members;
     wire [PORTS-1:0] turn    = asking & members;
 

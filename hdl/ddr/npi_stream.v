@@ -102,12 +102,12 @@ module npi_stream #(
             request_read <= 1'b0;
         end
 
-        // The idle signals come from flip-flops, and are therefore one clock late, because the
-        // start of a core depends on them.
+        // The start of a core depends on the idle signals, so they come from flip-flops to shorten
+        // the paths. Therefore they are one clock late.
         read_idle_o  <= to_give == {WORD_BITS{1'b0}} && outstanding == 6'd0 &&
             !(request && request_read) && !read_start_i;
         write_idle_o <= filled == 3'd0 && bursts == 3'd0 && !push;
-        // Words and bursts are counted separately, so that the core's take is not followed by a
+        // Words and bursts are counted separately, so that the path from read_take_i contains no
         // carry chain.
         outstanding[2:0] <= outstanding[2:0] - {2'd0, npi_rd_pop_o};
         if (acked_read != popped_burst)
@@ -142,7 +142,7 @@ module npi_stream #(
 
         if (rst_i) begin
             request     <= 1'b0;
-            // the same value as in the idle state, even before npi_init_done_i
+            // the value of the idle state, which also applies before npi_init_done_i
             request_read <= 1'b1;
             to_ask      <= {WORD_BITS{1'b0}};
             to_give     <= {WORD_BITS{1'b0}};
@@ -236,7 +236,7 @@ module npi_stream #(
         assert (to_give == f_left);
         assert (!read_valid_o || f_left != {WORD_BITS{1'b0}});
         assert (to_ask == {WORD_BITS{1'b0}} || to_give >= to_ask);
-        // As long as words must still be requested, all outstanding words are for the core.
+        // As long as words must still be requested, the core receives all outstanding words.
         assert (to_ask == {WORD_BITS{1'b0}} ||
                 {1'b0, to_give} == {1'b0, to_ask} + {{(WORD_BITS - 5){1'b0}}, outstanding});
         assert (f_pushed <= 6'd32);

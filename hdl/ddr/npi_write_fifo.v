@@ -2,13 +2,13 @@
 //
 // npi_write_fifo: write FIFO of one port of npi_arbiter: words of eight bytes with byte enables.
 //
-// If the port writes single bytes, and puts the same byte on all eight lanes, BYTES makes the FIFO
-// store lane 0 only. It then stores 16 bits per word instead of 72.
+// BYTES is for a port that writes single bytes and puts each byte on all eight lanes. The FIFO then
+// stores lane 0 only, which takes 16 bits per word instead of 72.
 
 `default_nettype none
 
 module npi_write_fifo #(
-    parameter BYTES = 0, // 1: all lanes have the same byte
+    parameter BYTES = 0, // 1: the eight lanes of a word have the same byte
     parameter LOG2  = 5, // depth, 2**LOG2 words
     parameter BLOCK = 0  // 1: words are in block RAM; 0: in LUT RAM
 ) (

@@ -108,10 +108,10 @@ module fsmc_bridge #(
 
     // A write happens when NWE rises while NE is low, as in an SRAM. This edge registers address,
     // data and byte lanes, which the STM32 holds for one more HCLK. If the processor aborts an
-    // access, NE rises before NWE, and nothing is written. NWE has no minimum high time. `taken`
-    // follows the edge two to three clocks later, for one cycle. The next edge may arrive after
-    // cdc_bus has copied the write, which takes two clocks plus the skew of the paths. The FSMC
-    // needs at least 33.3 ns from edge to edge, so 13 ns are left for delays.
+    // access, NE rises before NWE, and nothing is written. NWE has no minimum high time. `taken` is
+    // high for one cycle, two to three clocks after the edge. The next edge may arrive as soon as
+    // cdc_bus has copied the write, which takes two clocks (20 ns) plus the skew of the paths. The
+    // FSMC needs at least 33.3 ns from edge to edge, so 13 ns are left for this skew.
     wire [1:0]  ne = ~fsmc_ne_n_i;
     // write that the last edge of NWE has registered; wr_async is high from this edge until a clock
     // after `taken`
@@ -134,7 +134,7 @@ module fsmc_bridge #(
         .bit_async_i({reads, ne[0] && !fsmc_nwe_n_i, hit && clear, hit_safe && clear}),
         .bit_sync_o({seen, writing, hit_seen, safe_seen})
     );
-    // copy of the address, which is valid one clock after `seen`
+    // copy of the address; valid one clock after `seen` rises
     cdc_copy #(.WIDTH(25)) u_at (.clk_i(clk_i), .bus_async_i(address), .bus_sync_o(at));
 
     always @(posedge clk_i or posedge fsmc_noe_n_i)
@@ -181,10 +181,10 @@ module fsmc_bridge #(
     // no effect on the access (fsmc_bridge_proof). The last gate is one LUT.
     // tests/hdl/fsmc/nwait_test.py simulates the netlist with random delays.
     //
-    // If the previous write is still in transfer, a write needs room for both; this room was
-    // counted before the previous write was posted. `roomy` is 0 in the clock after a write, until
-    // `room` includes this write. `roomy` therefore does not fall in the clock in which the
-    // transfer ends.
+    // While the previous write is still in transfer, `room` does not include it yet. The next write
+    // then needs room for both writes; roomy_for_both was counted before the previous write was
+    // posted. `roomy` is 0 in the clock after a write, until `room` includes this write. `roomy`
+    // therefore does not fall in the clock in which the transfer ends.
     reg       roomy;
     reg [1:0] roomy_for_both;
     always @(posedge clk_i) begin
@@ -228,7 +228,7 @@ module fsmc_bridge #(
         .wr_be_i(taken_be),
         .wr_lost_o(wr_lost), .room_o(room), .more_room_o(more_room),
         .rd_addr_async_i(address), .rd_at_i(at), .rd_used_i(mem_reading && hit_seen),
-        // A fetch may not begin during a register access, which may not have been answered yet.
+        // A register access may still wait for its answer here. No fetch begins during this time.
         .rd_miss_i(mem_reading && !hit_seen && !wr_sync && !reg_flush && !bus_valid_o),
         .rd_same_o(same), .rd_found_o(found), .rd_safe_o(hit_safe), .rd_data_o(mem_data),
         .flush_i(reg_flush), .drop_i(reg_access), .idle_o(mem_idle),
@@ -244,7 +244,7 @@ module fsmc_bridge #(
     assign npi_rd_flush_o = 1'b0;
 
     // ---- Errors
-    reg reading_d, excuse_was; // `excuse` is registered, because it arrives late in its clock
+    reg reading_d, excuse_was; // `excuse` one clock later; registered, because it arrives late
     always @(posedge clk_i) excuse_was <= excuse;
     assign access_error_o = reg_error || reg_error_memory || excuse_was;
     assign error_memory_o = !reg_error;
@@ -252,10 +252,10 @@ module fsmc_bridge #(
     assign error_write_o  = reg_error ? reg_write : !reading_d;
 
     // ---- late_o detects a processor that ignores NWAIT. It reports a write without room, and a
-    // read that ended too early. A read is not too early if its data was safe (rd_safe_o) in the
-    // second clock of its address, or has been valid for two clocks since then. The first clock of
-    // an address is not used, because the pins may still have changed. Reads of different addresses
-    // may follow each other without a pause that the clock can detect.
+    // read that ended too early. A read ended in time if its data was safe (rd_safe_o) in the
+    // second clock of its address, or was valid in two successive clocks after that. The first
+    // clock of an address does not count, because the pins may have changed during this clock.
+    // Reads of different addresses may follow each other without a pause that the clock can detect.
     reg [1:0] at_was, at_before, good;
     reg       second, early;
     wire moved  = at_was != at_before;

@@ -72,8 +72,8 @@ module fsmc_bridge_proof #(
         .npi_rd_data_i(64'd0), .npi_rd_word_i(4'd0), .npi_rd_empty_i(1'b1), .npi_init_done_i(1'b1)
     );
 
-    // Internal signals of the bridge. The command flatten joins these wires with the signals of the
-    // same names.
+    // Internal signals of the bridge. Yosys's command flatten connects these wires to the signals
+    // of the same names.
     (* hierconn *) wire \u_fsmc_bridge.clear , \u_fsmc_bridge.excuse , \u_fsmc_bridge.same ,
         \u_fsmc_bridge.found , \u_fsmc_bridge.wr_async , \u_fsmc_bridge.busy ,
         \u_fsmc_bridge.roomy , \u_fsmc_bridge.excused_read , \u_fsmc_bridge.excused_write ,
@@ -113,8 +113,8 @@ module fsmc_bridge_proof #(
     assign \u_fsmc_bridge.u_fsmc_registers.u_done.late = late_done && LATE != 0;
     assign \u_fsmc_bridge.u_access.late = {5{late_access && LATE != 0}};
     wire clear = \u_fsmc_bridge.clear , excuse = \u_fsmc_bridge.excuse ;
-    // `turns` contains the flip-flops through which the toggle of a write moves in cdc_pulse: first
-    // the flip-flop of the source, then those in clk_i, in order.
+    // `turns` contains the flip-flops of cdc_pulse through which the toggle of a write moves: first
+    // the flip-flop clocked by NWE, then the flip-flops clocked by clk_i, in order.
     wire [4:0]  turns = {\u_fsmc_bridge.u_write.u_cdc_pulse.turned ,
         \u_fsmc_bridge.u_write.u_cdc_pulse.u_cdc_bit.bit_meta ,
         \u_fsmc_bridge.u_write.u_cdc_pulse.turned_sync ,
@@ -253,10 +253,9 @@ module fsmc_bridge_proof #(
                 {noe_n_i, nwe_n_i} == {was_noe, was_nwe};
             always @(posedge step) begin
                 {was_levels, was_rooms, was_rst} <= {levels, rooms, rst};
-                // These assumptions are proven in fsmc_memory: while the address is stable, only a
-                // write or a register access discards data. They are proven in fsmc_post as well:
-                // only a write uses room, and if there was room for three halfwords, there is room
-                // for two in the next clock.
+                // The following assumptions are proven elsewhere. fsmc_memory: while the address is
+                // stable, only a write or a register access discards data. fsmc_post: only a write
+                // uses room, and room for three halfwords leaves room for two in the next clock.
                 was_writes <= \u_fsmc_bridge.taken && \u_fsmc_bridge.taken_ne [0];
                 was_drops  <= \u_fsmc_bridge.reg_access || \u_fsmc_bridge.taken ;
                 was_room   <= \u_fsmc_bridge.room ;

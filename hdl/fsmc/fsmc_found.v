@@ -14,7 +14,7 @@ module fsmc_found (
     input  wire [1:0] full_i,     // bit n: all words of block n have arrived
     input  wire       have_one_i, // the word that was fetched alone has arrived
     input  wire       one_block_i, // block of the word that was fetched alone
-    // the address selects the word that was fetched alone, provided that the block is the same
+    // within its block, the address selects the word that was fetched alone
     input  wire       is_one_i,
     output wire       found_o
 );

@@ -8,8 +8,8 @@
 // miss in the same block fetches the whole block. After that, when the processor enters a block,
 // the next block is fetched as well, up to the next multiple of 4 KiB, because both buffers have
 // the same upper address bits. Nothing is fetched while a write waits. A write, or drop_i, discards
-// all data in the buffers and all words that are still to arrive. A read therefore never returns
-// data older than a previous write.
+// all data in the buffers and all words that are still to arrive. Therefore a read never returns
+// data that is older than a previous write.
 //
 // NWAIT depends on the AND of rd_same_o and rd_found_o, which does not glitch while the address is
 // stable. A single flip-flop (a bit of full, or have_one) makes the data of a buffer valid. A fetch
@@ -111,8 +111,8 @@ module fsmc_memory #(
     wire [UPPER-1:0]      rd_upper = rd_addr_async_i[ADDR_BITS-1:REGION_LOG2+2];
 
     // A carry chain compares the tags, because this is the shortest path to NWAIT. The addition
-    // below carries if all its bits are 1. Each bit is 1 if three bits of the region are equal (one
-    // LUT), or one bit of the pair number.
+    // below carries if all its bits are 1. Each of these bits is 1 if three bits of the region, or
+    // one bit of the pair number, are equal; it takes one LUT.
     localparam TRIPLES = (UPPER + 2) / 3;
     wire [3*TRIPLES-1:0] moved = {{(3*TRIPLES-UPPER){1'b0}}, rd_upper ^ upper};
     wire [TRIPLES-1:0]   same_upper;
@@ -148,8 +148,8 @@ module fsmc_memory #(
     assign rd_data_o = rd_addr_async_i[0] ? rd_pairs[2*WIDTH-1:WIDTH] : rd_pairs[WIDTH-1:0];
 
     // ---- The next fetch depends only on the registered copy of the address. While the pins
-    // change, the copy may contain any address. The word that is then fetched is useless, but its
-    // tag is correct.
+    // change, the copy may contain any address. A word that is fetched for such an address is
+    // useless, but its tag is correct.
     wire [BLOCK_LOG2-1:0] at_word  = rd_at_i[BLOCK_LOG2+1:2];
     wire                  at_block = rd_at_i[BLOCK_LOG2+2];
     wire [PAIR-1:0]       at_pair  = rd_at_i[REGION_LOG2+1:BLOCK_LOG2+3];
@@ -163,7 +163,7 @@ module fsmc_memory #(
     wire last     = npi_rd_pop_o && (single || &fetch_word);
     wire miss     = rd_miss_i && idle_o && !fetching && !at_whole &&
         !(at_alone && at_word == one_word);
-    // the second miss in the block of the single word, which fetches the block
+    // the second miss in the block of the single word; it fetches the whole block
     wire second   = at_alone;
     wire enter    = rd_used_i && at_whole && ahead && at_block != current;
     wire border   = current && &pair1;         // the current block is the last block of a region

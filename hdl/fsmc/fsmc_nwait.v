@@ -14,8 +14,8 @@ module fsmc_nwait #(
     parameter WAIT_HIGH = 0 // 1: NWAIT is active high
 ) (
     input  wire ne1_i,    // the access is to memory
-    input  wire holds1_i, // an access to memory must wait, unless its data is in a buffer
-    // an access to memory is a read that need not wait if its data is in a buffer
+    input  wire holds1_i, // an access to memory must wait; counts_i gives the exception
+    // the access is a read from memory that need not wait if its data is in a buffer
     input  wire counts_i,
     // same_i && found_i: the data is in a buffer (rd_same_o and rd_found_o of fsmc_memory)
     input  wire same_i,

@@ -52,12 +52,12 @@ module fsmc_post #(
 
     wire       joins = open_addr == wr_addr_i[ADDR_BITS-1:2];
     wire [LOG2-1:0] tail = head + count;
-    wire full   = &count; // no further word can be closed, so the open word stays open
+    wire full   = &count; // no other word can be closed, so the open word stays open
     wire close  = open && !full && (&open_be || flush_i || (wr_i && !joins));
     wire accept = wr_i && !(full && open && !joins);
 
     assign wr_lost_o    = wr_i && !accept;
-    // The open word is counted as a closed word, so that room becomes smaller only by a write.
+    // The open word is counted as a closed word, so that only a write reduces the room.
     assign room_o       = !(&count[LOG2-1:1] || (open && count == (1 << LOG2) - 3));
     localparam [LOG2-1:0] LOW = 3;
     assign more_room_o  = !(&(count | LOW) && (count[0] || count[1] || open));

@@ -27,7 +27,7 @@ module fsmc_registers (
     input  wire        rd_high_async_i, // pin: the processor reads the high half
     input  wire        ne_n_async_i,    // pins: the access ends when one of them is high
     input  wire        noe_n_async_i,
-    // rd_data_o is the data of this access; low again when the access ends
+    // high from the time at which rd_data_o is the data of this access, until the access ends
     output wire        rd_done_o,
     output wire [15:0] rd_data_o,
     // time-out: the bridge counts clocks while busy_o is high, and starts from zero when restart_o
@@ -76,7 +76,7 @@ module fsmc_registers (
     wire same     = in_range && addr == bus_addr_o;
     // this write is of a low half, which is only stored
     wire keep     = wr_i && !high && in_range;
-    // this read is of the high half that is stored
+    // this read is of the high half, which `word` already contains
     wire kept     = !wr_i && high && half_read && same;
     wire wrong    = !in_range || (wr_i && !(half_write && same));
     wire transfer = begins && !keep && !kept && !wrong;
@@ -176,8 +176,8 @@ module fsmc_registers (
     reg        was_busy = 1'b0;
     reg [40:0] write_was;
     always @* begin
-        // NWAIT prevents the next write, and a change of its data, until the previous write is
-        // finished.
+        // NWAIT delays the next write until the previous write is finished. Until then, address and
+        // data of the previous write do not change.
         assume (!(busy_o && wr_i));
         assume (!(was_busy && busy_o) || write_was == {wr_addr_i, wr_data_i});
         // The time-out is counted as in the bridge.
@@ -211,8 +211,9 @@ module fsmc_registers (
                 assert ($past(flushing));
             if (flushing && !$past(flushing))
                 assert ($past(idle && (wr_i || reading_i)));
-            // Words are atomic. The stored high half belongs to the word that was read last. A word
-            // that is written consists of the low half written just before and of this high half.
+            // Words are atomic. A stored high half belongs to the word that was read last. A
+            // written word consists of the low half that was written just before, and of the high
+            // half that is written now.
             assert (!half_read || (word == last_read && low_read));
             assert (!half_read || $past(half_read) || $past(reading_i));
             assert (half_write == low_word);

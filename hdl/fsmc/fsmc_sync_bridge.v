@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_sync_bridge: a bridge with the function and the ports of fsmc_bridge that samples all pins
-// with clk_i. No pin is a clock or an asynchronous clear, and the only paths from pin to pin are
-// those from NE and NOE to NWAIT and to the output enable of the data bus.
+// fsmc_sync_bridge: an alternative to fsmc_bridge with the same ports, which samples all pins with
+// clk_i. No pin is a clock or an asynchronous clear, and the only paths from pin to pin are those
+// from NE and NOE to NWAIT and to the output enable of the data bus.
 //
 // Use it on a board whose timing does not meet the constraints of fsmc_bridge. An access takes
 // about twice as long, and the settings of the FSMC must satisfy these rules (docs/fsmc.md):
 // - modes A, C or D, or the multiplexed mode, with NWAIT for reads and for writes
-// - NOE and NWE are both high for at least four clocks, plus the delay of NWAIT, between accesses
-// - MUXED: NADV is low for at least two clocks, and the address is held for two clocks after it
+// - between accesses, NOE and NWE are both high for at least four clocks plus the delay of NWAIT
+// - MUXED: NADV is low for at least two clocks, and the address is held for two more clocks
 //
 // An access begins when a strobe (NOE or NWE) has been sampled low for two clocks, and no earlier
 // access to a register is in progress. Address, data and byte lanes are registered in this clock.
-// As soon as the data of a read is available, or a write has been taken, ready goes high and ends
-// the wait. It goes low when the strobe has been sampled high. If the processor abandons a write
-// before this, the write is carried out completely or not at all.
+// As soon as the data of a read is available, or a write has been taken, `ready` goes high and ends
+// the wait. `ready` goes low when the strobe has been sampled high. If the processor abandons a
+// write before `ready` is high, the write is carried out completely or not at all.
 
 `default_nettype none
 `include "shift_order.vh"
@@ -95,8 +95,8 @@ module fsmc_sync_bridge #(
     wire [24:0] address;
     generate
         if (MUXED != 0) begin : g_muxed
-            // `pins_was` was sampled with the level of NADV that nadv_n shows now. The last value
-            // while NADV is low is the address.
+            // `pins_was` and nadv_n were sampled at the pins in the same clock. Therefore `low`
+            // keeps the value from the last clock in which NADV was low, which is the address.
             wire       nadv_n;
             reg [15:0] low, pins_was;
             cdc_bit #(.INITIAL(1'b1)) u_nadv (
@@ -118,16 +118,16 @@ module fsmc_sync_bridge #(
     // ---- The access in progress.
     // active: the access has begun and is not answered yet.
     // ready: the access is answered, but its strobe has not been sampled high yet.
-    // settled: the strobe was still low when address and data were sampled. They are then valid,
-    //   even if the processor abandons the access, and the access is carried out. A read from
-    //   memory has no side effect, so it does not wait for this.
+    // settled: the strobe was still low when address and data were sampled, so both are valid. The
+    //   access is then carried out even if the processor abandons it. A read from memory does not
+    //   wait for `settled`, because it has no side effect.
     // used: the access is a read from memory that has been answered; fsmc_memory reads ahead.
     reg         active, ready, settled, used, seen_was;
     reg         is_write, is_register;
     reg  [24:0] addr;
     reg  [15:0] wdata, rdata;
     reg  [1:0]  be;
-    reg         reading; // a read of a register, from its begin until its strobe rises
+    reg         reading; // a register is being read; high until the strobe has risen
     wire        seen   = |{reads, writes};
     wire        busy;       // a register is being written or read
     wire        begins = seen && seen_was && !active && !ready && !busy;
@@ -195,7 +195,8 @@ module fsmc_sync_bridge #(
         .clk_i(clk_i), .rst_i(rst_i),
         .wr_i(reg_write), .wr_addr_i(addr), .wr_data_i(wdata),
         .reading_i(reading), .rd_addr_i(addr), .rd_high_async_i(addr[0]),
-        // Both are levels of this clock domain here: the read ends when `reading` falls.
+        // Here both inputs are levels in the clock domain clk_i. They rise when `reading` falls,
+        // which ends the read.
         .ne_n_async_i(!reading), .noe_n_async_i(!reading),
         .rd_done_o(reg_done), .rd_data_o(reg_data),
         .restart_o(reg_restart), .expired_i(expired),

@@ -3,7 +3,7 @@
 // fsmc_sync_bridge_proof: properties of fsmc_sync_bridge that the processor relies on; for formal
 // verification only.
 //
-// A step is one clock. The pins are the levels that the first flip-flops sample; each synchroniser
+// A step is one clock. The pins have the levels that the first flip-flops sample; each synchroniser
 // may see a change one clock late (cdc_bit). The memory (fsmc_memory, which is proven separately)
 // and the slave of the register bus are unconstrained: they answer at any time with any value, or
 // never. The assumptions are the rules for the processor in the header of fsmc_sync_bridge.
@@ -61,7 +61,8 @@ module fsmc_sync_bridge_proof #(
         .npi_rd_data_i(64'd0), .npi_rd_word_i(4'd0), .npi_rd_empty_i(1'b1), .npi_init_done_i(1'b1)
     );
 
-    // Signals of the bridge: flatten joins these wires with the signals of the same names.
+    // Signals of the bridge. Yosys's command flatten connects these wires to the signals of the
+    // same names.
     (* hierconn *) wire \u_bridge.active , \u_bridge.ready , \u_bridge.settled , \u_bridge.reading ,
         \u_bridge.seen , \u_bridge.seen_was , \u_bridge.busy , \u_bridge.answered ,
         \u_bridge.is_write , \u_bridge.is_register , \u_bridge.writes_memory ,
@@ -79,33 +80,34 @@ module fsmc_sync_bridge_proof #(
     // kind of the access: chip selects, read, write
     wire [3:0]  kind = {ne, reads, writes};
     reg  [3:0]  kind_was = 4'd0;
-    // the strobe was low in the previous step; it was low in the two previous steps
+    // strobe_was: the strobe was low in the previous step; twice_was: in both previous steps
     reg         strobe_was = 1'b0, twice_was = 1'b0;
     reg  [2:0]  pause = 3'd4;        // steps since the last strobe rose, at most 4
     reg  [42:0] bus_was;
     reg         freed = 1'b0;        // NWAIT was inactive in the previous step of this access
-    // the access was carried out; the data that it returned; the steps for which it has waited
+    // done: the write was carried out; given: data that the read returned; is_given: the read has
+    // returned its data; stuck: number of steps for which the access has waited
     reg         done = 1'b0;
     reg  [15:0] given;
     reg         is_given = 1'b0;
     reg  [5:0]  stuck = 6'd0;
-    reg  [42:0] held; // bus in the last step of the strobe
+    reg  [42:0] held; // value of `bus` in the last step in which the strobe was low
     reg         was_busy = 1'b0;
     reg  [42:0] write_was;
 
     always @* begin
         assume (!(ne1_i && ne2_i));
         assume (!(reads && writes));
-        // Data of a read is driven by the bridge, not by the processor.
+        // While a strobe stays low, the kind of the access does not change.
         if (strobe && strobe_was)
             assume (kind == kind_was);
         // After a strobe, both strobes are high for four steps.
         if (strobe && !strobe_was)
             assume (pause[2]);
-        // Address and data are stable from the second step of the strobe on.
+        // Address and data are stable, starting with the second step in which the strobe is low.
         if (strobe && twice_was)
             assume (bus == bus_was);
-        // The strobe stays low until NWAIT has been inactive, and a step longer.
+        // The strobe rises only after a step in which NWAIT was inactive.
         if (ABORTS == 0 && strobe_was && !freed)
             assume (strobe);
     end
@@ -142,12 +144,14 @@ module fsmc_sync_bridge_proof #(
             if (was_busy && \u_bridge.busy )
                 assert (write_was == {\u_bridge.be , \u_bridge.addr , \u_bridge.wdata });
             if (ABORTS == 0) begin
-                // The first sample of a strobe finds NWAIT active; it does not come back.
+                // NWAIT is active in the first step of a strobe. Once inactive, it stays inactive
+                // until the strobe rises.
                 if (strobe && !strobe_was)
                     assert (!nwait_n);
                 if (strobe && freed)
                     assert (nwait_n);
-                // Nothing is late, and the access that was carried out is the one at the pins.
+                // No access ends before it was answered, and the access that was carried out is the
+                // access at the pins.
                 assert (!(\u_bridge.seen_was && !\u_bridge.seen && !\u_bridge.ready ));
                 if (strobe && nwait_n) begin
                     assert (\u_bridge.is_write == writes && \u_bridge.is_register == ne2_i);

@@ -8,14 +8,15 @@
 // - A word written to the bus consists of the last two completed register accesses of the
 //   processor: the low half, then the high half of the same word. An aborted access writes nothing.
 // - A write of a high half, or to an address after the last slot, causes exactly one transfer or
-//   one error report, before the next register access continues. It causes a transfer if the access
-//   immediately before was the write of the low half of the word, and no read was attempted between
-//   the two. Otherwise it causes an error report. A write of a low half causes neither.
+//   one error report, before the next register access continues. It causes a transfer if the
+//   previous access was the write of the low half of the same word, and no read was attempted
+//   between the two writes. Otherwise it causes an error report. A write of a low half causes
+//   neither.
 // - A read returns a half of the word that the bus returned last, and that word has the address of
 //   the read. The transfer of this word began in this access or, for a high half, in the previous
-//   read of its low half. If no access was attempted between these two reads, the transfer was
-//   always that of the low half, so both halves are from one transfer. Otherwise aborted reads may
-//   lie between them, also reads of the low half. A read after the last slot returns 0.
+//   read of its low half. If no access was attempted between these two reads, this transfer began in
+//   the read of the low half, so both halves are from one transfer. Otherwise aborted reads, also
+//   of the low half, may lie between the two reads. A read after the last slot returns 0.
 // - Each read, even if it is aborted, makes at most one transfer. A transfer happens only for an
 //   access.
 //
@@ -44,7 +45,8 @@
     always @* assume (!(was_access && !selected && !was_nwe) || !nwe_n_i);
 
     // ---- Writes
-    // The bridge stores the low half that was written last: low_may, perhaps; low_sure, certainly.
+    // low_may: the bridge may have stored the low half that was written last. low_sure: it
+    // certainly has.
     reg       low_may = 1'b0, low_sure = 1'b0;
     reg [1:0] low_at = 2'd0, low = 2'd0;
     // owed: the bridge owes a transfer or an error report. may: a transfer is allowed; sure: a
@@ -83,8 +85,8 @@
     end
 
     // ---- Reads: transfers
-    // unread: the transfer of the current access has not begun yet. forgotten: that of an aborted
-    // access has not begun yet.
+    // unread: the transfer of the current access has not begun yet. forgotten: the transfer of an
+    // aborted access has not begun yet.
     reg  unread = 1'b0, forgotten = 1'b0;
     wire fetches     = begins && !bus_write;
     wire unread_n    = reads && (!was_reads || (unread && !(fetches && !forgotten)));
@@ -99,7 +101,8 @@
     (* anyconst *) reg [1:0] its;
     // asked: a transfer has begun in this access; got: this transfer has ended
     reg       asked = 1'b0, got = 1'b0;
-    // The bridge stores the high half of the word `its`: half_may, perhaps; half_sure, certainly.
+    // half_may: the bridge may have stored the high half of the word `its`. half_sure: it certainly
+    // has.
     reg       half_may = 1'b0, half_sure = 1'b0;
     reg [1:0] answer_at = 2'd0;
     reg [3:0] answer = 4'd0;
@@ -135,8 +138,8 @@
         cover (a_i == {its, 1'b1} && !beyond_i && half_may && !half_sure && !got_n);
     end
 
-    // ---- The registers of this proof agree with the registers of the bridge. All values are those
-    // of the current step
+    // ---- The registers of this proof agree with the registers of the bridge. All values are from
+    // the current step
     wire [3:0]  turn = turns[4:1] ^ turns[3:0];
     wire        s0 = \u_fsmc_bridge.u_access.bit_meta [4],
         s1 = \u_fsmc_bridge.u_access.bit_sync [4];

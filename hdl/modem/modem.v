@@ -32,8 +32,9 @@ module modem #(
     reg         configure, reset_modem, rings_reset;
 
     // Block RAM with the settings. Words 0..15 are the registers, including the ID; words 28..31
-    // are the key. A word is available one clock after its index. It is not valid if the index was
-    // that of a processor access, because the processor may have written the word in that clock.
+    // are the key. A word is available one clock after its index. If a processor access has set the
+    // index, the word is not valid for other uses, because the processor may have written it in
+    // that clock.
     (* ram_style = "block", no_rw_check *)
     reg  [31:0] words [0:31];
     reg  [1:0]  key_index;
@@ -94,9 +95,9 @@ module modem #(
     wire [6:0]  tx_bytes, rx_bytes;
     wire        tx_waits = !tx_free[4];
     wire        rx_waits = !rx_free[4];
-    // The ring is full, registered one clock later. The delay is allowed, because a waiting byte is
-    // taken two clocks after the end of a packet (`writes`). The register shortens the path to the
-    // word that is read.
+    // High one clock after the ring has become full. This is early enough, because a waiting byte
+    // is taken only two clocks after the end of a packet (`writes`). The register shortens the path
+    // to the word that is read.
     reg         rx_full;
     // RTS is a flip-flop, because the modem may sample the pin at any time, and the output of a LUT
     // may glitch
@@ -115,12 +116,12 @@ module modem #(
     assign bus_ready_o     = turn;
     assign modem_rts_n_o   = rts_n;
     assign modem_reset_n_o = reset_n;
-    // Both are never high together: no packet is ready while the set-up runs.
+    // at_tx_valid and packet_tx_valid are never both high: no packet is sent while the set-up runs.
     assign uart_valid = at_tx_valid || packet_tx_valid;
     assign uart_data  = at_tx_data | packet_tx_data;
-    // `writes` selects the setting with the base address of the receive ring or of the transmit
-    // ring. It is a register, because the index of the setting is on a long path. After a change of
-    // ring, a memory access waits for one clock.
+    // `writes` selects the base address of the receive ring (1) or of the transmit ring (0) in the
+    // settings. It is a register, because the index of the setting is on a long path. After a
+    // change of ring, a memory access waits for one clock.
     reg writes;
     always @(posedge clk_i)
         writes <= wr_valid;

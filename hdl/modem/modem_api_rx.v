@@ -61,8 +61,8 @@ module modem_api_rx (
     end
 
 `ifdef FORMAL
-    // Proves that the contents end once, as complete or as bad, and have as many bytes as the
-    // length field of the frame states.
+    // Proves that the contents of a frame end once, either with end_o or with bad_o, and have as
+    // many bytes as the length field of the frame states.
     reg past = 1'b0;
     initial assume (rst_i);
     reg       open = 1'b0;  // the contents of a frame have begun and have not ended

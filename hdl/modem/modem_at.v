@@ -6,8 +6,8 @@
 // Steps (STATUS.STEP): 1 +++  2 MY  3 DH  4 DL  5 CH  6 ID  7 EE  8 KY (only with EE)  9 RN  10 RO
 // 11 D6  12 D7  13 AP  14 BD  15 CN  0 the modem changes its rate. The table modem_at_rows contains
 // the actions of each step, and this block executes them. Step 1 is tried at the target rate, then
-// at 9600 (the factory setting), then at all rates from BD 7 down, and at last at 250,000. After an
-// attempt, the wait for the answer is also the guard time of the next attempt. Any other command
+// at 9600 (the factory setting), then at all rates from BD 7 down, and at last at 250,000. The wait
+// for the answer to an attempt is also the guard time before the next attempt. Any other command
 // that is rejected or not answered is repeated up to twice.
 
 `default_nettype none
@@ -23,7 +23,8 @@ module modem_at #(
     input  wire [11:0] time_i,
     // control
     input  wire        start_i,    // starts the set-up; allowed only while busy_o is low
-    // high with start_i if no modem is connected: the target rate is then used without a set-up
+    // high together with start_i if a cable replaces the modem: the target rate is then used
+    // without a set-up
     input  wire        wire_i,
     output reg         busy_o,
     output reg         done_o,     // one cycle
@@ -52,13 +53,13 @@ module modem_at #(
     reg       fresh;    // the line has not been idle yet, so the time has not started
     reg       steady;   // the character to send is available
     reg [3:0] value;    // last digit
-    // tried: a command has failed once; walks: it has failed twice. In step 1 they select the next
-    // rate: with tried it is 9600, with walks the next lower rate
+    // tried: a command has failed once; walks: the command has failed twice. In step 1 they select
+    // the rate of the next attempt: with tried 9600, with walks the next lower rate
     reg       tried, walks;
     reg       heard_o, heard_k; // heard_o: the reply ends with "O"; heard_k: it ends with "OK"
     // high for one cycle after a complete reply: ok if it was "OK", refused otherwise
     reg       ok, refused;
-    // bit i: bits 3i+2..3i of the time are equal to the same bits of the guard time
+    // bit i: bits 3i+2..3i of time_i are equal to bits 3i+2..3i of the guard time
     reg [3:0] same;
     // the time is running and the guard time has been read, so `same` is valid
     reg       counts;

@@ -13,7 +13,7 @@ module modem_at_rows #(
     parameter API = 1
 ) (
     input  wire       clk_i,
-    input  wire       clear_i, // the next row is row 0 of the current step
+    input  wire       clear_i, // the next row to read is row 0 of step_i
     input  wire [3:0] step_i,
     // row in the step; the rows are in the order of the states of a shift register
     input  wire [5:0] place_i,

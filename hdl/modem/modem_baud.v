@@ -20,7 +20,7 @@ module modem_baud #(
     input  wire [3:0] bd_i,
     output reg        tick_o
 );
-    // width of the phase, bits; 38400 baud at 100 MHz is a step of 805 / 2**18, which has an error
+    // width of the phase, bits; for 38400 baud at 100 MHz the step is 805 / 2**18, whose error is
     // below 0.04 %
     localparam WIDTH = 18;
     // Steps of the phase per clock: 8 * rate * 2**18 / CLK_HZ, rounded.
@@ -35,8 +35,8 @@ module modem_baud #(
     reg  [4:0]       count; // counts ticks of 38400 baud
 
     // A chain of conditions selects the step, because Yosys turns a case into a ROM with registers
-    // before it. The step is subtracted, because only in a subtraction Yosys always connects
-    // `phase` to the input of the carry chain that needs no LUT.
+    // before it. The step is subtracted: only for a subtraction, Yosys always connects `phase` to
+    // the carry chain's input that needs no LUT.
     localparam [WIDTH:0] FULL = 0;
     wire [WIDTH:0] minus = bd_i[3] ? FULL - BD8[WIDTH:0] : bd_i == 4'd7 ? FULL - BD7[WIDTH:0]
                          : bd_i == 4'd6 ? FULL - BD6[WIDTH:0] : FULL - BASE[WIDTH:0];
@@ -101,8 +101,8 @@ module modem_baud #(
         end
         cover (past && spans && bd_i == rate && tick_o);
     end
-    // The number of carries per second equals eight ticks per bit time times the carries per tick,
-    // within 0.1 %.
+    // The number of carries per second is correct within 0.1 %. A bit has eight ticks, so this
+    // number is eight times the baud rate (for BASE: eight times 38400).
     localparam [63:0] SECOND = CLK_HZ;
     function near(input [31:0] phase_step, input [63:0] wanted); // Returns whether a step gives the
                                                                  // wanted number of carries per

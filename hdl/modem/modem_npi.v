@@ -5,8 +5,8 @@
 //
 // Accesses of single bytes need no word buffers, and are cheap: both directions together need at
 // most 22,000 accesses per second, which is below one percent of the memory bandwidth. Writes have
-// priority, because the serial line does not wait. A request that has been accepted is completed
-// even if its packet is dropped.
+// priority, because the serial line does not wait. A write or read that has been accepted is
+// completed even if its packet is dropped.
 
 `default_nettype none
 
@@ -78,7 +78,8 @@ module modem_npi (
         wanted <= rd_valid_i && (wanted || state == IDLE);
         case (state)
             IDLE: begin
-                // the select input is wr_valid_i, because `start` arrives later
+                // the select input is wr_valid_i instead of `start && wr_valid_i`, because `start`
+                // arrives later
                 addr <= {base_i, wr_valid_i ? wr_addr_i[10:3] : rd_addr_i[10:3]};
                 if (start && wr_valid_i)
                     state <= WRITE;

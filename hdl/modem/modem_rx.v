@@ -6,8 +6,8 @@
 // packet ends after this length, after 100 bytes, after a silence of 3.2 characters, or at a
 // framing error. In API mode, a packet is the contents of a frame, and ends with the frame. A
 // packet is published only after it is in memory. If no buffer is free, the whole packet is
-// dropped. If the memory is more than a byte time late, the current packet and the bytes that
-// follow without a pause are lost; earlier packets are kept.
+// dropped. If the memory is late by more than the time of a byte, the current packet and the bytes
+// that follow without a pause are lost; earlier packets stay in the ring.
 
 `default_nettype none
 
@@ -54,8 +54,8 @@ module modem_rx (
     wire       late    = (rx_valid_i || rx_error_i || rx_end_i || rx_bad_i) && pending && !taken &&
         !deaf;
     wire       done    = ending && !wr_busy_i;
-    // The index is at most 100, so that four of its bits are enough to identify 99. modem_api_rx
-    // never delivers a packet of this length.
+    // Outside API mode, the index is at most 100, so its bits 6, 5, 1 and 0 identify 99. In API
+    // mode, the limit is index 112, which modem_api_rx never reaches.
     wire       longest = api_i ? &wr_index_o[6:4] :
                          (wr_index_o[6] && wr_index_o[5] && wr_index_o[1] && wr_index_o[0]) ||
                          (near && wr_index_o[1:0] == length[1:0]);
@@ -105,8 +105,8 @@ module modem_rx (
         if (silent)
             deaf <= 1'b0;
         if (late) begin
-            // The earlier byte has not been taken and is overwritten. If its packet is incomplete,
-            // the packet is lost as well.
+            // The previous byte is overwritten before the memory has taken it. If its packet is
+            // incomplete, the packet is lost as well.
             deaf    <= 1'b1;
             pending <= 1'b0;
             if (!ending) begin
@@ -147,7 +147,7 @@ module modem_rx (
         assume (!wr_ready_i || (wr_valid_o && !owed));
         assume (wr_busy_i == owed);
         owed <= write || (owed && !acknowledge);
-        // In modem.v, the ring becomes full only by a packet, and this block receives the flag one
+        // In modem.v, the ring becomes full only when a packet is pushed, and full_i rises one
         // clock later.
         if (past)
             assume (!full_i || $past(full_i) || $past(push_o));

@@ -37,8 +37,8 @@ module modem_tx (
 
     reg [1:0] state;
     reg [8:0] count; // number of bytes read; in state REST, number of ticks of silence
-    // in state REST: the modem transmits this packet without a pause. A register, because the path
-    // would be too long
+    // in state REST: 1 if the modem transmits this packet without a pause; a register, to shorten
+    // the path
     reg       whole;
 
     wire last   = rd_index_o == packet_bytes_i;                // all bytes of the packet have been
@@ -123,8 +123,8 @@ module modem_tx (
             // The buffer is freed once, after all its bytes have been sent.
             if (sent_o)
                 assert (packet_valid_i && out == packet_bytes_i && !$past(sent_o));
-            // If the length of a packet does not make the modem transmit it, the line is idle for
-            // 320 ticks after the packet.
+            // The line is idle for 320 ticks after a packet, unless its length alone makes the
+            // modem transmit it.
             if (state == REST && tx_ready_i)
                 assert (ends == (api_i || full || rest >= 9'd320));
             assert (state != REST || (count == rest && whole == full));

@@ -68,9 +68,9 @@ module modem_uart_rx (
 
 `ifdef FORMAL
     // Proves that a byte from a sender with the same rate is received once, during its stop bit,
-    // and that a tick without a sample changes nothing else. With `sender`, a model of the sender
-    // advances by one tick per clock. Otherwise ticks and line are unconstrained, and only changes
-    // of registers are checked.
+    // and that a tick without a sample changes nothing else. If `sender` is 1, a model of the
+    // sender advances by one tick per clock. If it is 0, ticks and line are unconstrained, and only
+    // changes of registers are checked.
     (* anyconst *) reg sender;
     reg past = 1'b0;
     wire busy = !idle;

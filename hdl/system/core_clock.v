@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// core_clock: generates a clock with the frequency clk_i * MULTIPLY / DIVIDE, which is at most that
-// of clk_i. On Xilinx FPGAs it uses a DCM_CLKGEN.
+// core_clock: generates a clock with the frequency of clk_i times MULTIPLY / DIVIDE, which is at
+// most 1. On Xilinx FPGAs it uses a DCM_CLKGEN.
 //
 // The generated clock has no fixed phase to clk_i, so signals cross through hdl/cdc. In simulation
 // its edges coincide with edges of clk_i, so a fractional ratio is reached only on average, as with
@@ -17,7 +17,7 @@ module core_clock #(
     output wire clk_o
 );
 `ifdef VERILATOR
-    reg [9:0] phase; // phase in half clocks, in units of 1 / DIVIDE
+    reg [9:0] phase; // position in the half period of clk_o, in units of 1 / DIVIDE
     reg       level;
     assign clk_o = level;
     initial {phase, level} = 11'd0;

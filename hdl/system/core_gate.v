@@ -14,8 +14,8 @@ module core_gate #(
     input  wire clk_i,
     input  wire rst_i,
     input  wire access_i, // high during an access to the core's slot
-    // high if the core guarantees that without an access, no register changes later than 16 clocks
-    // from now
+    // high while the core is idle: unless an access follows, its registers may change for at most
+    // 16 more clocks
     input  wire idle_i,
     output wire clk_o
 );
@@ -26,12 +26,12 @@ module core_gate #(
         end else begin : g_gate
             reg  [4:0] rest; // number of clocks since the core became idle, up to 16
             wire       active = rst_i || access_i || !idle_i;
-            (* keep *) wire run; // kept, because core_pins.ucf refers to this net by its name
+            (* keep *) wire run; // net name is kept, because core_pins.ucf uses it
             assign     run    = active || !rest[4];
             always @(posedge clk_i)
                 rest <= active ? 5'd0 : rest + {4'd0, !rest[4]};
 `ifdef VERILATOR
-            reg open; // sampled before the rising edge of the clock, as in a BUFGCE
+            reg open; // `run` as sampled before the rising edge of clk_i, as in a BUFGCE
             reg ungated;
             initial ungated = $test$plusargs("ungated") != 0; // for comparisons
             always_latch
@@ -39,7 +39,8 @@ module core_gate #(
                     open = run;
             assign clk_o = clk_i && (open || ungated);
 `elsif FORMAL
-            // In proofs the gated clock has a single edge, at the time at which the gate closes.
+            // In proofs, the gated clock has a single rising edge, at the time at which the gate
+            // closes.
             reg closed;
             always @(posedge clk_i)
                 closed <= !run;

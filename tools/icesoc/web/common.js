@@ -8,7 +8,7 @@ function element(tag, text, className) {
   if (className) e.className = className;
   return e;
 }
-function shape(tag, attributes, text) { // an element of a drawing
+function shape(tag, attributes, text) { // makes an element of an SVG drawing
   const e = document.createElementNS("http://www.w3.org/2000/svg", tag);
   for (const [key, value] of Object.entries(attributes)) e.setAttribute(key, value);
   if (text !== undefined) e.textContent = text;

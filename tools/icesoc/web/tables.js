@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
 //
-// tables: tables by Tabulator and charts by uPlot, in the page's colours. Where these could not be
-// fetched at build time, tables are plain and have all rows, and a chart is a table of its points.
+// tables: tables by Tabulator and charts by uPlot, in the page's colours. If the build could not
+// download these libraries, a table is plain and has all rows, and a chart is a table of its points.
 
-// Shows rows in `place`, replacing its content. A column is [title, value(row), cell(row), options
-// of Tabulator's]: the value is sorted, filtered and downloaded; the cell (text or an element; by
-// default the value) is shown.
-//   options.id        of the table
+// Shows rows in `place`, replacing its content. A column is [title, value(row), cell(row),
+// Tabulator's options]. The value is used to sort, to filter, and for the download; the cell is shown
+// (a text or an element; default: the value).
+//   options.id        id of the table's element
 //   options.filter    placeholder of the filter box, next to a button that downloads CSV
-//   options.children  (row) => the rows below it, which fold; options.open: (row) => whether they are open at first
-//   options.pick      (row, Tabulator's, if there is one): action of a click and Enter; arrow keys move from row to row, and fold
-//   options.picked    (row) => whether it is the picked row
+//   options.children  (row) => the rows below this row, which can be folded
+//   options.open      (row) => whether the rows below this row are shown at first
+//   options.pick      (row, Tabulator's row object or undefined): action of a click or Enter; arrow keys move the focus, and fold rows
+//   options.picked    (row) => whether this row is the picked row
 function table(place, columns, rows, options = {}) {
-  const content = (row, [, value, cell]) => { // a node: Tabulator would take text as HTML
+  const content = (row, [, value, cell]) => { // returns a node, because Tabulator would interpret a text as HTML
     const seen = (cell ?? value)(row) ?? "";
     return seen instanceof Node ? seen : document.createTextNode(seen);
   };
@@ -45,15 +46,15 @@ function table(place, columns, rows, options = {}) {
     box.append(plain);
     return;
   }
-  // As wide as the widest text of the first rows, or as its share of the width: then the text
-  // breaks into lines.
+  // A column is as wide as the widest text of the first rows. If all columns together are too wide,
+  // each gets its share of the width, and texts break into lines.
   const pen = document.createElement("canvas").getContext("2d");
   pen.font = `bold ${getComputedStyle(document.body).font}`;
   const widest = column => Math.max(12 + pen.measureText(column[0]).width, ...rows.slice(0, 100).map(row => content(row, column))
     .map(seen => pen.measureText((seen.querySelector?.("summary, div") ?? seen).textContent).width));
   const wides = columns.map(column => Math.max(Math.min(widest(column) + 32, 700), column[3]?.minWidth ?? 0));
   if (place.clientWidth >= 800) box.style.maxWidth = `${Math.ceil(wides.reduce((sum, wide) => sum + wide, 20))}px`;
-  const narrow = place.clientWidth < 600 ? 0.55 : 1; // there, texts break sooner
+  const narrow = place.clientWidth < 600 ? 0.55 : 1; // on a narrow page, texts break sooner
   let marked;
   const mark = row => {
     if (!options.picked?.(row.getData().row)) return;
@@ -65,7 +66,7 @@ function table(place, columns, rows, options = {}) {
     options.pick(row.getData().row, row);
     mark(row);
   };
-  const unfold = rows => rows.forEach(row => { // unfolds filtered rows, else those open at first
+  const unfold = rows => rows.forEach(row => { // unfolds all rows if there is a filter, else the rows of options.open
     if (!row.getTreeChildren().length) return;
     if (filter.value || options.open?.(row.getData().row)) row.treeExpand();
     else row.treeCollapse();
@@ -123,9 +124,10 @@ function table(place, columns, rows, options = {}) {
   }
 }
 
-// Draws series over points in `place`: {labels: of each point, on the axis; titles: of each, in the read-out below; series: [{name,
-// values, colour: of the page's "--good", bars: true or a line, label: (i) => text for the read-out}]; limits: [{name, value, colour}],
-// dashed; height in pixels}. The pointer and the arrow keys choose the point that is read out; at first it is the last.
+// Draws series of points in `place`. labels: text of each point on the axis; titles: text of each point in the read-out below the chart;
+// series: [{name, values, colour (a variable of the page, such as "--good"), bars (true: bars; otherwise a line), label: (i) => text for
+// the read-out}]; limits: dashed lines, [{name, value, colour}]; height: in pixels. The pointer and the arrow keys choose the point for
+// the read-out; at first, it is the last point.
 function chart(place, {labels, titles = labels, series, limits = [], height = 190}) {
   place.drawn?.destroy();
   place.replaceChildren();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// fields: the fields of forms, made from types of Slice. A field is {node, get, set}: get returns
-// the value that Slice.check() takes, set shows a value.
+// fields: makes the fields of forms from types of Slice. A field is {node, get, set}: get returns
+// the entered value for Slice.check(), set shows a value.
 
 const MOST_ROWS = 500; // rows of a table; a longer sequence is shown as JSON
 
@@ -29,13 +29,14 @@ function fileInput(name, accept, take) {
     return file;
 }
 
-// Returns the rows of a text: JSON, or a line per row with commas, semicolons, tabs or spaces.
+// Returns the rows of a text. The text is JSON, or has a line for each row, with commas,
+// semicolons, tabs or spaces between the values.
 function rowsOfText(text) {
-    try { return JSON.parse(text); } catch { /* no JSON */ }
+    try { return JSON.parse(text); } catch { /* the text is not JSON */ }
     return text.trim().split(/\r?\n/).map(line => line.trim().split(/[,;\t ]+/));
 }
 
-// Returns a short number as a number, and any other text as it is: Slice.check() reports it.
+// Returns a short number as a number, and any other text unchanged; Slice.check() rejects it.
 const numberOf = text => /^[+-]?\d{1,15}(\.\d+)?(e[+-]?\d{1,3})?$/i.test(text.trim()) ? Number(text) : text.trim();
 
 function integerField(parameter, made, label) {
@@ -73,7 +74,7 @@ function structField(parameter, id) {
         set: value => inner.forEach(([name, f]) => { if (value[name] !== undefined) f.set(value[name]); })};
 }
 
-// A class: a list of the classes that fit, and the fields of the selected one.
+// A class: a list of the class and its derived classes, and the fields of the selected class.
 function classField(parameter, id) {
     const slice = station.slice, select = element('select'), place = element('div');
     let inner = [];
@@ -94,7 +95,8 @@ function classField(parameter, id) {
     return {node: group(parameter, id + '.group', select, place), get, set};
 }
 
-// A sequence or a dictionary: a table with a row per element, the same as JSON, and a file.
+// A sequence or a dictionary: a table with a row per element, a text box with the same values as
+// JSON, and a file input.
 function tableField(parameter, id) {
     const slice = station.slice, its = slice.get(parameter.type), isDictionary = its.kind === 'dictionary';
     const isStruct = slice.get(its.element).kind === 'struct';
@@ -112,7 +114,7 @@ function tableField(parameter, id) {
         const value = isStruct ? Object.fromEntries(valueColumns.map((c, i) => [c.name, inner[i]])) : inner[0];
         return isDictionary ? [values[0], value] : value;
     };
-    const written = () => { // from the table to JSON
+    const written = () => { // copies the table to the JSON text
         isText = false;
         area.value = json(rows.map(rowValue));
         count.textContent = `${rows.length} rows`;
@@ -134,7 +136,7 @@ function tableField(parameter, id) {
         rows.push(row);
         return row;
     };
-    // Shows values as rows; a long list only as JSON.
+    // Shows values as rows of the table; a long list is only shown as JSON.
     const show = values => {
         rows = [];
         const list = isDictionary && !Array.isArray(values) ? Object.entries(values) : values;
@@ -147,7 +149,7 @@ function tableField(parameter, id) {
     add.type = 'button';
     add.onclick = () => { const row = addRow(); body.append(row.node); written(); row.node.querySelector('input, select')?.focus(); };
     body.oninput = body.onchange = written;
-    body.onpaste = event => { // rows of a spreadsheet
+    body.onpaste = event => { // accepts rows of a spreadsheet
         const text = event.clipboardData.getData('text');
         if (!text.trim().includes('\n')) return;
         event.preventDefault();
@@ -166,7 +168,7 @@ function tableField(parameter, id) {
     return {node: group(parameter, id + '.group', scroll, add, count, more), get, set};
 }
 
-// Bytes as JSON or 0x..., or from a file.
+// A sequence of bytes: a text, JSON or 0x..., and a file input.
 function bytesField(parameter, made, label) {
     const area = element('textarea');
     let bytes = null;
@@ -192,7 +194,7 @@ function optionalField(parameter, id) {
         set: value => { given.checked = value !== null; if (value !== null) inner.set(value); }};
 }
 
-// Returns the field of a parameter. `cell`: name of a field without a label, in a table.
+// Returns the field of a parameter. `cell`: name of the field if it is in a table, without a label.
 function field(parameter, id, cell) {
     const slice = station.slice, type = parameter.type, its = slice.get(type);
     if (parameter.tag !== undefined) return optionalField(parameter, id);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// live: asks /state four times a second, and shows the answer.
+// live: requests /state from the server four times a second, and shows it.
 
-const scale = 2; // screen pixels of the canvas for one of the frame
+const scale = 2; // pixels of the canvas for one pixel of the frame
 let picture = null, pictureWanted = false;
-var corners = null; // those that a call of this page returned: {features, found}
+var corners = null; // corners returned by a call from this page: {features, found}
 
 function row(cells) {
     const tr = element('tr');
@@ -39,7 +39,7 @@ function showFrame(state) {
     canvas.dataset.features = state.features.length;
 }
 
-// The other vehicles, each as its newest picture.
+// Shows the newest picture of each other vehicle.
 function showOthers(others) {
     const shown = $('others').dataset;
     if (shown.names === String(others)) return;
@@ -74,14 +74,14 @@ function showCalls(calls) {
         number(c.bytes_up, ''), number(c.bytes_down, '')])));
 }
 
-// A lane for each direction of the air, the calls, each task of the firmware, and each slot that
-// the processor accessed: tall marks are events, or most accesses. One path a lane and kind; only
-// calls have a title.
+// Draws a lane for each direction of the air, for the calls, for each task of the firmware, and for
+// each slot that the processor accessed. In the lane of a slot, the height of a mark is the number
+// of accesses, and an event has full height. All marks of one kind in a lane are one SVG path; only calls have a title.
 function showTimeline(state) {
     const events = state.events, svg = $('timeline'), width = svg.getBoundingClientRect().width || 1200, left = 120, height = 22;
     if (!events.length || !state.air) return;
     const end = state.air.ns, first = state.calls.find(c => c.ns)?.ns ?? end, chosen = $('span').value;
-    // The first call waits for the set-up of the modems, so only its end is shown.
+    // The first call begins with the set-up of the modems, so only the end of the call is shown.
     const span = chosen === 'call' ? 1.5 * (end - first) : Number(chosen) * 1e9, begin = span ? Math.max(0, end - span) : 0;
     const x = ns => left + (width - left - 10) * (ns - begin) / (end - begin);
     const lanes = [];
@@ -100,7 +100,7 @@ function showTimeline(state) {
         if (e.packet !== undefined) {
             const its = lane(e.from === 'ground' ? 'ground to UAV' : 'UAV to ground');
             if (e.lost) {
-                its.lost += bar(e.ns, 1, 3); // full height, whatever its length, with a cap
+                its.lost += bar(e.ns, 1, 3); // full height whatever the packet's length, with a cap
                 its.cap += `M${(x(e.ns) - 2).toFixed(1)} -19h7v3h-7z`;
             } else its.mark += bar(e.ns, e.packet / 100);
         }
@@ -124,7 +124,7 @@ function showTimeline(state) {
 }
 
 const hex = (value, digits) => '0x' + value.toString(16).padStart(digits, '0');
-// The registers of a slot with their byte addresses in it; those whose values have changed in the last two seconds are marked.
+// Returns a table of a slot's registers with their byte addresses in the slot. Registers that have changed within two seconds are marked.
 const known = new Map(); // slot and word: its value, and the time of its last change
 function registersOf(slot) {
     const table = element('table');
@@ -139,7 +139,7 @@ function registersOf(slot) {
         const line = element('tr', undefined, 'fields'), cell = element('td');
         cell.colSpan = 4;
         for (const f of w.fields) {
-            const shown = typeof f.value === 'number' && f.value >= 0x10000 ? hex(f.value, 8) : f.value; // addresses
+            const shown = typeof f.value === 'number' && f.value >= 0x10000 ? hex(f.value, 8) : f.value; // addresses in hexadecimal
             const field = element('span', `${f.name} ${shown}`, f.value && f.value !== 'cleared' ? 'set' : '');
             field.title = f.doc;
             cell.append(field, ' ');
@@ -150,7 +150,7 @@ function registersOf(slot) {
     return table;
 }
 
-// All slots in their section, and each core's next to the operations of its object.
+// Shows the registers of all slots in one section, and those of each core also at its object.
 function showSlots(slots) {
     const used = slots.filter(s => s.words.length);
     $('slots').replaceChildren(...used.map(s => {

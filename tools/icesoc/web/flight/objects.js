@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// objects: a card for each object of the vehicle, with a form for each of its operations, made from
-// Slice; calls by Ice for JavaScript, results, events, and a history. fields.js makes the fields.
+// objects: shows a card for each object of the vehicle, with a form for each of the object's
+// operations, made from Slice. Calls operations by Ice for JavaScript, and shows their results, the
+// events, and a history of the calls. fields.js makes the fields of the forms.
 
 const $ = id => document.getElementById(id);
 const MOST_EVENTS = 200, MOST_CALLS = 50;
 const now = () => { const date = new Date(); return new Date(date - 60000 * date.getTimezoneOffset()).toISOString().slice(0, 19).replace('T', ' '); };
 let station = null; // Slice, communicator, adapter of listeners
 
-// Returns JSON of a value: bytes as a list, 64-bit numbers as digits.
+// Returns a value as JSON: bytes as a list, numbers beyond 2**53 as texts.
 const json = value => JSON.stringify(value, (_, each) => each instanceof Uint8Array ? [...each] : typeof each === 'bigint'
     ? Number.isSafeInteger(Number(each)) ? Number(each) : String(each) : each);
 
@@ -25,13 +26,13 @@ async function connect() {
     return station;
 }
 
-// The vehicle that is called.
+// Returns the selected vehicle, which calls go to.
 const vehicle = () => station.vehicles[Math.max(0, $('vehicles').querySelector('select').selectedIndex)];
 
 async function proxyOf(object) {
     const its = vehicle(), quoted = object.identity.replace(/[\\"]/g, '\\$&');
     if (its.tls && !its.isChosen) {
-        // A browser chooses its certificate for a WebSocket only after a request by https.
+        // A browser uses a client certificate for a WebSocket only if an https request has selected it.
         await fetch(`https://${location.hostname}:${its.port}/`, {mode: 'no-cors', credentials: 'include'}).catch(() => {});
         its.isChosen = true;
     }
@@ -52,7 +53,7 @@ async function listenerProxy(proxy, interface_) {
     return station.adapter.addWithUUID(station.slice.listener(interface_, take)).ice_oneway();
 }
 
-// A picture in a result, as a canvas; null for anything else.
+// Returns a canvas for a result that is a picture; null for any other result.
 function pictureOf(value, type) {
     const names = station.slice.picture(type);
     if (!names) return null;
@@ -66,14 +67,14 @@ function pictureOf(value, type) {
     return canvas;
 }
 
-// Text of a call for the shell.
+// Returns the shell command for a call.
 const shellQuoted = text => /^[\w@%+=:,.\/-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`;
 function asShell(object, operation, values) {
     const words = Object.entries(values).map(([name, value]) => shellQuoted(`${name}=${typeof value === 'string' ? value : json(value)}`));
     const watch = Object.values(values).includes('watch') ? ['--watch'] : [];
     return [station.command, shellQuoted(`${object.identity}.${operation.name}`), ...words, ...watch].join(' ');
 }
-// Text of a call as a program in Python.
+// Returns the Python program for a call.
 function asPython(object, operation, values) {
     const slice = station.slice, python = type => type.slice(2).replaceAll('::', '.');
     const literal = (value, type, tag) => {
@@ -113,7 +114,7 @@ function shown(results, operation) {
     return list;
 }
 
-// Corners that a call returned replace those of the mission in the frame.
+// Draws corners that a call returned, in place of the mission's corners.
 function draw(results) {
     const found = Object.values(results).find(value => value && Array.isArray(value.best));
     if (found) corners = {features: found.best.map(f => [f.x, f.y, f.score]), found: found.found};
@@ -186,7 +187,7 @@ function remember(object, operation, given, line, repeat) {
     while ($('history').children.length > MOST_CALLS) $('history').lastChild.remove();
 }
 
-// Forms are made when a card is opened first: a vehicle may have hundreds of operations.
+// A card gets its forms when it is first opened, because a vehicle may have hundreds of operations.
 function card(object) {
     const details = element('details'), summary = element('summary');
     summary.append(element('b', object.identity), ' ', element('small', object.interface.slice(2).replaceAll('::', '.') || 'unknown interface'));
@@ -196,7 +197,7 @@ function card(object) {
         if (!details.open || details.children.length > 1) return;
         const forms = element('div'), registers = element('aside');
         forms.append(...station.slice.operations(object.interface).map(operation => operationForm(object, operation)));
-        registers.dataset.block = object.block; // live.js fills it
+        registers.dataset.block = object.block; // live.js shows the registers here
         const body = element('div', undefined, 'card');
         body.append(forms, ...(object.block ? [registers] : []));
         details.append(body);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 //
-// slice: values of Slice in the browser, by the description that `slice2c --describe` prints:
-// checks, marshalling by stock Ice for JavaScript, and calls. No code is generated.
+// slice: checks and marshals values of Slice in the browser, and calls operations, by stock Ice for
+// JavaScript. The types come from the output of `slice2c --describe`; no code is generated.
 
 const INTEGERS = {byte: [0n, 255n], short: [-(2n ** 15n), 2n ** 15n - 1n], int: [-(2n ** 31n), 2n ** 31n - 1n],
     long: [-(2n ** 63n), 2n ** 63n - 1n]};
 
-// An instance of a class, which arrives after the values that refer to it.
+// A reference to an instance of a class. Ice sends instances after the values that refer to them.
 class Later {
     constructor() { this.instance = null; }
 }
@@ -15,7 +15,7 @@ class Slice {
     constructor(declarations) { Object.assign(this, {declarations, exceptions: new Map(), values: new Map()}); }
 
     get(type) { return this.declarations[type] || {kind: ''}; }
-    // A declaration and its bases, the most derived first.
+    // Returns a declaration and its bases, the most derived first.
     lineage(id) {
         const ids = [];
         for (const todo = [id]; todo.length;) {
@@ -43,13 +43,13 @@ class Slice {
         if (its.kind === 'dictionary') return `dictionary<${this.named(its.key)}, ${this.named(its.element)}>`;
         return type.replace(/^::/, '').replaceAll('::', '.');
     }
-    // Names of width, height and pixels of a struct that is a grey picture, or null.
+    // Returns the names of width, height and pixels if a struct is a grey picture, otherwise null.
     picture(type) {
         const fields = this.get(type).kind === 'struct' ? this.fields(type) : [], bytes = fields.filter(f => this.isBytes(f.type));
         const fits = fields.length === 3 && bytes.length === 1 && ['width', 'height'].every(name => fields.some(f => f.name === name));
         return fits ? ['width', 'height', bytes[0].name] : null;
     }
-    // Whether values of a type may contain instances of classes.
+    // Returns whether values of a type may contain instances of classes.
     holdsClasses(type, depth = 0) {
         const its = this.get(type);
         if (type === 'Object' || its.kind === 'class' || depth > 20) return true;
@@ -57,21 +57,21 @@ class Slice {
             ...(its.element ? [its.element] : []), ...(its.key ? [its.key] : [])];
         return inner.some(each => this.holdsClasses(each, depth + 1));
     }
-    // Classes that a value of a class may have: itself and the derived ones.
+    // Returns the classes that fit a parameter of a class: the class itself and its derived classes.
     classes(type) { return Object.keys(this.declarations).filter(id => this.lineage(id).includes(type)); }
-    // Bytes of a value, if all values of the type have the same size; else 0.
+    // Returns the encoded size of a type in bytes; 0 if the size depends on the value.
     fixedSize(type) {
         const sizes = {bool: 1, byte: 1, short: 2, int: 4, long: 8, float: 4, double: 8};
         if (type in sizes) return sizes[type];
         const inner = this.get(type).kind === 'struct' ? this.fields(type).map(f => this.fixedSize(f.type)) : [0];
         return inner.every(Boolean) ? inner.reduce((sum, each) => sum + each, 0) : 0;
     }
-    // Bytes of an element of a sequence or a dictionary; 0: they differ.
+    // Returns the encoded size of one element of a sequence or dictionary; 0 if it depends on the value.
     elementSize(its) {
         const sizes = [its.element, ...(its.key ? [its.key] : [])].map(each => this.fixedSize(each));
         return sizes.every(Boolean) ? sizes.reduce((sum, each) => sum + each) : 0;
     }
-    // Name of the format in which Ice passes an optional value.
+    // Returns the name of the format in which Ice encodes an optional value.
     optionalFormat(type) {
         const its = this.get(type), formats = {bool: 'F1', byte: 'F1', short: 'F2', int: 'F4', float: 'F4', long: 'F8', double: 'F8', string: 'VSize'};
         if (type in formats) return formats[type];
@@ -131,7 +131,7 @@ class Slice {
         }
         return checked;
     }
-    // Returns the checked value of a parameter or a field; null for an optional one without a value.
+    // Returns the checked value of a parameter or a field; null if an optional one has no value.
     checkMember(value, member, where) {
         if ('tag' in member && (value === null || value === undefined)) return null;
         return this.check(value, member.type, where, member.metadata);
@@ -183,7 +183,7 @@ class Slice {
         return its.kind === 'dictionary' && its.key === 'string' ? Object.fromEntries(pairs) : pairs;
     }
 
-    // Parameters or fields in the order of Ice's encoding: optional ones last, by their tags.
+    // Returns parameters or fields in the order of Ice's encoding: optional ones last, by their tags.
     ordered(members) {
         const tagged = members.filter(m => 'tag' in m).sort((a, b) => a.tag - b.tag);
         return [...members.filter(m => !('tag' in m)), ...tagged];
@@ -201,7 +201,7 @@ class Slice {
             if (format === 'FSize') os.endSize(start);
         }
     }
-    // Returns [[name, value]].
+    // Returns a list of [name, value].
     readMembers(is, members) {
         return this.ordered(members).map(m => {
             if (!('tag' in m)) return [m.name, this.read(is, m.type)];
@@ -212,7 +212,7 @@ class Slice {
             return [m.name, this.read(is, m.type)];
         });
     }
-    // Returns a result with instances of classes as their fields.
+    // Returns a result in which each instance of a class is replaced by its fields.
     resolved(value, above = []) {
         if (value instanceof Later) {
             if (!value.instance) return null;
@@ -223,7 +223,7 @@ class Slice {
         if (Array.isArray(value)) return value.map(each => this.resolved(each, above));
         return Object.fromEntries(Object.entries(value).map(([name, each]) => [name, this.resolved(each, above)]));
     }
-    // Class of Ice for the instances of a class of Slice.
+    // Returns the JavaScript class, derived from Ice.Value, for a Slice class.
     valueClass(id) {
         if (this.values.has(id)) return this.values.get(id);
         const slice = this, own = this.get(id).fields || [], base = this.get(id).bases?.[0];
@@ -237,7 +237,7 @@ class Slice {
         return made;
     }
 
-    // Declares an exception to Ice, which finds it by its module.
+    // Makes the JavaScript class of an exception, and stores it in the module where Ice looks for it.
     exception(id) {
         if (this.exceptions.has(id)) return this.exceptions.get(id);
         const slice = this, base = this.get(id).bases ? this.exception(this.get(id).bases[0]) : Ice.UserException;
@@ -256,7 +256,7 @@ class Slice {
         return made;
     }
 
-    // Calls an operation; `values`: checked, by name. Returns {results, bytes}, or throws.
+    // Calls an operation. `values`: checked values by name of parameter. Returns {results, bytes}.
     async call(proxy, operation, values) {
         this.declare(proxy.ice_getCommunicator());
         const ins = operation.parameters.filter(p => !p.out), results = operation.parameters.filter(p => p.out);
@@ -286,7 +286,7 @@ class Slice {
             throw error;
         }
     }
-    // Declares all exceptions and classes to Ice, once.
+    // Registers all exceptions and classes with Ice on its first call.
     declare(communicator) {
         if (this.isDeclared) return;
         this.isDeclared = true;
@@ -298,7 +298,7 @@ class Slice {
         }
     }
 
-    // An object that takes the operations of an interface as events.
+    // Returns an object that passes each call of an interface's operations to `take`, as an event.
     listener(interface_, take) {
         const slice = this;
         return new class extends Ice.Object {

@@ -89,8 +89,8 @@ class Script(unittest.TestCase):
                  *words, env={**ours, "ICESOC_TREE": str(Path(tree).resolve())}, **how)
 
     def has(self, *patterns, file=None):
-        """Checks that for each of these expressions, the output of the last command (or the file)
-        has a line that matches it."""
+        """Checks that the output of the last command, or the file, contains a match for each of
+        these expressions."""
         text = Path(file).read_text(errors="replace") if file else self.said
         for pattern in patterns:
             self.assertTrue(re.search(pattern, text, re.M),

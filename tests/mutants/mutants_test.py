@@ -126,8 +126,8 @@ class Cases(Script):
 
     def test_drawn(self):
         """The proof in this test covers only half of the module. Mutants that the proof misses are
-        reported with their line, and mutants that are not bugs are excluded. A test with a model
-        that contains all these survivors detects them."""
+        reported with their line, and mutants that are not bugs are excluded. The survivors are then
+        put into a model, and a test that runs with this model detects them."""
         pair = "hdl/small/pair.v"
         write(pair, PAIR)
         write("bus/none.v", "")

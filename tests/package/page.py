@@ -27,7 +27,7 @@ def text(value):
 
 
 def read_frame(stream):
-    """Returns the payload of a WebSocket frame of the gateway, which is not masked."""
+    """Returns the payload of a WebSocket frame. Frames from the gateway are not masked."""
     size = stream.read(2)[1]
     if size == 126:
         size, = struct.unpack(">H", stream.read(2))

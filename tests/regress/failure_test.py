@@ -199,7 +199,7 @@ class Cases(Project):
             for name, source in (("test_u", "hdl/fifo/test.c"), ("test_v", "other.c"))))
         self.ask("ninja", "-C", "build/main", "test_u")
         self.regress("--name 'a.One|u.Unit'")
-        write("docs/page.md", "0\n")  # no commit contains the tree that was recorded
+        write("docs/page.md", "0\n")  # so no commit contains the tree that the run recorded
         commit("two")
         edit("tests/room/t.sh", *BREAK)
         # The test has never passed, so the report lists the uncommitted files.
@@ -213,21 +213,21 @@ class Cases(Project):
         commit("three")
         self.regress("--changed --prepare --list --name u.Unit")
         self.has("^Nothing to run")
-        # a new file is an input of the program only if it is a header
+        # a new file counts as an input of the program only if it is a header
         write("hdl/new.v", "int g;\n")
         write("hdl/fifo/n.h", "#define LIMIT 3\n")
         self.regress("--changed --prepare --list --name u.Unit")
         self.has("^tests/room/test_u$")
         self.ask("ninja", "-C", "build/main", "test_u")
         self.regress("--name 'a.One|u.Unit' --seed 2", 1)
-        # files that were not committed at that time are listed as well
+        # files that were not committed when the test passed are also listed
         passed = git("rev-parse --short=10 HEAD~2")
         since, one = f"^        changed since it passed at {passed}", r"1 \(1 line\)"
         own = rf"hdl/fifo/n.h:{one}, "
         script = r"tests/room/t.sh:3 \(1 line\)$"
         self.has(f"{since} with SEED=1: {own}hdl/new.v:{one}, hdl/fifo/fifo.v:2 "
-                 rf"\(3 lines\), hdl/old.v:{one}, {script}")  # mine first
-        # only the test's program and the files of its folder
+                 rf"\(3 lines\), hdl/old.v:{one}, {script}")  # uncommitted files are first
+        # the report about u.Unit lists only files of its program and of its folder
         self.has(f"{since} with SEED=1: {own}{script}")
         self.has("changed: changed since it passed",
                  file="build/regress/junit.xml")
@@ -238,7 +238,7 @@ class Cases(Project):
         write("flicker", "")
         self.regress("--name c.Flicker", 1)
         self.has("^        nothing has changed since it passed at [0-9a-f]*$")
-        # without a recorded tree, the commit of the run is used
+        # if no tree was recorded, the report uses the commit of the run
         self.ask("rm", "-r", "build/regress/tree")
         self.regress("--name a.One", 1)
         self.has(rf"{since}: {own}hdl/new.v:{one}, hdl/fifo/fifo.v:1 \(5 lines\), "
@@ -279,8 +279,8 @@ add_custom_target(test_w)
                  file="build/regress/report.html")
 
     def test_vhdl(self):
-        """For a GHDL test, the report lists only files that GHDL compiles for it. The waveform
-        shows the instance of the first file first."""
+        """For a GHDL test, the report lists only files that GHDL compiles for it. In the waveform,
+        the instance of the first of these files comes first."""
         join = "testbench/common/join_waves.sh"
         write(join, (TREE / join).read_text())
         write("cmake/vhdl_test.sh", '#!/bin/sh\n[ ! -e wrong ] && exit\n'
@@ -341,9 +341,9 @@ add_custom_target(test_w)
         left = "build/regress/failures/mission.x-1"
         self.has(f"^--replay fly --out {left}.replay --wave .*mission.x-1.fst --from 1.498500 "
                  "--to 1.500500$", file="asked")
-        # the value was set before the recorded waveform begins
         self.has("141 corners", file="page")
         self.ask("fst2vcd", f"{left}.fst")
+        # the first task was running before the waveform of the signals begins
         self.assertRegex(self.said.replace("\n", " "),
                          "#3 .*sidleTask .*#10 .*0. .*#20 .*1. .*sradioTask .*#33 sidleTask")
         self.has("^program.task$", file=f"{left}.gtkw")

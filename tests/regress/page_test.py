@@ -123,7 +123,8 @@ class Cases(Project):
             'log <a href="failures/test_b.Bad-1.log"',
             'to have passed: <a href="../../tests/room/CMakeLists.txt">'
             r"tests/room/CMakeLists.txt:8</a> \(2 lines\)")
-        # the table of seeds is missing, because these failures are of one seed and are listed above
+        # there is no table of seeds, because all these failures have the same seed and are listed
+        # above
         self.lacks('id="seeds"')
         self.assertEqual(json.loads(Path("build/regress/report.json").read_text())["blocks"], [
             {"block": "hdl/fifo", "green": "", "lines": [194, 200, 0]},
@@ -197,7 +198,8 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
         self.assertEqual(blocks.last_green(SimpleNamespace(runs=runs), of), {"x": "five"})
 
     def lights(self, words="--name 'a[.]'", status=0, **states):
-        """Runs tests, by default those that pass, and checks the states of some statuses."""
+        """Runs tests, by default those that pass. Checks the states of the statuses named in
+        `states`."""
         self.regress(words, status)
         self.has(*(f"^{name}  *{state}" for name, state in states.items()))
 

@@ -129,8 +129,9 @@ class Cases(Project):
         self.idle_and_starved(progress, usual)
 
     def idle_and_starved(self, progress, usual):
-        """A test that uses no CPU time for ten seconds is considered to hang. A test that gets only
-        a tenth of a CPU is not, until its CPU time is ten times its usual time."""
+        """A test that uses no CPU time for ten seconds is considered to hang. A test that gets a
+        small part of a CPU is considered to hang only when its CPU time is ten times its usual
+        time."""
         for share, hangs in ((0.001, {"quick": 42, "slow": 212}), (0.15, {"quick": 201})):
             progress.busy, first = {}, {}
             for age in range(1, 300):
@@ -398,8 +399,8 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.has("6 tests, SEED=1")
         self.regress("--name a.One --repeat 3 --seed 7")
         self.has("SEED=9", "3 passed, 0 failed")
-        # When a bug has been removed, the tests that failed run again. A pass counts for the
-        # sources with which the test passed.
+        # When a bug has been removed, the tests that failed run again. A pass is valid only for the
+        # sources with which the test ran.
         write("tests/plan.toml", '[thing]\n"It works" = "test_a.One"\n')
         edit("tests/room/t.sh", *BREAK)
         self.regress("--changed --name a[.]", 1)

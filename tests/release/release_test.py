@@ -259,7 +259,7 @@ add_subdirectory(library/zephyr)
         class Refused(Exception):
             """Exception that PlatformIO raises."""
 
-        # replacements for the other modules of PlatformIO that these two modules import
+        # replacements for the modules that these two modules of PlatformIO import
         for name, its in {
                 "requests": {"exceptions": SimpleNamespace(RequestException=OSError)},
                 "platformio": {"util": None}, "platformio.util": {
@@ -277,7 +277,7 @@ add_subdirectory(library/zephyr)
         for number in "1.2.3", "1.2.3+git.0123456789ab":
             text = packs.library(number)["library.json"]
             accepted = schema.load_manifest(parser(text).as_dict())
-            # `build` is an instruction for the builder; the schema does not describe it.
+            # The value of `build` is for PlatformIO's builder, so the schema does not describe it.
             self.assertEqual({*accepted, "build"}, {*json.loads(text)})
         for wrong in {"version": "one"}, {"license": "Sauce"}, {"keywords": ["a,b!"]}:
             with self.assertRaises(Refused, msg=wrong):

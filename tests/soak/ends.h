@@ -107,8 +107,8 @@ public:
     }
     // name of the rival in this test; on the air it uses the address 0 of the first ground station
     static constexpr int rival = 0x10000;
-    // Restarts the program. `hasKeys` is true if each pair of vehicle and ground station has a key,
-    // which depends on the number of key changes.
+    // Restarts the program. `hasKeys` is true if each pair of vehicle and ground station has a key.
+    // This key depends on the number of key changes of the pair.
     void boot(uint64_t now, bool hasKeys) {
         now_ = now;
         begin();
@@ -122,9 +122,9 @@ public:
             Link_start(link(peer), us());
         }
     }
-    unsigned keyOf(size_t peer) const { return keys_[peer]; } // its number
-    // Gives the ground station two keys, the current one and the next one. The session of the
-    // vehicle ends.
+    unsigned keyOf(size_t peer) const { return keys_[peer]; } // number of the current key
+    // Takes the next key of this peer. A ground station also keeps the current key. A vehicle
+    // discards the current key, so its session ends.
     void takeNextKey(size_t peer) {
         setKey(peer, ++keys_[peer], true);
         if (!isGround_)

@@ -15,7 +15,8 @@
 #include <utility>
 #include <vector>
 
-// Functions that return text return an error, or an empty string if the promise is kept.
+// A function that returns a text returns an empty string if the link keeps its promise, and
+// otherwise an error.
 class DeliveryCheck {
 public:
     using Bytes = std::vector<uint8_t>;
@@ -125,8 +126,8 @@ private:
             digest = (digest ^ byte) * 0x100000001B3u;
         return digest;
     }
-    // Records that a message arrived. It is an error if an earlier message was skipped, unless the
-    // sender knows that the outcome of that message is unknown.
+    // Records that a message arrived. It is an error to skip an earlier message that has neither
+    // arrived nor been reported to the sender.
     std::string take(Stream& s, size_t at, int receiver) {
         s.messages[at].hasArrived = true;
         ++arrivals_;

@@ -67,7 +67,7 @@ class Timing(unittest.TestCase):
         self.assertAlmostEqual(p["ns"], 0.447 + 6 * 0.205 + 0.322 + 0.682 + 0.580 + 1.799 + 1.207
                                + 0.617 + 0.715 + 1.004, delta=0.002)
         self.assertEqual((p["levels"], p["from"], p["to"], p["pin"]), (6, "from", "to", "CE"))
-        p = longest(chain([7, 2, 1], "D"))  # the path ends at a flip-flop next to its LUT
+        p = longest(chain([7, 2, 1], "D"))  # the last LUT drives the flip-flop next to it
         self.assertEqual((p["levels"], p["steps"][-1][4]), (2, 0))
 
     def test_each_register_is_counted_once_by_its_longest_path(self):

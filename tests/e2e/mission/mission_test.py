@@ -38,7 +38,7 @@ DEVICE = 'hwengine1:xbee-at -d "{device}" -a 0x0001 '
 class Cases(Script):
     def setUp(self):
         self.out = fresh(sys.argv[2])
-        os.environ["XDG_CONFIG_HOME"] = str(BUILD / "config")  # the tests use keys of their own
+        os.environ["XDG_CONFIG_HOME"] = str(BUILD / "config")  # keys for the tests only
         self.keys = BUILD / "config/icesoc"
 
     def words(self, *options, out=None, image=IMAGE):
@@ -92,14 +92,15 @@ class Cases(Script):
             self.assertEqual(file.stat().st_mode & 0o777, 0o600)
 
     def test_open(self):
-        """An option flies without encryption. The picture of this flight is noise, with some 29,700
-        corners."""
+        """With --open, a flight is not encrypted. The picture of this flight is noise, with some
+        29,700 corners."""
         Path("noise.pgm").write_bytes(b"P5 640 480 255\n" + random.Random(1).randbytes(307200))
         self.fly("--open", "--image", self.out / "noise.pgm", "--size", "640x480")
         self.has('"key":""', file="flight.jsonl")
 
     def test_keys(self):
-        """Unsuitable keys cause messages from the ground, from the vehicle, and when they start."""
+        """Unsuitable keys cause error messages when a mission starts, in a session with the
+        vehicle, and when only the ground's program starts."""
         os.umask(0o077)
         for name, text in ("a", KEY), ("b", KEY[:-1] + "e"), ("short", KEY[:10]):
             write(f"{name}.key", text + "\n")
@@ -108,7 +109,7 @@ class Cases(Script):
         for name, said in (("short", "32 hexadecimal digits"), ("others", "chmod 600"),
                            ("no", "create one with ./icesoc key '.*no.key'")):
             self.refused(said, "--key", f"{name}.key")
-        # The vehicle accepts no session with another key, or without one.
+        # The vehicle accepts no session if the ground has another key or no key.
         for key in self.out / "b.key", "":
             self.simulate(PING, DEVICE + "-g {guard} -t 3000", "1", f"--XBeeAT.KeyFile={key}",
                           "--Ice.RetryIntervals=-1", options=("--key", "a.key"), status=None)
@@ -118,7 +119,8 @@ class Cases(Script):
                        f"--XBeeAT.KeyFile={self.out}/{name}.key")
 
     def test_call(self):
-        """Calls from the command line use the modem and the vehicle's key, or another key."""
+        """A call from the command line reaches a vehicle with the same key, and gets no answer from
+        a vehicle with another key."""
         os.umask(0o077)
         for name, text in ("a", KEY), ("b", KEY[:-1] + "e"):
             write(f"{name}.key", text + "\n")
@@ -136,8 +138,9 @@ class Cases(Script):
         self.fly("--loss", "0.1", "--seed", os.environ.get("SEED", "1"))
         self.replay(self.out, "--from", "0.5", "--to", "0.51")
         # The simulator rejects the replay of a recording that has been altered or belongs to
-        # another file, and a replay into the folder of the recording. Of a recording that a kill
-        # has cut, it replays the part that exists. Waveforms need another build.
+        # another file, and a replay into the folder of the recording. If a recording ends early
+        # because its flight was killed, the simulator replays the part that exists. Waveforms need
+        # another build.
         flight = Path("flight.jsonl").read_text()
         for folder, text in (("cut", flight[:len(flight) // 2]),
                              ("other", flight.replace('"up":"2b', '"up":"2c'))):
@@ -324,9 +327,9 @@ class Cases(Script):
         self.assertLess(float(seconds[1]), 5)
 
     def test_encrypted(self):
-        """Both modems have the same AES key: the controller sets the key of one modem, -k in the
-        endpoint that of the other. This case also uses the C++11 library of the plugin, a C++
-        client, and a proxy that is converted to a string and back."""
+        """Both modems have the same AES key: --modem-key sets it in the vehicle's modem, and -k in
+        the endpoint sets it in the ground's modem. This case also uses the C++11 library of the
+        plugin, a C++ client, and a proxy that is converted to a string and back."""
         key = "00112233445566778899AABBCCDDEEFF"
         self.simulate(PING, f"{DEVICE}-k {key} -p 2 -g {{guard}} -t 300000", "3",
                       options=("--modem-key", key))
@@ -351,8 +354,8 @@ class Cases(Script):
         self.simulate(TREE / "tests/e2e/mission/gateway.sh", BUILD, "{device}", "{guard}", self.out)
 
     def test_wire(self):
-        """A cable can replace the modems: with the Cortex-M3, in a replay of this flight, and
-        through the gateway with the host build of the firmware."""
+        """A cable can replace the modems: in a flight with the Cortex-M3, in the replay of this
+        flight, and in calls through the gateway to the host build of the firmware."""
         self.fly("--wire", "--cpu", "m3")
         self.replay(self.out)
         self.has(" 0 packets on the air")
@@ -393,8 +396,9 @@ class Cases(Script):
         self.assertFalse(hit.exists())
 
     def test_mistakes(self):
-        """A start that fails changes nothing in the folder. Picture, description, port and modem
-        are wrong, one after the other; the last two cases do not start a simulator."""
+        """A start that fails changes nothing in the folder. The tested mistakes are a wrong
+        picture, a wrong description of the flight, a wrong port, and a port without a modem. For
+        the last two, the test starts the ground's program without a simulator."""
         write("mine/report.md", "mine\n")
         shutil.copy("mine/report.md", ".")
         os.symlink(self.out / "mine/report.md", "calls.jsonl")

@@ -52,8 +52,8 @@ TEST_F(Bridge, ADoorbellMakesWritesVisibleAndReadsFresh) {
 }
 
 // The read begins one HCLK cycle after NWE's edge, sooner than the driver's BUSTURN allows. The
-// read must return the written value even if the synchroniser of the write is late and that of the
-// read is not (cdc.test_fsmc_pins).
+// read must return the written value, even if the synchroniser passes the write a clock late and
+// the read in time (cdc.test_fsmc_pins).
 TEST_F(Bridge, ARegisterReadRightBehindAWriteComesAfterIt) {
     Random random(testSeed());
     FSMC_setHclk(120000000);
@@ -113,8 +113,8 @@ TEST_F(Bridge, ARegisterWrittenTooEarlyIsLostAndReported) {
         unsigned errors = b_.errors;
         b_.slave.hung = true; // the slave hangs, but for less than the time-out
         fsmc_.write32(bcr2, bcr & ~fsmc::bcrAsyncWait);
-        // The word that is being transferred would get the later data as its high half, so both
-        // halves are equal here.
+        // The second write below may change the high half of the word that is being transferred, so
+        // it writes the value that this half already has.
         if (behindWrite)
             fsmc_.write32(at(40), 0x5A5A1234);
         else
@@ -148,8 +148,9 @@ TEST_F(Bridge, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
     EXPECT_EQ(fsmc_.read16(ddr + 0x80), 0);
 }
 
-// Writes for which there is no room are released with an error each, like reads. When the last
-// entry is also full, writes are lost.
+// If the queue has no room for a write, the bridge reports an error and lets the write end, as it
+// does for a read. Two entries of the queue are reserved for such writes. When these are also full,
+// writes are lost.
 TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     b_.keepEvents();
     const uint32_t& event = b_.slave.words[b_.slave.clearWord];

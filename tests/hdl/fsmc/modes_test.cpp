@@ -91,10 +91,11 @@ TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
     EXPECT_EQ(hclksOfAWord(4, false), hclksOfAWord(1, false));
 }
 
-// A doorbell right after a read discards data that was read ahead. This data is old, whether it is
-// in a buffer, on its way, or only requested in that clock. At 168 MHz the pins can already have
-// the doorbell's address (here equal to the address of the block in its window) while the memory's
-// side still sees the read.
+// After a doorbell, which is an access to a register, the bridge must discard data that it has read
+// ahead, because this data may be old. It must also discard data that is still arriving, or that is
+// requested in the clock of the doorbell. At 168 MHz, the pins can already have the doorbell's
+// address while the memory's side still sees the read. Here this address is equal to the address of
+// the block in its window.
 TEST(Modes, WhatADoorbellDropsOnItsWayIsNotTakenForFresh) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0.1, 168, 100);
     ASSERT_EQ(b.init(plainModes[0].bank), FSMC_OK);

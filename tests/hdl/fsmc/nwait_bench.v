@@ -10,7 +10,7 @@
 
 // A LUT of 0.2 ns; each input has a separate routing delay of 0.1 to 1.4 ns.
 module delay_lut #(
-    parameter NUMBER = 0, // of this LUT; selects its delays
+    parameter NUMBER = 0, // number of this LUT, which selects its delays
     parameter [63:0] INIT = 0
 ) (
     input  wire I0, I1, I2, I3, I4, I5,
@@ -184,14 +184,14 @@ module nwait_bench;
             steps = 1 + $unsigned($random(seed)) % 6;
             if (kind < 6)
                 place = $unsigned($random(seed)) % 4096;
-            if (kind < 3 || kind == 6) begin // reads, of a new place or going on
+            if (kind < 3 || kind == 6) begin // reads, at a new address or at the next one
                 for (i = 0; i < steps; i = i + 1) begin
                     access(1'b0, 1'b0, place, 16'd0, got);
                     if (got !== model[place[11:0]])
                         errors = errors + 1;
                     place = (place + 1) % 4096;
                 end
-            end else if (kind < 5 || kind == 7) begin // writes, next to each other or apart
+            end else if (kind < 5 || kind == 7) begin // writes, to each or to each ninth address
                 for (i = 0; i < 2 * steps; i = i + 1) begin
                     value = $random(seed);
                     model[place[11:0]] = value;

@@ -20,7 +20,8 @@ struct Mode {
     const char* name;
     FSMC_Bank bank;
 };
-// mode, mode of writes, PSRAM, muxed, wait, wait high, BUSTURN, timing of reads, of writes
+// members of FSMC_Bank: mode, mode of writes, PSRAM, muxed, wait, wait high, BUSTURN, timing of
+// reads, timing of writes
 constexpr FSMC_Bank bankA = {FSMC_MODE_A, FSMC_MODE_A, 0, 0, 1, 0, 1, slow, slow};
 const Mode plainModes[] = {
     {"A", bankA},
@@ -39,8 +40,8 @@ class SyncBridge : public ::testing::Test {
 protected:
     void SetUp() override {
         RecordProperty("seed", static_cast<int>(testSeed()));
-        ASSERT_EQ(b_.init(), FSMC_OK); // with the settings of the driver (FSMC_SYNC)
-        doorbell();                    // its last write is posted
+        ASSERT_EQ(b_.init(), FSMC_OK); // uses the driver's settings (FSMC_SYNC)
+        doorbell();                    // waits for the last write of init(), which is posted
     }
     static uint32_t at(uint32_t word) { return control + 4 * word; }
     // Waits by a register access, after which all writes have reached the memory.
@@ -166,7 +167,8 @@ TEST_F(SyncBridge, AnAccessThatIsGivenUpLeavesNothingHalfDone) {
     EXPECT_EQ(b_.errors, 0u);
 }
 
-// NWAIT is off, against the rules: an access that ends before it is answered is reported.
+// NWAIT is off, against the rules of the bridge. An access that ends before the bridge has answered
+// is reported.
 TEST_F(SyncBridge, AProcessorThatIgnoresNwaitIsReported) {
     const uint32_t& event = b_.slave.words[MAP_SLOT_SYSTEM * 16 + SYSTEM_EVENT];
     b_.keepEvents();
@@ -183,8 +185,8 @@ TEST_F(SyncBridge, AProcessorThatIgnoresNwaitIsReported) {
     EXPECT_EQ(fsmc_.read16(ddr + 0x200), 0x1357);
 }
 
-// Returns the HCLK cycles of an access: a halfword written, a halfword read in sequence, a register
-// word written, a register word read.
+// Returns the number of HCLK cycles for each of four accesses: writing a halfword, reading the next
+// halfword of a sequence, writing a word of a register, reading a word of a register.
 template <class Bridge> std::array<double, 4> costs(const FSMC_Bank& bank) {
     BridgeBench<Bridge> b(testSeed(), 0, 120, 100);
     EXPECT_EQ(b.init(bank), FSMC_OK);

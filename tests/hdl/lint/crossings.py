@@ -114,7 +114,7 @@ class Nets:
 
     def add_register(self, name, nets, ins):
         """Adds a register or a memory."""
-        # the memory is a ROM, which has no clock
+        # a ROM has no clock; its clock is "x"
         own = (nets.get("CLK") or nets["WR_CLK"] or ["x"])[0]
         self.sinks.append((name, own, [b for p in ins - NO_DATA - {"RD_ADDR"} for b in nets[p]]))
         for bit in nets.get("Q", nets.get("RD_DATA", [])):
@@ -124,8 +124,8 @@ class Nets:
                 self.clock[bit] = own
 
     def origins(self, bit):
-        """Returns the registers and pins on which a net depends, as {clock: one register or pin}.
-        Visits each net once."""
+        """Returns the registers and pins on which a net depends, as a dictionary with one register
+        or pin per clock. Visits each net once."""
         seen, stack = self.seen, [bit]
         while stack:
             b = stack[-1]
@@ -146,8 +146,9 @@ class Nets:
         return seen[bit]
 
     def glitches(self, ports):
-        """Returns the outputs to pins that neither a flip-flop nor pins alone drive. A block
-        without the pins of the FSMC is inside the chip, so its outputs are not pins."""
+        """Returns the outputs to pins that may glitch. An output cannot glitch if a flip-flop
+        drives it, or if it depends on pins only. A block without the pins of the FSMC is inside the
+        chip, so its outputs are not pins."""
         bad = set()
         if "fsmc_a_i" not in ports:
             return bad

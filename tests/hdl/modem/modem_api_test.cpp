@@ -168,10 +168,10 @@ TEST_F(ModemApi, FramesOfAllTypesAreTakenAndTooLongOnesPassedOver) {
         return body;
     };
     const std::vector<std::vector<uint8_t>> strangers = {
-        other(0x8A, 1 + random.below(2)),   // a status of the modem, or a frame that is shorter
+        other(0x8A, 1 + random.below(2)),   // a status of the modem, or its first byte only
         other(0x88, 5),                     // a reply
         other(0x80, 12 + random.below(98)), // a packet from a sender with a 64-bit address
-        other(0x80, 111),                   // the longest frame of all types
+        other(0x80, 111),                   // the longest frame that a modem sends
         other(0x81, 112),                   // more data than a modem sends
         other(0x81, 255),                   // the longest frame with a one-byte length
         // a length whose low byte would be valid without the high byte

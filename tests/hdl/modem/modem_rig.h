@@ -96,7 +96,7 @@ protected:
     // Returns the number of errors without the retries of the set-up, because the set-up may have
     // to search for the baud rate.
     uint32_t errors() { return bus_.read(MODEM_ERRORS) & ~MODEM_ERRORS_RETRIES_MASK; }
-    // Drives the line bit by bit instead of the modem. The model of the modem cannot do this; it is
+    // Drives the line bit by bit in place of the modem's model, which cannot do this. The model is
     // silent during this time.
     void bytesIn(const std::vector<uint8_t>& bytes, unsigned bitClocks) {
         for (uint8_t byte : bytes)

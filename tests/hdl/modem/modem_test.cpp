@@ -52,7 +52,7 @@ TEST_F(ModemTest, AWireNeedsNoSetUp) {
     near_->power(false, now());
     bus_.write(MODEM_BAUD, MODEM_BAUD_WIRE_MASK | 7);
     bus_.write(MODEM_CONTROL, MODEM_CONTROL_CONFIGURE_MASK);
-    unsigned lows = 0; // number of clocks in which the line was not idle
+    unsigned lows = 0; // number of clocks in which the line was low (not idle)
     for (unsigned i = 0; i < 100'000; ++i, bench_.tick())
         lows += !bench_.top().modem_txd_o;
     EXPECT_EQ(lows, 0u) << "something was sent";

@@ -47,7 +47,7 @@ TEST_F(Scale, GivesABeatAClockWhenTheMemoryKeepsUp) {
     auto clocksOf = [&](size_t count) {
         scaled(std::vector<Ice_Short>(count, 1));
         uint64_t before = core_.bench_.cycles();
-        // starts the core again, without the time in which the driver copies data
+        // starts the core again, so that the time in which the driver copies data is not counted
         core_.bus_.write(MY_SCALE_CONTROL, 1u << 1);
         core_.bench_.waitFor([&] { return core_.bench_.top().irq_o; }, "the core's interrupt",
                              9999);
@@ -95,7 +95,7 @@ TEST_F(Twice, AnswersAreAsLongAsWhatComesOut) {
         for (size_t i = 0; i < 2 * n; ++i)
             ASSERT_EQ(out[i], static_cast<Ice_Byte>(7 * (i / 16 * 8 + i % 8))) << i << " of " << n;
     }
-    // the first word is complete; of the second word, only the bytes that are kept are written
+    // the first word is complete; of the second word, only the bytes with a byte enable are written
     auto out = twice(5);
     ASSERT_EQ(out.size(), 13u);
     for (size_t i = 0; i < 5; ++i)

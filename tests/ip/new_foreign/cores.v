@@ -143,8 +143,8 @@ module req_words (
     end
 endmodule
 
-// wbs_names: Wishbone signals with names in the style of other people; the core is also a master.
-// Strobe and acknowledge are missing.
+// wbs_names: a core whose Wishbone signals have unusual names; the core is also a bus master. Its
+// strobe and acknowledge are missing.
 module wbs_names (
     input         wbs_clk, rst_ni, gate_clk_pad_i,
     input  [3:0]  clk_div,

@@ -3,7 +3,8 @@
 
 Usage: write_slots.py -- [argument of new_foreign]... [-- argument...]...
 
-One process per core took 20 s of CPU time, most of it for the start of Python; this takes half.
+One process per core took 20 s of CPU time, most of it for the start of Python. This program takes
+half of that time.
 """
 import concurrent.futures
 import contextlib
@@ -15,7 +16,7 @@ from icesoc.cores import new_foreign
 
 
 def write(words):
-    """Writes one slot; ends with the message of new_foreign if that refuses the core."""
+    """Writes one slot. If new_foreign rejects the core, ends with its message."""
     with contextlib.redirect_stdout(io.StringIO()):
         new_foreign.main(words)
 

@@ -113,8 +113,8 @@ def hide(v, t, module, ic, values):
 
 
 def same_hidden(t, v, got, encoding):
-    """Returns True if `got` is the value that was sent. If slices are preserved, it must be
-    unchanged, otherwise reduced to the type `t`."""
+    """Returns True if `got` is the value that was sent. If slices are preserved, `got` must be
+    unchanged; otherwise it must be reduced to the type `t`."""
     kept = t.preserves() and encoding == "1.1"
     if type(got).__name__ != ("Hidden" if kept else "") + t.name or not members(t, v, got, encoding,
                                                                                 {id(v): got}):
@@ -147,8 +147,8 @@ def unknown(echo, module, ic, encoding, t):
 
 
 def lone(echo, module, encoding):
-    """Sends a graph of a type that the C side does not know through a parameter of type Object; it
-    must return unchanged."""
+    """Sends a graph of a type that the C side does not know through a parameter of type Object; the
+    graph must return unchanged."""
     first, second = module.Lone(1, None, "one"), module.Lone(2)
     first.next, second.next, first.any = second, first, second
     if encoding == "1.0":
@@ -169,7 +169,7 @@ def lone(echo, module, encoding):
 def declared(echo, module, encoding):
     """Sends a class that the file of the operation only declares, and interfaces by value. The
     compact format forbids interface names that the receiver does not know; with encoding 1.0 Python
-    does not return them."""
+    returns no interfaces."""
     for form in ("Compact", "Sliced"):
         sent = module.Later(7)
         sent.next = sent

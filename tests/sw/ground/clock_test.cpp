@@ -212,8 +212,8 @@ TEST_F(Step, NoTimePassesWhileTheProgramWorksAndNoByteIsLate) {
     });
 }
 
-// An engine that has failed and tries again may take the place of the previous engine between two
-// polls of the pty.
+// An engine that fails starts again, possibly between two polls of the pty. The simulation must
+// receive even the first byte of the new engine.
 TEST_F(Step, WhoKeepsStepNextIsHeardFromTheFirstByte) {
     alongside([&](Clock& clock, SerialPort& port) {
         for (uint8_t i = 0; i < 240; ++i) {
@@ -289,8 +289,8 @@ TEST_F(Step, WhoIsHeldByADebuggerIsWaitedFor) {
     close(ready[1]);
 }
 
-// A simulation that must end asks once whether it may continue, and then does not wait for any
-// program.
+// If the function that decides whether to continue has returned false, it is not called again, and
+// the simulation does not wait for any program.
 TEST_F(Step, NobodyIsWaitedForAfterTheStop) {
     SimulatedClock clock(status_.path());
     SerialPort port(clock);

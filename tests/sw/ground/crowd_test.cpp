@@ -101,7 +101,7 @@ TEST_F(Crowd, WhatAProgramHasWrittenArrivesAlthoughItLeaves) {
     wire_.onMessage = [&](int channel, const Bytes& oneway) {
         EXPECT_EQ(delivery.arrived(channel, oneway), "");
     };
-    // largest number of bytes that the program had written and the peer had not received
+    // largest number of bytes in transit: written by the program and not yet received by the peer
     size_t most = 0;
     ASSERT_TRUE(wire_.until([&] {
         program.write();
@@ -330,9 +330,9 @@ TEST(ProgramConnection, AProgramThatHasEndedItsWritingHearsNoSigns) {
     EXPECT_EQ(program.heard, 0u);
 }
 
-// The program cannot be notified of the loss. The calls that it left unread are counted as not
-// received, including those that the kernel still holds, although the connection is reset because
-// of an unread heartbeat.
+// A program has written calls and disconnected. If the link is then lost, the program cannot be
+// notified, so its calls are counted as not received. This includes the calls that the kernel still
+// holds, although the kernel resets the connection because of an unread heartbeat.
 TEST(ProgramConnection, CallsThatAProgramLeftUnreadAreCountedWhenTheLinkIsLost) {
     constexpr unsigned count = 3000;
     int pair[2];

@@ -125,8 +125,8 @@ protected:
             sum += bytes;
         return sum;
     }
-    // Returns the simulated seconds in which the vehicles receive this number of bytes, while all
-    // programs write as much as possible. Then ends the connections.
+    // Lets all programs write as much as possible, and returns the simulated seconds until the
+    // vehicles have received this number of bytes. Then ends the connections.
     double secondsFor(const std::list<Program>& programs, size_t bytes) {
         std::atomic<bool> stop{false};
         std::list<std::thread> writers;
@@ -154,7 +154,7 @@ protected:
     EngineLog log_;
     XBeeAT::Settings settings_;
     Rig rig_{testSeed()};
-    std::map<int, size_t> taken_; // number of received bytes; the key is the address
+    std::map<int, size_t> taken_; // number of received bytes, by vehicle address
     std::map<int, std::unique_ptr<Uav>> vehicles_;
     std::list<Hearer> hearers_; // vehicles that receive the calls to all vehicles
     std::list<Program> programs_;
@@ -190,7 +190,7 @@ TEST_F(FleetTest, VehiclesShareTheAirAlikeAndOneThatIsAwayCostsTheOthersLittle) 
         return log.rfind("0x0002: link connecting") > log.rfind("0x0002: link up");
     };
     ASSERT_TRUE(rig_.until(isSought));
-    rig_.pass(4.5); // waits, because the first HELLOs follow each other faster
+    rig_.pass(4.5); // waits, because the first HELLOs are sent at shorter intervals
     const auto airNs = [&] { return double(rig_.air.counters().airNs); };
     const double before = rig_.with(airNs);
     rig_.pass(8);

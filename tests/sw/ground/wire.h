@@ -87,7 +87,7 @@ public:
         close(slave_);
         close(master_);
     }
-    // Returns settings for an engine at the other end of a wire, as fast as the machine.
+    // Returns settings for an engine on a wire that is as fast as the machine.
     static XBeeAT::Settings settings() {
         XBeeAT::Settings s;
         s.setUp = false;

@@ -15,7 +15,7 @@
 Ice_ObjectPrx Bridge_far;
 static Ice_ObjectPrx server;
 
-/* Copies a string to the end of `room`, with a terminating zero. */
+/* Copies a string and a terminating zero to `*room`, and advances `*room`. Returns the copy. */
 static char* keep(char** room, Ice_String text) {
     char* kept = *room;
     memcpy(kept, text.data, (size_t)text.size);

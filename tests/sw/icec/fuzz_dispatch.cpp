@@ -43,8 +43,9 @@ void sendProxy(const Ice_ObjectPrx& prx, Ice_Byte minor, Ice_ObjectPrx& received
         abort();
 }
 
-// Checks that a proxy is unchanged after both conversions. `minor` is the minor version of the
-// encoding in which the proxy was read; a received proxy adopts the encoding of its message.
+// Checks that a proxy is unchanged after conversion to a string and back, and to bytes and back.
+// `minor` is the minor version of the encoding in which the proxy was read; a received proxy adopts
+// the encoding of its message.
 void checkProxy(const Ice_ObjectPrx& prx, Ice_Byte minor) {
     static char text[8192];
     Ice_ObjectPrx again;
@@ -54,9 +55,9 @@ void checkProxy(const Ice_ObjectPrx& prx, Ice_Byte minor) {
     if (Ice_Communicator_stringToProxy(&ic, text, &again) != ICE_OK ||
         (!Ice_ObjectPrx_isNull(&prx) && !Ice_ObjectPrx_equals(&prx, &again))) {
         // These differences are allowed. An endpoint of this transport is printed in a canonical
-        // form, without unknown bytes. As in stock Ice, an opaque endpoint that is empty or has a
-        // type above 32767, and a version 0.x, have strings that cannot be parsed. Octal escapes
-        // may make the string longer than the limit.
+        // form, without unknown bytes. As in stock Ice, some strings cannot be parsed: those of an
+        // opaque endpoint that is empty or has a type above 32767, and those with a version 0.x.
+        // Octal escapes may make the string longer than the limit.
         size_t n = strlen(text);
         bool isHigh = false;
         for (const char* type = text; (type = strstr(type, " -t ")) != nullptr; type += 4)
@@ -67,8 +68,8 @@ void checkProxy(const Ice_ObjectPrx& prx, Ice_Byte minor) {
             abort();
         }
     }
-    // When it is sent for the first time, an endpoint of this transport adopts the encoding of the
-    // message; after that it does not change.
+    // An endpoint of this transport adopts the encoding of the message in which it is first sent;
+    // after that it does not change.
     Ice_ObjectPrx sent, sentAgain;
     sendProxy(prx, minor, sent);
     sendProxy(sent, minor, sentAgain);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // tasks_test: tests a communicator that several threads use over tcp: simultaneous calls, with and
-// without a receiving task, and replies that another task sends than the one that executes the
-// operation.
+// without a receiving task, and replies that are not sent by the task that executes the operation.
 
 #include "icec_pair.h"
 
@@ -197,7 +196,7 @@ TEST_P(TasksThatServe, LetOthersCallAtOnce) {
 }
 INSTANTIATE_TEST_SUITE_P(Tasks, TasksThatServe, ::testing::Values(0, 1, 2));
 
-// Six tasks call one after the other; the result of each task is kept until the task ends.
+// Tasks make calls, one task after the other. IceC stores the result of a call until its task ends.
 TEST_F(Tasks, OneThatHasEndedLeavesItsPlaceToOthers) {
     for (int i = 0; i < ICE_CALLS + 2; ++i)
         std::thread([&] {

@@ -8,8 +8,8 @@
 // Each step of the input has two bytes, its kind (mod 8) and its argument n:
 //   0, 1  n bytes arrive, unchanged
 //   2     a frame of n bytes arrives; the session's checksum (with a key: tag) is added
-//   3     as 2, but a data frame has the expected number
-//   4     as 2, but a handshake frame; for the minimal layer, a HELLO with nonce n
+//   3     as 2; if it is a data frame, it has the expected number
+//   4     as 2, but the frame is of the handshake; for the minimal layer, a HELLO with nonce n
 //   5     n ms pass; the program accepts messages if n < 64, otherwise not
 //   6     a message of n bytes (minimal layer: 5 n) is sent on channel n mod 4, which is opened if
 //         necessary; n = 255, and in the minimal layer every fourth n, closes a channel instead

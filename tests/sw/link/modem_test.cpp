@@ -223,7 +223,7 @@ TEST(LinkOverApi, ACallDuringPicturesWaitsForOnePacketOfThem) {
     EXPECT_GT(pictures[1], 0.8 * pictures[0]); // the calls themselves also take air time
 }
 
-// Tests with two modems in API mode, of the RN that the links set.
+// Tests of the RN that the links set, with two modems in API mode.
 class RandomWait : public ::testing::Test {
 protected:
     unsigned rn(End& end) { return end.modem.parameter("RN"); }

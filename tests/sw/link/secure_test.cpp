@@ -90,7 +90,7 @@ TEST_P(Attacked, RecordingsOfEarlierSessionsAreWorthNothing) {
                 maybeHostile();
                 return false;
             },
-            12'000'000); // us; longer than the session of the other side can last
+            12'000'000); // time limit, us; the session of the other side ends earlier
         EXPECT_EQ(a.received.size(), before[0]);
         EXPECT_EQ(b.received.size(), before[1]);
         ASSERT_TRUE(until([&] { return bothUp(); }, 30'000'000)) << "boot " << boot;
@@ -144,7 +144,7 @@ TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
             offer(b, sentB, 3);
             return flip();
         },
-        8'000'000); // time in us, in which at least one PING is sent
+        8'000'000); // time limit, us; at least one PING is sent in this time
     b.stop();
     until([&] { return flip(); }, 100'000);
     for (int kind : {0, 1, 2, 3, 4, 5, 8})

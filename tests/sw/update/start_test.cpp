@@ -148,7 +148,7 @@ TEST_F(Loader, StartsOneOfEitherKeyUntilItIsWithdrawn) {
     const uint32_t at = flashBase + SLOTS_KEYS_AT + sizeof(Slots_Keys);
     chip.cpu().loadFlash(at, folder.read("list"));
     receive(9, "key");    // overwrites the confirmed firmware
-    EXPECT_EQ(boot(), 1); // the list does not count yet, because it is not complete
+    EXPECT_EQ(boot(), 1); // the list of keys is not valid yet, because it is not complete
     receive(9, "key");
     chip.cpu().writeMemory(at + offsetof(Slots_Keys, isComplete), &isTrue, 4);
     EXPECT_EQ(boot(), -1);

@@ -78,9 +78,9 @@ size_t differingBytes(const Bytes& a, const Bytes& b) {
 }
 
 // The reply to getResult contains the number of clock cycles that the core has counted. This number
-// depends on the other accesses to the memory at that time. Only its four bytes may differ between
-// the builds, and with them two checksums: that of the packet that contains them, and that of the
-// packet that ends the message.
+// depends on the other accesses to the memory at that time. Between the builds, only the four bytes
+// of this number and two checksums may differ: the checksum of the packet with these bytes, and the
+// checksum of the packet that ends the message.
 constexpr size_t cyclesAt = 29, cyclesBytes = 4, checksumBytes = 2;
 constexpr int packetsThatMayDiffer = 2;
 

@@ -63,8 +63,8 @@ public:
             return at++ == packets.size();
         };
     }
-    // Makes calls of the pilot. `some` is the expected answer to the question whether the first
-    // byte of the last result is different from 0.
+    // Makes calls of the pilot. `some`: true if the first byte of the last result must differ from
+    // 0.
     Script calls(std::vector<Call> these, bool some = false, const char* what = "") {
         const int last = static_cast<int>(these.size());
         return inOrder({[this] { return ground.replies.clear(), true; },

@@ -14,9 +14,9 @@ import threading
 import time
 
 HEAD = b"IceP\1\0\1\0"
-# Time-outs, s, for the next reply after a call on a second connection has been answered. On a
-# loaded machine the first time-out may be too short, so reactions that differ are compared again
-# with the second.
+# Time-outs, s, for each reply. The wait begins after a call on a second connection has been
+# answered. On a loaded machine QUICK may be too short, so messages that cause different reactions
+# are sent again with PATIENT.
 QUICK, PATIENT = 0.3, 10
 PAIRS = 6  # number of pairs of servers; while one pair waits for a time-out, the other pairs work
 
@@ -275,8 +275,8 @@ class Server:
         return s
 
     def ask(self, data, timeout):
-        """Sends messages. Returns the replies and the number of executed operations. timeout: wait
-        for each reply after the messages on the first connection have been handled, s."""
+        """Sends messages. Returns the replies and the number of executed operations. timeout:
+        longest wait for each reply, s; it begins when the messages have been handled."""
         before = self.executed
         s = self.connect()
         s.sendall(data)

@@ -15,7 +15,8 @@ import Ice
 # Intended differences (docs/icec.md): IceC does not have these transports and cannot bind a source
 # address. In endpoints, quotes must surround whole words, and "-timeout" is not accepted for "-t".
 # The name of a transport has no quotes, and a version has neither spaces nor "-0". An opaque
-# endpoint has one type; stock Ice takes a second one after 65535, which it stores as -1.
+# endpoint has one option -t; stock Ice also accepts a second one after "-t 65535", because it
+# stores 65535 as -1.
 NOT_HERE = ("udp", "ws", "wss", "ssl", "--sourceAddress")
 STRICTER = re.compile(r"""[^\s:]["'][^\s:@]|["'][^\s:]+["']\S|\s-[tzev][^\s:]|:["']"""
                       r"""|1\.-0|" 1\.0|-t 65535 -t""")

@@ -19,7 +19,7 @@ module apb_rules #(
     input wire [31:0]           pwdata_i,
     input wire [3:0]            pstrb_i,
     input wire                  pready_i,
-    // the requester may end the transfer before PREADY, in the next clock
+    // the requester may end the transfer in the next clock, without waiting for PREADY
     input wire                  abort_i
 );
     reg past = 1'b0;

@@ -3,10 +3,10 @@
 // bus_crossing: connects a slot to a core in a separate clock domain: accesses, interrupt and reset
 // cross through hdl/cdc.
 //
-// An access takes four to five clocks of the core and six clocks of the chip. If the core does not
+// An access takes four to five clocks of the core plus six clocks of the chip. If the core does not
 // answer within TIMEOUT clocks, because its clock has stopped or it hangs, the access ends with an
-// error. The core may still perform this access later. Until the core has answered, all other
-// accesses end with an error, and the interrupt line is low. core_valid_o falls only when
+// error. The core may still perform this access later. Until the core has answered this access, all
+// further accesses end with an error, and the interrupt line is low. core_valid_o falls only when
 // core_ready_i is high or the core is reset. The handshake has no reset, so a reset of either side
 // neither creates nor loses a request. Constraints: those of cdc_bus, cdc_bit and cdc_reset;
 // coremap writes them for each core with a separate clock.
@@ -33,8 +33,8 @@ module bus_crossing #(
     // ---- clk_i
     reg       owes;     // a request was sent to the core and has not been answered yet
     reg       asked;    // the current access has sent its request
-    // the answer arrived one clock ago; if the access has ended an interrupt, the interrupt line is
-    // low by now
+    // the answer arrived one clock ago; if the access has cleared an interrupt, irq_o is already
+    // low now
     reg       answered;
     reg       deaf;     // an earlier access timed out, and the core has not answered it yet
     reg [7:0] patience;
@@ -119,7 +119,7 @@ module bus_crossing #(
         if (!rst_i) begin
             assert (patience + used == TIMEOUT);
             assert (!ask || !owes);                          // one request at a time
-            // if an access waits, its request has not been answered yet
+            // the request of a waiting access is not answered yet, or was answered one clock ago
             assert (!asked || owes || answered);
             assert (!answered || !owes);
             // An access succeeds only with the answer to its own request.

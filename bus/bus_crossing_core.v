@@ -15,7 +15,7 @@ module bus_crossing_core (
     input  wire        begins_i, // one cycle
     output wire        ended_o,  // high for one cycle, one clock after the access
     output reg  [32:0] answer_o, // error and data of the access, valid with ended_o
-    // comes from a flip-flop, because a glitch must not reach the other clock domain
+    // interrupt; comes from a flip-flop, because a glitch must not reach the other clock domain
     output reg         irq_o,
     // core
     output wire        core_valid_o,
@@ -62,8 +62,8 @@ module bus_crossing_core (
         assert (!(busy && ended));
         assert (!core_valid_o || open);
         assert (ended_o == done);
-        // The answer is that of the core, or an error if the core was reset. It is stable until the
-        // next access ends.
+        // The answer is the answer of the core, or an error if the core was reset. It is stable
+        // until the next access ends.
         assert (!known || answer_o == answer);
         assert (known || !ended_o);
         cover (ended_o && !answer_o[32] && answer_o[31:0] == 32'd5);

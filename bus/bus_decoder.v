@@ -60,10 +60,11 @@ module bus_decoder #(
         end else begin : g_many
             localparam GROUPS = (SLOTS + 7) / 8;
             reg [2:0]            index;
-            // one bit per group that is selected; if there is only one group and it is incomplete,
-            // it is always selected
+            // one bit per group, high if the group is selected; a group that is incomplete and the
+            // only one is always selected
             reg [GROUPS-1:0]     group;
-            // candidates of each group; each bit of the slot number halves their number
+            // answers of each group that may still be selected; each bit of the slot number halves
+            // their number
             reg [256*GROUPS-1:0] left;
             reg [31:0]           rdata;
             integer g, b, i;

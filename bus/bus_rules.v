@@ -44,12 +44,12 @@ module bus_rules #(
         addr_was  <= addr_i;
         wdata_was <= wdata_i;
     end
-    // A relation that the prover needs for induction: counter and flag agree.
+    // The counter and the flag agree; the prover needs this relation for induction.
     always @*
         assert (waiting == (waited != 16'd0));
 
-    // Rule for the master: a transfer that waits does not change, and it is withdrawn only after
-    // PATIENCE clocks.
+    // Rule for the master: a transfer that waits does not change, and the master may abandon it
+    // only after PATIENCE clocks.
     wire stable    = !waiting || !valid_i
                      || (write_i == write_was && addr_i == addr_was &&
                          (!write_i || wdata_i == wdata_was));

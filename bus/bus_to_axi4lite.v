@@ -4,8 +4,8 @@
 // master (ARM IHI 0022, chapter B1). bus_window.v describes the words and events.
 //
 // There is one transfer at a time. An AXI transfer cannot be abandoned: after a time-out the
-// handshakes continue until the late response arrives, which is then discarded. Accesses before
-// that wait, and may time out too.
+// handshakes continue until the late response arrives, which is then discarded. Until then, other
+// accesses wait, and may also time out.
 
 `default_nettype none
 
@@ -43,7 +43,7 @@ module bus_to_axi4lite #(
     wire [ADDR_WIDTH-1:0] addr;
     wire [31:0] wdata;
     reg  [ADDR_WIDTH-1:2] address;
-    reg  open; // a transfer has begun and its response has not arrived, so no other access starts
+    reg  open; // a transfer has begun and its response has not arrived; no other access starts
 
     wire response = (axi_bvalid_i && axi_bready_o) || (axi_rvalid_i && axi_rready_o);
 

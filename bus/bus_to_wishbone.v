@@ -5,7 +5,7 @@
 // describes the words and events.
 //
 // There is one transfer at a time. ERR ends the access with an error. After RTY the transfer is
-// repeated, until the slot times out and ends the cycle by setting CYC low.
+// repeated. If the slot times out, it ends the cycle by setting CYC low.
 
 `default_nettype none
 
@@ -67,7 +67,7 @@ module bus_to_wishbone #(
     // are the rule numbers of the standard (B4, 2010). The rules for the slave are assumed.
     reg past = 1'b0;
     reg outstanding = 1'b0; // a strobe was taken and has not been answered yet (pipelined mode)
-    // the cycle may end in the next clock without an answer
+    // 1: the cycle may end in the next clock without an answer
     wire abort  = !bus_valid_i || bus_ready_o;
     wire answer = wb_ack_i || wb_err_i || wb_rty_i;
     wire taken  = wb_stb_o && (PIPELINED == 0 ? answer : !wb_stall_i);

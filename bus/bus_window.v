@@ -137,7 +137,7 @@ module bus_window #(
         cover (past && !rst_i && given_up && answered && !error_i);
     end
     always @* if (!rst_i) begin
-        // a request to the adapter does not last longer than the access
+        // a request to the adapter ends at the latest with the access
         assert (!busy_o || wanted);
         assert (patience + used == TIMEOUT);
         if (bus_valid_i && !bus_write_i && bus_addr_i == PAGE)
@@ -154,7 +154,7 @@ module bus_window #(
         end
         assert (\u_wrapper.event_i == {wanted && used == TIMEOUT && !answered, irq_i});
         if (bus_valid_i && !window) begin
-            // an access to one of the words 4..7, which do not exist, is an error
+            // words 4..7 do not exist, so an access to them is an error
             assert (bus_ready_o && bus_error_o == bus_addr_i[2]);
             assert (bus_write_i || bus_addr_i != 4'd0 || bus_rdata_o == ID_VALUE);
         end

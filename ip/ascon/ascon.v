@@ -27,13 +27,13 @@ module ascon (
                       WORD = 4'd8, FINAL_KEY = 4'd9, LOAD_TAG = 4'd10, TAG_WORD = 4'd11,
                       DIGEST = 4'd12, FLUSH = 4'd13, DRAIN = 4'd14, CLEAR = 4'd15;
 
-    reg [3:0]   state, after;   // after: state that follows when the rounds are done
+    reg [3:0]   state, after;   // after: state that follows the rounds
     // Flags: one for each of the states ROUNDS, WORD, LOAD_SOURCE, LOAD_TAG, TAG_WORD and
     // WAIT_FOR_START (idle). They are flip-flops because of their high fan-out. busy is !idle.
     reg         in_rounds, in_word, in_source, in_tag, in_tag_word, idle, busy;
     // keyed: the operand is a word of the key; from_memory: the operand is a word from memory
     reg         keyed, from_memory;
-    // the operand replaces the word of the state, because it is ciphertext
+    // the operand is ciphertext, so it replaces the word of the state instead of being added
     reg         deciphers;
     reg [1:0]   pass;
     reg         decrypt, hash;
@@ -42,20 +42,21 @@ module ascon (
     reg [127:0] key;
     // number of 32-bit words of the key, and of the nonce, that have been written, 0 to 4
     reg [2:0]   key_words, nonce_words;
-    // high one clock after a word of the key was written; key_words increases at its end
+    // high for one clock after a word of the key was written; key_words increases one clock later
     reg         key_came;
     reg [3:0]   round;
     reg [23:0]  left;           // bytes left
     // flags in state WORD. few: fewer than eight bytes are left; none: no byte is left, so the word
     // is only padding
     reg         few, none;
-    // index of the word in its block, tag or digest; in ADD_KEY, and in FINAL_KEY with 1 or 2: half
-    // of the key
+    // index of the word in its block, tag or digest; in the states ADD_KEY and FINAL_KEY, 1 and 2
+    // select a half of the key
     reg [1:0]   index;
     reg         differs, valid, aborted, wipe;
-    // clear: s becomes 0; acting: a clear or a command takes effect, and bus accesses must wait
+    // clear: s becomes 0; acting: bus accesses wait, because `clear` or a command takes effect
     reg         clear, acting;
-    // one bit per register, in the order of put_job: its value is misaligned or too large
+    // one bit per register, in the order of put_job: the value of the register is misaligned or too
+    // large
     reg [5:0]   bad;
 
     // ---- registers ----
@@ -112,8 +113,8 @@ module ascon (
 
     wire        read_valid, read_idle, write_ready, write_idle;
     wire [63:0] read_data;
-    // high if both streams were idle one clock ago; it is wrong in the clock after a start or a
-    // word, but no state reads it then
+    // high if both streams were idle one clock ago. It is out of date in the clock after a start or
+    // a word; no state reads it in that clock.
     reg         both_idle;
     wire [23:0] words = in_tag ? 24'd2 : {3'd0, left[23:3]} + {23'd0, |left[2:0]};
 
@@ -125,7 +126,7 @@ module ascon (
     wire [63:0] mask = {{8{be[7]}}, {8{be[6]}}, {8{be[5]}}, {8{be[4]}},
                         {8{be[3]}}, {8{be[2]}}, {8{be[1]}}, {8{be[0]}}};
 
-    reg  writes; // high if this pass writes its results to memory; set before the first word
+    reg  writes; // high if this pass writes its results to memory; loaded before the first word
     wire reads  = !pass[1] && !none;
     wire step   = in_word && (!reads || read_valid) && (!writes || none || write_ready);
     wire tag_step    = in_tag_word && (decrypt ? read_valid : write_ready);
@@ -149,8 +150,8 @@ module ascon (
 
     // ---- 320-bit state: each clock performs a round, or adds an operand to one word ---- The
     // operand is a word of the message, the key, the nonce or a constant. While decrypting, the
-    // ciphertext replaces the word of the state, which is done by choosing the added value. This
-    // value is a separate net, which saves 72 LUTs.
+    // ciphertext replaces the word of the state; `added` is then the sum of both. `added` is a
+    // separate net, which saves 72 LUTs.
     wire        use_iv   = state == FIRST_WORDS && index == 2'd0;
     wire [63:0] operand  = (from_memory ? read_data : 64'd0) | (busy ? 64'd0 : {2{bus_wdata_i}}) |
                            (keyed && index[0] ? key[63:0] : 64'd0) |
@@ -166,7 +167,8 @@ module ascon (
     wire [63:0] sum      = chosen ^ operand;
     (* keep *) wire [63:0] added    = ((deciphers ? sum : operand) & mask) ^ pad;
 
-    // Each bit of `takes` selects one half of a 64-bit word of s, to which `added` is added.
+    // Each bit of `takes` selects a half of a 64-bit word of s; `added` is added to the selected
+    // halves.
     wire absorbs = step && !pass[1];
     wire [9:0] takes = {{2{(state == ADD_KEY && index[1]) || state == SEPARATE}} |
                             {put_nonce && nonce_words[1:0] == 2'd3,
@@ -228,7 +230,7 @@ module ascon (
                 round   <= TWELVE_ROUNDS;
                 index   <= 2'd0;
                 after   <= FIRST_WORDS;
-                // hashing begins with a state of 0, so CLEAR removes a nonce
+                // hashing begins with s = 0, so CLEAR removes a nonce from s
                 enter(aead ? FIRST_WORDS : CLEAR);
                 differs <= 1'b0;
                 valid   <= 1'b0;

@@ -20,7 +20,7 @@ protected:
         bus_.write(ASCON_MASK, 3);
         place();
     }
-    // Places each buffer at a random address in a quarter of the address space of its own, at least
+    // Places each buffer at a random address in a separate quarter of the address space, at least
     // 64 KiB from the other buffers.
     void place() {
         uint32_t quarter = random_.next();
@@ -130,7 +130,7 @@ TEST_F(AsconTest, HashesTheKnownAnswers) {
 TEST_F(AsconTest, EqualsTheModelForRandomMessages) {
     for (int i = 0; i < 60; ++i) {
         place();
-        // in some rounds, the memory needs more time for an access than the core for its rounds
+        // in some runs, a memory access takes longer than the core's rounds of the permutation
         bool isSlow = i % 6 == 5;
         memory_.setStall(isSlow ? 0.97 : 0.2);
         memory_.setLinger(isSlow ? 0.97 : 0);
@@ -306,7 +306,8 @@ TEST_F(AsconTest, SettingsWrittenBehindTheStartAreIgnored) {
     for (int clocks = 0; clocks < 300; clocks += 7) {
         place();
         auto sealed = asconEncrypt(key, nonce, {}, random(300));
-        // with a wrong tag, the core reads TARGET again, to overwrite the decrypted data
+        // with a wrong tag, the core reads the register TARGET again, to overwrite the decrypted
+        // data
         sealed.tag[clocks % 16] ^= 1;
         memory_.store(source_, sealed.text);
         memory_.store(tagBase_, sealed.tag);

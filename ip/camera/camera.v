@@ -33,14 +33,15 @@ module camera (
     // capturing: state is CAPTURE; listening: the state accepts tokens
     reg        capturing, listening;
     reg        stopping;             // STOP was written, so no further frame is captured
-    reg        whole;                // the frame that is ending or has just ended is complete
+    // the frame that is ending, or that has just ended, is complete
+    reg        whole;
     reg        again;                // the next frame has already begun
     // number of words per line, and number of the current word, starting with 1
     reg [8:0]  width, words;
     reg [11:0] height, y;
     reg [2:0]  x;                    // index of the next pixel in its word of eight pixels
     reg        room;                 // the current line still has space for pixels
-    // results of words == width and of y + 1 == height, delayed by one clock
+    // values of words == width and y + 1 == height in the previous clock
     reg        last_word, last_line;
     // address of buffer 1, and distance between the buffers, in bytes
     reg [31:0] base, stride;
@@ -94,8 +95,8 @@ module camera (
         .frames_i(frames), .dropped_i(dropped));
 
     wire start = set_start && state == OFF;
-    // The settings are checked in the clock of START; the state machine uses the result one clock
-    // later.
+    // The settings are checked in the clock in which START is written; the state machine uses the
+    // result one clock later.
     reg  asked, good;
     always @(posedge clk_i) begin
         asked <= start && !rst_i;
@@ -123,8 +124,8 @@ module camera (
 
     // ---- frames ---- Tokens wait in the FIFO while a buffer is selected and while a frame is
     // finished. If the FIFO becomes full, tokens are lost, which is reported. While a word of eight
-    // pixels cannot be written, every kind of token waits, not only a pixel, because the kind is
-    // decoded too late to decide this.
+    // pixels cannot be written, the next token waits, whatever its kind is, because the kind is
+    // decoded too late in the clock to let other tokens pass.
     wire ready  = x != 3'd7 || write_ready;
     assign pop  = has_token && listening && ready;
     wire begins = pop && starts;
@@ -153,8 +154,8 @@ module camera (
         last_word <= words == width;
         last_line <= y + 12'd1 == height;
         // A line end also shifts a byte in. The following pixels push this byte out again, so it
-        // has no effect. Otherwise the enables of 56 flip-flops would depend on the kind of the
-        // token.
+        // has no effect. If only pixels shifted, the enables of 56 flip-flops would depend on the
+        // kind of the token.
         if (capturing && has_token && x != 3'd7)
             pixels <= {token[7:0], pixels[55:8]};
         if (stop && state != OFF)

@@ -9,8 +9,8 @@ module camera_buffers (
     input  wire       clk_i,
     input  wire       rst_i,
     input  wire       active_i,  // capturing is on; while it is off, no frame is offered
-    // the frame in buffer writing_o is completely in memory; it becomes the newest frame and is
-    // offered
+    // the frame in buffer writing_o is completely in memory. It becomes the newest frame and is
+    // offered.
     input  wire       kept_i,
     output reg  [1:0] writing_o,
     output reg  [1:0] newest_o,

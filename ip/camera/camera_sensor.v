@@ -4,8 +4,8 @@
 // the sensor, and sends them to an async_fifo.
 //
 // A token has 11 bits: LOST, kind, pixel. LOST means that earlier tokens were lost because the FIFO
-// was full. While the FIFO is full, pixels are lost. A frame start or line end waits until there is
-// room; it is lost only if the next frame start or line end comes first.
+// was full. While the FIFO is full, pixels are lost. A frame start or line end waits until the FIFO
+// has room; it is lost only if the next frame start or line end arrives before that.
 
 `default_nettype none
 

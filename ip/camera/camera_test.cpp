@@ -19,7 +19,7 @@ class CameraTest : public ::testing::Test {
 protected:
     CameraTest() {
         // Time advances in half periods of the fabric clock. Edges of the pixel clock are 1 to 3
-        // half periods apart, and come before or after the edges of the fabric clock.
+        // half periods apart. They do not coincide with edges of the fabric clock.
         bench_.addModel([this] { edge(); }, [this] { edge(); });
         bench_.reset();
         bus_.write(CAMERA_MASK, 0x7F);
@@ -126,8 +126,8 @@ TEST_F(CameraTest, FramesMayBeAsWideAndAsHighAsTheRegistersSay) {
 }
 
 TEST_F(CameraTest, FramesAreCountedModulo65536) {
-    // The frames follow each other as fast as the core can discard them: a frame has no lines, and
-    // the start of the next frame ends it.
+    // The frames follow each other as fast as the core can discard them: no frame has a line, and
+    // each frame ends when the next frame starts.
     slowest_ = 1;
     sensor_ = SensorModel({4, 2});
     start();
@@ -205,7 +205,7 @@ TEST_F(CameraTest, AMemoryThatIsTooSlowIsToldAndTheNextFrameIsRight) {
     uint32_t events = drain();
     EXPECT_EQ(bus_.read(CAMERA_FRAMES), 0u) << events;
     auto pixels = picture();
-    // its start ends the frame that is incomplete because lines were lost
+    // the start of this frame ends the previous frame, which is incomplete because lines were lost
     sensor_.addFrame(picture(), width, height);
     sensor_.addFrame(pixels, width, height);
     events |= drain();
@@ -239,8 +239,8 @@ TEST_F(CameraTest, TheFrameThatAnotherCoreHasIsNotOverwritten) {
     }
 }
 
-// The next frame is completed in a different clock in each of the runs. The frame that was taken
-// must be complete, and must not change until the next frame is taken.
+// In each run, the core completes the next frame in a different clock. The frame that the other
+// core has taken must be complete, and must not change until the other core takes the next frame.
 TEST_F(CameraTest, AnotherCoreTakesAFrameInAnyClock) {
     constexpr int w = 8, h = 1;
     slowest_ = 1;

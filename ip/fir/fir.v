@@ -46,7 +46,7 @@ module fir (
     wire        written = offer && write_ready;
     wire        room    = !filled[2] || write_ready;
     wire        taken   = result_valid && room;
-    // position of this result in its word, one-hot
+    // one-hot position of this result in its word
     wire [3:0]  here    = written ? 4'd1 : 4'd1 << filled[1:0];
 
     fir_wrapper u_wrapper (
@@ -94,7 +94,8 @@ module fir (
             to_send     <= count;
             to_take     <= count;
         end
-        // These registers are loaded at `go`, not at `start`, because `start` has a long path.
+        // These registers are loaded at `go` instead of `start`, because the path of `start` is
+        // long.
         if (go) begin
             begun       <= 1'b1;
             saturations <= 32'd0;

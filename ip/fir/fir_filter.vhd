@@ -15,7 +15,7 @@ entity fir_filter is
   port (
     clk_i               : in  std_logic;
     rst_i               : in  std_logic;
-    -- settings; a coefficient applies to the samples that arrive after its write
+    -- settings; a coefficient applies to samples that arrive after the coefficient was written
     coefficient_write_i : in  std_logic;
     coefficient_index_i : in  std_logic_vector(3 downto 0);
     coefficient_i       : in  std_logic_vector(17 downto 0);
@@ -43,7 +43,7 @@ architecture rtl of fir_filter is
 
   signal coefficients : coefficients_t;
   signal products     : products_t;
-  signal sums         : sums_t; -- sums(0) becomes the next result; sums(TAPS) is always 0
+  signal sums         : sums_t; -- sums(0) is the sum for the next result; sums(TAPS) is always 0
   -- the sum, shifted by a multiple of 8, with one additional bit for rounding
   signal coarse       : signed(SUM_BITS downto 0);
   signal scaled       : signed(SUM_BITS downto 0); -- shifted
@@ -99,8 +99,8 @@ begin
         coarse <= shift_right(sums(0) & '0', to_integer(unsigned(shift_i(4 downto 3)) & "000"));
         scaled <= shift_right(coarse, to_integer(unsigned(shift_i(2 downto 0))));
         rounded := shift_right(scaled, 1) + signed'("0" & scaled(0));
-        -- The value fits into 16 bits if all its higher bits are equal to its sign bit. This is not
-        -- written as a comparison of integers, because GHDL 5 converts a comparison of more than 32
+        -- The value fits into 16 bits if all its higher bits are equal to its sign bit. The code
+        -- compares bits instead of integers, because GHDL 5 converts a comparison of more than 32
         -- bits with a negative integer incorrectly.
         overflow := '0';
         for b in 16 to SUM_BITS loop

@@ -115,7 +115,7 @@ TEST_F(FirCore, WhatIsGivenUpLeavesTheMemoryPortInOrder) {
     Random random(testSeed());
     auto list = random.items<Ice_Short>(256);
     for (int clocks = 1; clocks < 190; clocks += 7) {
-        // Does the same as the servant after a time-out: starts the core, and resets it later.
+        // Starts the core and resets it later, as the servant does after a time-out.
         filter(list);
         core_.bus_.write(FIR_CONTROL, 1u << 3);
         for (int i = 0; i < clocks; ++i)

@@ -16,8 +16,8 @@ def fly(log, proxy, report):
     mask, value = signals.trigger(trigger)
     probe = Probes.ProbePrx.uncheckedCast(proxy(signals.identity))
     signals.check(log.call("ground -> UAV", "probe.getState()", probe.getState))
-    # If no trigger is requested, a condition that never occurs is set, so that the ring contains
-    # the newest changes at the end.
+    # If no trigger is requested, the probe gets a condition that is never met, so that the ring
+    # contains the newest changes when the capture is stopped.
     log.call(
         "ground -> UAV", "probe.arm(%s)" % (trigger or "no trigger"),
         lambda: probe.arm(tool.signed(mask), tool.signed(value if trigger else 1), True, NEWEST))

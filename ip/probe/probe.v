@@ -5,7 +5,7 @@
 //
 // An entry of the ring consists of the values of all signals and the clock in which they changed.
 // Nothing is stored while no signal changes. An entry has WORDS words of 64 bits:
-//   word 0, bits 31..0    low bits of cycles_i, two clocks after the change
+//   word 0, bits 31..0    low bits of cycles_i, as they are two clocks after the change
 //   word 0, bit 32        1: changes before this one were lost
 //   word 0, bits 63..33   the first bits of signals_i; word 1 and the following contain the others
 // Signals may change in every clock, so a FIFO of 512 entries precedes the memory.
@@ -37,11 +37,11 @@ module probe #(
     wire [14:0] after;
     wire        edge_only, set_arm, stop;
 
-    // ---- signals: flip-flops of the probe sample them, so each signal gets one additional load
-    // and no logic ----
+    // ---- signals: the probe samples each signal with a flip-flop, so the signal gets one
+    // additional load and no logic ----
     reg [WIDTH-1:0] now, last;
     reg             changed;      // `last` differs from its value one clock earlier
-    // fits: `last` meets the trigger condition; fitted: `last` met it one clock earlier
+    // fits: `last` meets the trigger condition; fitted: `fits` one clock earlier
     reg             fits, fitted;
     always @(posedge clk_i) begin
         now     <= signals_i;
@@ -53,8 +53,8 @@ module probe #(
 
     // ---- capture ----
     reg                 running, draining, done, triggered, wrapped;
-    // an entry must be written although no signal changed: the first entry, or the entry after a
-    // loss
+    // the next entry is written even if no signal has changed, because it is the first one or
+    // follows a loss
     reg                 owed;
     reg                 lost;
     // cycles_i[31] at the last entry; when it changes, an entry is written even without a change
@@ -99,7 +99,8 @@ module probe #(
         end
         if (hit) begin
             triggered <= 1'b1;
-            // index of the entry of this clock; if that entry is lost, of the next entry
+            // index of the entry that is written in this clock; if it is lost, index of the next
+            // entry
             trigger   <= next;
             left      <= after[LOG2_RING-1:0];
         end
@@ -144,7 +145,7 @@ module probe #(
     wire [31:0] unused_addr;
     wire        unused_valid, unused_read_idle;
     wire [63:0] unused_data;
-    // The address of the stream returns to the beginning at the end of the ring.
+    // At the end of the ring, the address of the stream returns to the beginning.
     npi_stream #(.ADDR_BITS(PROBE_LOG2_BYTES), .WORD_BITS(4)) u_stream (
         .clk_i(clk_i), .rst_i(rst_i),
         .read_start_i(1'b0), .read_base_i({(PROBE_LOG2_BYTES - 6){1'b0}}), .read_words_i(4'd0),

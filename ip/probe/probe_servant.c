@@ -7,7 +7,7 @@
 #include "fsmc.h"
 #include "probe_regs.h"
 
-/* maximum number of times that STATUS is read; the FIFO is empty after a few hundred reads */
+/* limit for the reads of STATUS; a few hundred reads take long enough to empty the FIFO */
 #define STOP_READS 10000
 
 static U32 get(const Probe_Core* self, U32 word) {

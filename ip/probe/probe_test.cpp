@@ -31,7 +31,7 @@ protected:
         slot_.bench_.addModel([] {}, [this] { drive(); });
         EXPECT_EQ(Probe_Core_init(&core_, coreSlot, coreMemory, &slot_.port, &slot_), HW_OK);
     }
-    // Sets the signals for the next clock. On average, a few bits change in one of `quiet_` clocks.
+    // Sets the signals for the next clock. On average, some bits change once in `quiet_` clocks.
     void drive() {
         auto& top = slot_.bench_.top();
         ++cycles_;
@@ -176,7 +176,8 @@ TYPED_TEST(ProbeTest, AnEdgeIsNoLevel) {
 TYPED_TEST(ProbeTest, TheRingKeepsTheNewest) {
     this->quiet_ = 2 * this->words;
     ASSERT_EQ(this->arm(0, 1, true, static_cast<int>(this->ring) - 100),
-              // with mask 0 the condition is always met, so it has no edge and never triggers
+              // with mask 0 the condition is always met, so it never changes, and an edge never
+              // triggers
               ICE_OK);
     for (unsigned i = 0; i < this->ring * 3 * this->words; ++i)
         this->slot_.tick();

@@ -62,12 +62,12 @@ architecture rtl of vision is
 
   -- registers
   signal set_threshold : std_logic_vector(7 downto 0);
-  -- vision_memory loads these addresses at START.
+  -- addresses, which vision_memory loads at START
   signal frame_base, result_base : std_logic_vector(31 downto 0);
   signal frame_stride  : std_logic_vector(31 downto 0);
   signal follow        : std_logic;
   signal busy, done, done_pending, refused : std_logic;
-  -- buffer that contained the last frame; 0 means that it was at FRAME_BASE
+  -- buffer that contained the last frame; 0 means that the frame was at FRAME_BASE
   signal taken         : std_logic_vector(1 downto 0);
   signal set_width, set_height, set_result_max : std_logic_vector(15 downto 0);
   signal found, stored : unsigned(15 downto 0);
@@ -77,9 +77,9 @@ architecture rtl of vision is
   signal height, result_max : unsigned(15 downto 0);
   signal cycles        : unsigned(31 downto 0);
   signal aborted, stop : std_logic;
-  -- Commands take effect one clock after their write, so that the address decoder and the frame
-  -- control are not on the same path. Other registers that are written in this clock must not
-  -- affect the frame that is starting.
+  -- A command takes effect one clock after it was written, so that the address decoder and the
+  -- frame control are not on the same path. A register that is written in this additional clock
+  -- must not affect the frame that is starting.
   signal start, abort  : std_logic;
   -- a register was written in the last clock, so size_ok is not up to date
   signal written       : std_logic;
@@ -90,17 +90,18 @@ architecture rtl of vision is
 
   -- stream: x is the column of the pixel that is being taken. lines_left is the number of lines
   -- that are left, including the current one. (score_x, score_y) is the position of the score that
-  -- enters vision_suppress, (kept_x, kept_y) that of the score that leaves it
+  -- enters vision_suppress; (kept_x, kept_y) is the position of the score that leaves
+  -- vision_suppress
   signal x             : unsigned(9 downto 0);
   signal lines_left    : unsigned(15 downto 0);
   signal score_x, kept_x : unsigned(9 downto 0);
   signal score_y, kept_y : unsigned(16 downto 0);
-  -- number of steps since the start; it stops when the first score has left vision_suppress
+  -- number of steps since the start; counting stops when the first score has left vision_suppress
   signal fill          : unsigned(3 downto 0);
   signal take, real_pixel, pixel_valid, pixel_take, last : std_logic;
   signal streaming     : std_logic; -- high while the state is STREAM and stop is low
-  -- `step` is `take`, delayed by one clock. All logic after the window advances with this
-  -- flip-flop; because of its high fan-out it needs a whole clock.
+  -- `step` is `take`, delayed by one clock. All logic after the window advances with `step`;
+  -- because of its high fan-out, `step` comes from a flip-flop.
   signal step          : std_logic;
   -- a copy of `step` with a small fan-out; all decisions use this copy
   signal decide        : std_logic;
@@ -109,8 +110,8 @@ architecture rtl of vision is
   signal window        : std_logic_vector(391 downto 0);
   signal raw_score, score, centre_score : unsigned(11 downto 0);
   signal kept, is_corner, record_ready, record_push, quiet : std_logic;
-  -- high if kept_y was inside the frame one step ago. The delay matters only in the first column of
-  -- a line, in which all scores are 0.
+  -- high if kept_y was inside the frame one step ago. The delay makes a difference only in the
+  -- first column of a line, where all scores are 0 anyway.
   signal in_frame      : std_logic;
   signal data          : std_logic_vector(63 downto 0);
   signal frame_x, frame_y : unsigned(15 downto 0);
@@ -205,7 +206,7 @@ begin
   taking : process (clk_i)
   begin
     if rising_edge(clk_i) then
-      step   <= take; -- without a reset, because with one, synthesis would merge step and decide
+      step   <= take; -- no reset; otherwise synthesis would merge step and decide
       decide <= take;
       step_x <= x;
       step_pixel <= pixel and (7 downto 0 => real_pixel);
@@ -230,8 +231,8 @@ begin
     end if;
   end process;
 
-  -- A score is valid only in columns and lines of the stream with a number of at least 6. In other
-  -- places its window would contain pixels from the end of the previous line.
+  -- A score is valid only if its column and its line in the stream are at least 6. Otherwise its
+  -- window would contain pixels from the end of the previous line.
   score <= raw_score when score_x >= 6 and score_y >= 6 and score_y < resize(height, 17) and
                           fill >= SCORE_DELAY else to_unsigned(0, 12);
 
@@ -319,8 +320,8 @@ begin
     end if;
   end process;
 
-  -- The score that leaves vision_suppress is that of the centre: one line and one column before the
-  -- score that entered KEPT_DELAY steps ago.
+  -- The score that leaves vision_suppress belongs to the centre of its neighbourhood, which is one
+  -- line and one column before the score that entered KEPT_DELAY steps ago.
   kept_position : process (clk_i)
   begin
     if rising_edge(clk_i) then

@@ -13,7 +13,7 @@ entity vision_memory is
   port (
     clk_i          : in  std_logic;
     rst_i          : in  std_logic;
-    -- frame control is idle; while it is idle, the addresses are loaded in each clock
+    -- high while the frame control is idle; the addresses are then loaded in each clock
     idle_i         : in  std_logic;
     -- high in the first clock in which idle_i is low
     start_i        : in  std_logic;
@@ -123,8 +123,8 @@ begin
         word <= x"00" & word(63 downto 8);
         left <= '0' & left(7 downto 1);
       end if;
-      -- `word` may be loaded with invalid data, because this does not depend on whether the port
-      -- has a word; `left` shows how many bytes are valid.
+      -- `word` is loaded even if the port has no word, and then contains invalid data; `left` shows
+      -- which bytes are valid.
       if refill = '1' then
         word <= npi_rd_data_i;
       end if;

@@ -4,8 +4,8 @@
 -- other scores become 0.
 --
 -- Of neighbours with equal scores, the first one in scan order is kept. The result for a score
--- appears when the score one line and one column later has entered, because the whole neighbourhood
--- must be known. kept_o then belongs to that earlier score.
+-- needs the whole neighbourhood, so it appears when the score one line and one column later has
+-- entered. kept_o then belongs to the earlier score, not to the score that entered.
 
 library ieee;
 use ieee.std_logic_1164.all;
@@ -17,7 +17,7 @@ entity vision_suppress is
     step_i  : in  std_logic;
     x_i     : in  unsigned(9 downto 0);  -- column of the score that enters
     score_i : in  unsigned(11 downto 0);
-    -- score of the centre, two steps after the last score of its neighbourhood entered
+    -- score of the centre; valid two steps after the last score of its neighbourhood has entered
     score_o : out unsigned(11 downto 0);
     kept_o  : out std_logic
   );

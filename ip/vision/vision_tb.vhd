@@ -51,7 +51,7 @@ begin
     variable memory : bytes_t := (others => x"00");
     variable pushed : std_logic_vector(63 downto 0);
     variable read_at, left : natural := 0;
-    -- address and remaining words of a second burst, which waits
+    -- address and remaining words of a second burst that waits
     variable next_at, next_left : natural := 0;
     variable random : natural := 1;
     variable l : line;
@@ -65,7 +65,8 @@ begin
       variable acked, popped : boolean;
     begin
       wait until rising_edge(clk);
-      -- The memory has registers: it samples at the edge and drives after it.
+      -- The memory model behaves like registers: it samples its inputs at the edge and drives its
+      -- outputs after the edge.
       random := (random * 75 + 74) mod 65537;
       address := to_integer(unsigned(npi_addr(20 downto 0)));
       if npi_push = '1' then

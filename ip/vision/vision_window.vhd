@@ -26,7 +26,7 @@ end entity;
 architecture rtl of vision_window is
   type ram_t is array (0 to 1023) of std_logic_vector(47 downto 0);
   signal ram    : ram_t;
-  -- the six older pixels of the column; the newest is in the lowest bits
+  -- the six older pixels of the column; the newest of them is in the lowest bits
   signal above  : std_logic_vector(47 downto 0);
   signal pixel  : std_logic_vector(7 downto 0);
   signal x      : unsigned(9 downto 0);

@@ -36,7 +36,7 @@ module lines (
         .osc_i(osc), .clk_i(sys_clk_i), .pins_i(pins_in), .pins_o(pins_out), .pins_oe_o(pins_oe)
     );
 
-    // in the order of line_tester's pins; the pin with the highest number is the leftmost
+    // in the order of line_tester's pins: the leftmost entry is the pin with the highest number
     assign pins_in = {modem_reset_n_o, modem_rts_n_o, modem_cts_n_i, modem_txd_o, modem_rxd_i,
                       irq_o, fsmc_nwait_n_o, fsmc_nadv_n_i, fsmc_nbl_n_i, fsmc_nwe_n_i,
                       fsmc_noe_n_i, fsmc_ne_n_i, fsmc_a_i, fsmc_d_io};

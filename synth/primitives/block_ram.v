@@ -5,8 +5,8 @@
 //
 // A port reads and writes at its clock edge while EN is high. If one port reads the address that
 // the other port writes at the same edge, the read data is invalid unless the writing port is
-// READ_FIRST (UG383, "Conflict Avoidance"). In this model invalid data differs in half of the bits
-// from the old data, and in the other half from the new data. Output registers (DO_REG) and
+// READ_FIRST (UG383, "Conflict Avoidance"). In this model, half of the bits of invalid data differ
+// from the old data, and the other half differ from the new data. Output registers (DO_REG) and
 // collisions of ports with different clocks are not modelled.
 `default_nettype none
 
@@ -49,7 +49,7 @@ module block_ram #(
     endfunction
     localparam integer DATA_A = data_bits(WIDTH_A), DATA_B = data_bits(WIDTH_B);
 
-    // The memory is stored as rows of 32 bits with parity, the widest word.
+    // Each row of the memory has the size of the widest word: 32 bits and four parity bits.
     localparam integer ROWS = 1 << (ADDR_BITS - 5);
     reg [35:0] rows [0:ROWS-1];
     integer i;
@@ -60,7 +60,7 @@ module block_ram #(
         data_b_o = START_B;
     end
 
-    // Returns the bits of a row that are written by a word with these byte enables.
+    // Returns a mask of the bits of a row that a write of a word with these byte enables changes.
     function [35:0] mask(input integer width, input [4:0] place, input [3:0] we);
         reg [31:0] data;
         reg [3:0]  parity;
@@ -90,8 +90,8 @@ module block_ram #(
     wire [35:0] mask_b  = WIDTH_B == 0 || !en_b_i ? 36'd0 : mask(WIDTH_B, place_b, we_b_i);
     wire [35:0] new_a   = (rows[row_a] & ~mask_a) | (placed(place_a, data_a_i) & mask_a);
     wire [35:0] new_b   = (rows[row_b] & ~mask_b) | (placed(place_b, data_b_i) & mask_b);
-    // Bits that the other port overwrites at the same edge, so that this port would read invalid
-    // data.
+    // Mask of the bits that the other port overwrites at the same edge; this port reads invalid
+    // data there.
     wire [35:0] lost_a  = row_a == row_b && MODE_B != "READ_FIRST" ? mask_b : 36'd0;
     wire [35:0] lost_b  = row_a == row_b && MODE_A != "READ_FIRST" ? mask_a : 36'd0;
     wire [35:0] wrong_a = (~rows[row_a] & 36'h555555555) | (~new_b & 36'haaaaaaaaa);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // product: maps a multiplier to rows of adders, in an order that does not depend on the names of
-// its operands. Yosys's own mapping adds in the order of net names, so that RTL and netlist would
-// get different logic for the same product.
+// its operands. Yosys's mapping adds in the order of net names, so RTL and netlist would get
+// different logic for the same product.
 
 (* techmap_celltype = "$mul" *)
 module product (A, B, Y);

@@ -36,15 +36,15 @@
 
 /* Bits that are set in all modes: bank enabled, 16 bits wide, writes allowed. */
 #define BCR_ALWAYS (BCR_MBKEN | BCR_MWID_16 | BCR_RESERVED | BCR_WREN)
-/* Settings of FSMC_init: mode 1 with NWAIT, which is active low. With ADDSET 2, NWAIT is valid when
- * the data phase begins; NWAIT follows the pins in less than 16 ns. DATAST 4 is the smallest value
- * that NWAIT permits (docs/fsmc.md). */
+/* Settings of FSMC_init: mode 1 with NWAIT, which is active low. NWAIT is valid less than 16 ns
+ * after the pins change; with ADDSET 2, this is before the data phase begins. DATAST 4 is the
+ * smallest value that NWAIT permits (docs/fsmc.md). */
 #ifndef FSMC_SYNC
 #define BCR_VALUE (BCR_ALWAYS | BCR_ASYNCWAIT)
 #define BTR_VALUE (BTR_ADDSET(2) | BTR_DATAST(4) | BTR_BUSTURN(1))
 #else
-/* FSMC_SYNC: the FPGA has the bridge that samples its pins (fsmc_sync_bridge). Mode A: both strobes
- * are high for ADDSET, 6 HCLK, between two accesses. Streams also use NWAIT. */
+/* FSMC_SYNC: the FPGA has the bridge that samples its pins (fsmc_sync_bridge). Mode A: between two
+ * accesses, NOE and NWE are high for ADDSET (6 HCLK). With this bridge, streams also use NWAIT. */
 #define BCR_VALUE (BCR_ALWAYS | BCR_EXTMOD | BCR_ASYNCWAIT)
 #define BTR_VALUE (BTR_ADDSET(6) | BTR_DATAST(5) | BTR_BUSTURN(1))
 #endif
@@ -155,8 +155,8 @@ FSMC_Status FSMC_checkError(U32* where) {
  * + 4 ns before the end of the access. */
 #define WRITE_HZ 30000000UL
 #define READ_HZ 25000000UL
-/* size of a region, bytes; regions are aligned, and the bridge does not read ahead beyond the end
- * of one */
+/* size of an aligned region of memory, bytes; the bridge does not read ahead beyond the end of the
+ * region */
 #define REGION 4096U
 #define BLOCK 64U
 
@@ -190,9 +190,8 @@ static void setBank(int fast) {
 #endif
 }
 
-/* Returns 1 if an access since the last call was too early for the bridge. The function reads a
- * register, and this read waits until posted writes are done.
- */
+/* Returns 1 if an access since the last call of this function was too early for the bridge. The
+ * register read in this function first waits until posted writes are done. */
 static int wasLate(void) {
     if (!(FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_EVENT) & SYSTEM_EVENT_LATE_MASK))
         return 0;

@@ -21,14 +21,13 @@
 
 #include "base.h"
 
-/* Functions that the driver calls for loads and stores of the processor. On the target they are
- * volatile accesses; on the host they access the model of the FSMC peripheral, which drives the
- * pins of the RTL. Addresses are as on the Cortex-M3: FSMC registers at 0xA0000000 (32 bits only),
+/* Functions with which the driver makes loads and stores. On the target they make volatile
+ * accesses; on the host they access the model of the FSMC peripheral, which drives the pins of the
+ * simulated FPGA. Addresses are as on the Cortex-M3: FSMC registers at 0xA0000000 (32 bits only),
  * NE1 at 0x60000000, NE2 at 0x64000000. The FSMC splits a 32-bit access to a window into two 16-bit
  * accesses, low half first, and no interrupt can occur between them. FSMC_read and FSMC_write make
  * one 32-bit access each, so tasks and interrupt routines may both use them. An 8-bit access uses
- * one byte lane.
- */
+ * one byte lane. */
 typedef struct FSMC_Port {
     U8 (*read8)(void* context, U32 address);
     void (*write8)(void* context, U32 address, U8 value);
@@ -71,9 +70,9 @@ void FSMC_setHclk(U32 hz);
 U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords);
 U32 FSMC_streamRead(U32 address, U16* data, U32 halfwords);
 
-/* Reads and clears the bridge's error event. Returns FSMC_OK, or FSMC_BUS_ERROR after an error. In
- * the case of an error, if `where` is not 0, sets *where to slot * 16 + word of the last access
- * that failed, with bit 16 set for a write. */
+/* Reads and clears the bridge's error event. Returns FSMC_OK, or FSMC_BUS_ERROR after an error.
+ * After an error, stores the place of the last access that failed in *where, unless `where` is 0:
+ * slot * 16 + word, with bit 16 set for a write. */
 FSMC_Status FSMC_checkError(U32* where);
 
 /* Settings for bridges that are built for another FSMC mode: contents of a bank's BCR, BTR and BWTR

@@ -71,10 +71,10 @@ public:
         contents.insert(contents.end(), value.begin(), value.end());
         return pack(contents);
     }
-    // Parses bytes from the modem. Calls `data(source, bytes, count)` for the data of a packet as
-    // the bytes arrive, before the frame's checksum; the data has a check of its own. Calls `frame`
-    // with the contents of each other frame. After a wrong checksum, searches for the next frame,
-    // starting at the byte after the delimiter.
+    // Parses bytes from the modem. Passes the data of a received packet to `data(source, bytes,
+    // count)` as the bytes arrive, without waiting for the frame's checksum, because the link
+    // checks the data itself. Calls `frame` with the contents of each other frame. After a wrong
+    // checksum, searches for the next frame, starting at the byte after the delimiter.
     template <class Data, class Frame>
     void feed(const uint8_t* bytes, size_t count, Data data, Frame frame) {
         in_.insert(in_.end(), bytes, bytes + count);
@@ -165,7 +165,7 @@ private:
     Bytes in_;             // bytes received, starting at the delimiter of the current frame
     Bytes contents_;       // contents of the last frame read
     bool isWhole_ = false; // true if the frame is complete and has a correct checksum
-    // number of bytes of the current packet's data that were already passed on
+    // number of bytes of the current frame's contents that were already handled
     size_t given_ = 0;
 };
 
@@ -176,8 +176,8 @@ public:
 
     explicit ApiModem(bool escapes) : frames_(escapes) {}
 
-    // Returns the bytes to write to the serial line, which send a packet. If RN differs from that
-    // of the packet before, the bytes first set the modem's RN.
+    // Returns the bytes that make the modem send a packet. If RN differs from the RN of the
+    // previous packet, the bytes first set the modem's RN.
     Bytes packet(int target, const uint8_t* data, size_t size, uint32_t rn, uint32_t now) {
         Bytes bytes;
         if (rn != rn_)
@@ -204,15 +204,15 @@ public:
                              [&](const Packet& p) { return p.id == frame[1]; }))
                 return;
             for (bool isLast = false; !isLast;) {
-                // the results of the packets before this one were lost on the line; these packets
-                // count as lost
+                // the results of earlier packets in the list were lost on the serial line; these
+                // packets count as lost
                 isLast = waiting_.front().id == frame[1];
                 waiting_.pop_front();
                 answer(isLast && frame[2] == 0);
             }
         });
     }
-    // Calls `lost()` for each packet whose result is too late to be expected.
+    // Calls `lost()` for each packet without a result after LINK_ANSWER_LAST.
     template <class Lost> void expire(uint32_t now, const Lost& lost) {
         for (; !waiting_.empty() && now - waiting_.front().at >= LINK_ANSWER_LAST; lost())
             waiting_.pop_front();
@@ -224,7 +224,7 @@ private:
         uint32_t at; // time at which the packet was passed to the modem
     };
     ApiFrames frames_;
-    // current RN of the modem, which starts with the value written during the set-up
+    // current RN of the modem; at first, the value that was written during the set-up
     uint32_t rn_ = LINK_WAIT_SHARED;
     uint8_t id_ = 0;
     std::deque<Packet> waiting_; // packets without a result, oldest first

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// broadcast: sends one call at a time to all vehicles on the channel, as several copies spread in
-// time, because broadcasts are not acknowledged.
+// broadcast: sends one call at a time to all vehicles on the channel. Broadcasts are not
+// acknowledged, so several copies of each call are sent at different times.
 
 #pragma once
 
@@ -23,7 +23,7 @@ public:
         : settings_(settings), key_(keys.empty() ? LinkKey{} : keys.back()) {}
     ~Broadcast() { explicit_bzero(key_.data(), key_.size()); }
 
-    // Records that the modem is ready, and that a packet can have `bytes` bytes.
+    // Records that the modem is ready. `bytes` is the size of its largest packet.
     void limitPacket(U32 bytes) { most_ = bytes - LINK_BROADCAST_OVERHEAD; }
     void stop() { most_ = copies_ = 0; } // sends no more copies
     // Returns the size of the largest message, bytes; 0 if the modem is not ready.
@@ -44,7 +44,7 @@ public:
         dueAt_ = now;
         return true;
     }
-    // Passes the copy that is due to `transmit`. Returns the time of the next call, in
+    // Passes the copy that is due to `transmit`. Returns the time until the next call, in
     // microseconds.
     template <class Transmit> U32 poll(U32 now, Transmit transmit) {
         if (copies_ && !LINK_BEFORE(now, dueAt_)) {
@@ -58,9 +58,9 @@ public:
 
 private:
     // Number of copies of a call. With 30 % loss, a vehicle misses all five copies of a call once
-    // in 400 calls. Sending them takes longer than a quarter of a second, so the numbers of calls
-    // do not overtake the clock. Each copy waits for a random time, so that one short disturbance
-    // does not destroy all copies.
+    // in 400 calls. Sending the copies takes longer than a quarter of a second. The numbers of
+    // calls, which count quarters of a second, therefore never run ahead of the clock. Each copy
+    // waits for a random time, so that one short disturbance does not destroy all copies.
     static constexpr unsigned copies = 5;
     static constexpr U32 leastUs = 70000, spreadUs = 80000;
 

@@ -11,8 +11,8 @@ namespace XBeeAT {
 BroadcastPeer::BroadcastPeer(Host& host, const LinkKeys& keys)
     : Peer(host, everybody, keys), broadcast_(host.settings, keys_) {}
 
-// Passes on the next message of a program. If the program closes its connection, the connection
-// stays open until its calls have been sent.
+// Passes on the next message of a program. If the program has closed its end of the connection,
+// keeps the connection until the program's calls have been sent.
 bool BroadcastPeer::send(int channel, U32 now) {
     ProgramConnection& program = programs_[channel];
     if (program.kind() == ProgramConnection::Kind::Twoway) {
@@ -37,7 +37,7 @@ bool BroadcastPeer::send(int channel, U32 now) {
     return false;
 }
 
-// Sends the next copy of a call if it is due. Programs may send again after the last copy.
+// Sends the next copy of a call if it is due. After the last copy, programs may send the next call.
 U32 BroadcastPeer::pollWay(U32 now) {
     placePrograms(now);
     openWanted(now);

@@ -24,7 +24,7 @@ public:
     // advanced by `us` microseconds.
     virtual int wait(pollfd* fds, nfds_t count, uint32_t us) = 0;
 
-    // The next four functions keep a simulated clock in step with this program; the clock of the
+    // The following functions synchronise a simulated clock with this program. The clock of the
     // machine ignores them.
     //
     // keepStep makes simulated time wait for this thread until leaveStep. Time then only passes
@@ -35,7 +35,7 @@ public:
     // Report how many bytes were read from `serial`, or written to it.
     virtual void hasRead(size_t bytes) { (void)bytes; }
     virtual void hasWritten(size_t bytes) { (void)bytes; }
-    // Returns the number of written bytes that have not passed the simulated line yet.
+    // Returns the number of written bytes that the simulator has not transmitted yet.
     virtual size_t waiting() const { return 0; }
 };
 
@@ -53,6 +53,6 @@ std::unique_ptr<Clock> makeClock();
 
 } // namespace XBeeAT
 
-// The function that the library in XBEEAT_CLOCK defines. The caller owns the clock. May throw
-// std::system_error.
+// Creates a clock, which the caller owns. The library named in XBEEAT_CLOCK defines this function.
+// May throw std::system_error.
 extern "C" XBeeAT::Clock* createXBeeATClock(const char* argument);

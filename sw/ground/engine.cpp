@@ -20,8 +20,8 @@ namespace XBeeAT {
 
 namespace {
 
-// intervals between attempts while a program listens but none connects: to open a port that was
-// lost; to set up a modem that does not answer
+// intervals between attempts to open a lost port, and between attempts to set up a modem that does
+// not answer, while programs listen but no program connects
 constexpr std::chrono::seconds reopenEvery{1}, retryEvery{5};
 
 std::mutex registryMutex;
@@ -115,8 +115,8 @@ void Engine::wake() {
 // ---- set-up and failures of the modem ----
 
 int Engine::waitMs(int ms, bool forBytes) {
-    // The wait also ends when the serial port is lost, because simulated time no longer advances
-    // after the simulator has ended.
+    // A lost serial port also ends the wait. This is necessary when the simulator has ended,
+    // because simulated time then no longer advances.
     pollfd fds[] = {{wakePipe_[0], POLLIN, 0},
                     {serial_.fd(), static_cast<short>(forBytes ? POLLIN : 0), 0}};
     const U32 begin = clock.nowUs(), us = static_cast<U32>(ms) * 1000;
@@ -137,8 +137,8 @@ int Engine::waitMs(int ms, bool forBytes) {
     }
 }
 
-// Ends all connections and pending connects, because the port or the modem is lost. Logs a failure
-// that repeats only once as an error.
+// Ends all connections and pending connects, because the port or the modem is lost. If the same
+// failure repeats, logs only the first one as an error.
 void Engine::fail(const std::string& text) {
     log(complaint_ == text ? 1 : 0, text);
     complaint_ = text;
@@ -185,7 +185,8 @@ void Engine::run() {
     std::unique_lock<std::mutex> lock(mutex);
     while (!stop_) {
         if (failed_) {
-            // An adapter that returns gets another name as long as its old device is open.
+            // If a USB adapter is plugged in again while its old device is still open, the device
+            // gets another name.
             if (serial_.isGone())
                 serial_.close();
             waitForReason(lock);
@@ -203,10 +204,10 @@ void Engine::waitForReason(std::unique_lock<std::mutex>& lock) {
         changed_.wait_for(lock, serial_.fd() < 0 ? reopenEvery : retryEvery, reason);
 }
 
-// Runs the links until the port is lost. If the modem was reset during operation, it has its stored
-// settings again, because the set-up does not store its settings in the modem. The effect is the
-// same as that of a silent peer. After some time of silence, the modem is therefore set up again;
-// if this does not help, the next set-up follows later.
+// Runs the links until the port is lost. A modem that is reset during operation loses the settings
+// of the set-up, because these are not stored in the modem. Here, this looks like a silent peer.
+// The modem is therefore set up again after some time of silence; if this does not help, the next
+// set-up follows later.
 void Engine::fly(std::unique_lock<std::mutex>& lock) {
     const Settings wanted = settings;
     const U32 down = static_cast<U32>(wanted.downMs) * 1000;
@@ -281,8 +282,8 @@ void Engine::deliver(int source, const U8* bytes, size_t size, U32 now) {
             peer->receive(bytes, size, now);
 }
 
-// Passes the modem's result for a packet to the links, which share one list of unanswered packets.
-// Packets to all vehicles have no result.
+// Passes the modem's result for a packet to the links, which share one list of packets without a
+// result. The modem reports no result for packets to all vehicles.
 void Engine::answer(bool isThere, U32 now) {
     if (radio)
         Link_answer(radio, isThere, now);

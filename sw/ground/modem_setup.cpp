@@ -71,8 +71,8 @@ std::string ModemSetup::readReply(int timeoutMs, std::initializer_list<std::stri
     return "";
 }
 
-// Sends +++ after the guard time, and returns whether the modem answers OK. If it does not, the
-// time spent waiting counts as silence before the next +++.
+// Sends +++ after the guard time, and returns whether the modem answers OK. If the modem does not
+// answer, the time spent waiting counts as silence before the next +++.
 bool ModemSetup::enterCommandMode(int guardMs) {
     int guard = guardMs + guardMs / 8 + 5;
     if (silentMs_ < guard && !pause(guard - silentMs_))
@@ -155,9 +155,9 @@ bool ModemSetup::command(const std::string& text) {
     return false;
 }
 
-// Returns whether a modem answers at this rate without +++. This is the case in API mode, and in
-// command mode, in which the modem remains if a program was killed during the set-up. No byte of
-// the question needs an escape.
+// Returns whether a modem answers at this rate without +++. This is the case if the modem is in API
+// mode, or if it is still in command mode because a program was killed during the set-up. The
+// question contains no byte that AP 2 would escape.
 bool ModemSetup::findWithoutGuard(int baud) {
     serial_.setSpeed(rate_ = baud);
     const int ms = apiReplyMs + 190000 / baud;
@@ -168,10 +168,10 @@ bool ModemSetup::findWithoutGuard(int baud) {
     return isApi_ || reply == "COMMAND";
 }
 
-// Searches for the modem. First tries the rate in the settings, which a modem has that was set up
-// before, and then the factory's rate. Then tries both rates with a longer guard time: a modem may
-// have kept a longer ATGT, and a simulated modem may run slower than the clock. Finally tries all
-// rates. Times: docs/modem.md.
+// Searches for the modem. First tries the rate in the settings, because a modem that was set up
+// before has this rate, and then the factory's rate. Then tries both rates with a longer guard
+// time: a modem may have kept a longer ATGT, and a simulated modem may run slower than the clock.
+// Finally tries all rates. Times: docs/modem.md.
 bool ModemSetup::find() {
     const int guard = settings_.guardMs, longer = std::min(3 * guard, mostGuard);
     std::vector<std::pair<int, int>> candidates = {{settings_.baud, guard},

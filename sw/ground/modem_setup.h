@@ -22,7 +22,7 @@ public:
 
     // Configures the modem. Returns false on failure; trouble() then returns the reason, which is
     // empty if `wait` has aborted the set-up. Takes about two guard times if the modem has the rate
-    // of the settings, and one more for each wrong rate that is tried.
+    // of the settings, and one more guard time for each wrong rate that is tried.
     bool run();
     // Results of run(). encrypts: the modem encrypts packets (EE is on). isApi: the modem uses API
     // frames (AP is not 0). escapes: bytes in these frames are escaped (AP is 2).

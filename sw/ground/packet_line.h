@@ -39,8 +39,8 @@ public:
 
     explicit PacketLine(SerialPort& serial) : serial_(serial) {}
 
-    // Adds a sender. It starts with the air time of the sender that sent last, so that it does not
-    // get all the air time at first.
+    // Adds a sender. The new sender starts with the air time of the sender that sent last; starting
+    // with 0, it would get all the air time at first.
     void join(Sender& sender) {
         sender.airUs = airUs_;
         senders_.push_back(&sender);

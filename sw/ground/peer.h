@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// peer: the other end of programs on the ground: one vehicle (VehiclePeer), or all vehicles at once
-// (BroadcastPeer). A peer owns the connections of the programs; the derived class carries their
-// messages.
+// peer: the peer to which programs on the ground connect: one vehicle (VehiclePeer), or all
+// vehicles at once (BroadcastPeer). A peer owns the connections of the programs; the derived class
+// carries their messages.
 
 #pragma once
 
@@ -58,9 +58,9 @@ public:
     // for the program, or -1 if no descriptor is left. Messages are passed on when the link is up
     // and a channel is free; programs get channels in turn. If the serial port was lost, opens it
     // again. If no modem answers, closes the socket. If the peer has not accepted a message within
-    // `lateMs`, the message is withdrawn: the session ends, or only the connection if the message
-    // was never in the link. -1 disables this limit. While another ground station with the same
-    // address is connected to the vehicle, returns -1 with EBUSY.
+    // `lateMs`, the message is withdrawn: if the message is already in the link, the session ends;
+    // otherwise only the connection ends. A `lateMs` of -1 disables this limit. While another
+    // ground station with the same address is connected to the vehicle, returns -1 with EBUSY.
     int connect(int channel, int lateMs = -1);
     size_t waiting() const; // number of programs that wait for a channel
     // Lets the peer open connections. Returns a descriptor that becomes readable for each new
@@ -74,7 +74,7 @@ public:
     virtual std::string statistics() const = 0; // statistics as one line of text
     const std::string& device() const { return host_.device; }
     virtual U32 mostBytes() const = 0; // size of the longest message, bytes
-    // what carries messages to this peer, in words, for error texts
+    // name of the path to this peer for error texts, such as "the radio link"
     virtual const char* carrierName() const = 0;
 
     // ---- functions of the engine ----

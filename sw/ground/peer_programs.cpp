@@ -38,8 +38,8 @@ bool hasLeft(int fd) {
 } // namespace
 
 // Returns a channel for a program: `wanted`, or any channel if `wanted` is -1. Prefers a free
-// channel. If there is none, takes the channel of the program that has been silent longest,
-// provided that its silence was long enough. Otherwise returns -1.
+// channel. If no channel is free, takes the channel of the program that has been silent longest,
+// provided that this program has been silent long enough. Otherwise returns -1.
 int Peer::freeChannel(int wanted, U32 now) {
     U32 longest =
         host_.settings.idleMs ? static_cast<U32>(host_.settings.idleMs) * 1000 - 1 : 0xFFFFFFFFu;

@@ -26,7 +26,8 @@
 
 namespace XBeeAT {
 
-// numbers of the two endpoint types; the number for wires never appears on the wire
+// types of the two endpoint factories; encoded endpoints of both protocols have the type
+// endpointType
 constexpr Ice::Short endpointType = 0x4158, wireType = 0x4159;
 inline const std::string protocolName = "xbee-at", wireName = "serial";
 constexpr Ice::Int defaultTimeoutMs = 30000; // long, because the set-up of a modem takes seconds

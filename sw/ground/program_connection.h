@@ -33,9 +33,9 @@ public:
 
     bool is(State state) const { return state_ == state; }
     // want and accept take the program's socket, which must be non-blocking; the destructor closes
-    // it. `name` is used in log lines. A program that accepts a connection is a server; the first
-    // ValidateConnection that it sends is its greeting. A message is late if the link has not
-    // accepted it within `lateUs`.
+    // it. `name` is used in log lines. A program that accepts a connection is a server. The first
+    // ValidateConnection that it sends is part of the connection's set-up; later ones are
+    // heartbeats. A message is late if the link has not accepted it within `lateUs`.
     static constexpr U32 never = 2000000000;
     void want(int fd, const std::string& name, U32 lateUs = never);
     void call(); // records that the vehicle has opened this connection
@@ -73,11 +73,11 @@ public:
     bool give(const U8* message, U32 size, U32 nowUs);
     void write(U32 nowUs);
     // Sends a heartbeat to the program if it waits for a reply and has received nothing for a
-    // while. A busy server would do the same, but this heartbeat does not use the air. After any
-    // other message of the program, including a heartbeat, also sends a heartbeat, because Ice 3.8
-    // closes silent connections. An idle Ice 3.7 program sends no heartbeats and gets none, so it
-    // can close its idle connection. Also ends a closing that takes too long. Returns the time
-    // until the next call, in microseconds.
+    // while. A busy server would also send heartbeats, but this heartbeat takes no air time. In
+    // addition, answers any other message of the program, including a heartbeat, by a heartbeat,
+    // because Ice 3.8 closes silent connections. An idle Ice 3.7 program sends no heartbeats and
+    // gets none, so it can close its idle connection. Also ends a closing that takes too long.
+    // Returns the time until the next call, in microseconds.
     U32 beat(U32 nowUs);
     // Returns the time since the program last sent a complete message or read a byte. Returns 0
     // while the program waits for a reply.
@@ -103,7 +103,7 @@ private:
     bool ended_ = false, isServer_ = false, greeted_ = false;
     bool owesSign_ =
         false;          // true if the program has sent something since it last received something
-    U32 owesSince_ = 0; // since then
+    U32 owesSince_ = 0; // time since which owesSign_ is true
     unsigned pending_ = 0; // number of two-way requests of the program that have no reply yet
     U32 heardAt_ = 0;      // time of the last message to the program
     // lateUs_: time after which a message is late. readAt_: time of the last read. since_: time

@@ -38,15 +38,16 @@ public:
                head_[1] == LINK_VERSION;
     }
     const U8* hello() const { return head_; }
-    // Records the last frame that was heard: isOwn is true if it belongs to this station's session.
+    // Records that a frame was heard. isOwn is true if the frame belongs to this station's session.
     void heard(bool isOwn) { hearsOther_ = !isOwn; }
     // Records that the session has begun or ended.
     void sessionIs(bool isUp, U32 now) {
         isLost_ = !isUp && hearsOther_ && now - heardAt_ < speaksWithinUs;
     }
 
-    // Returns the next action. `connects`: this station calls the vehicle. `callsAgain`: the
-    // vehicle never calls this station, so this station calls again after a minute.
+    // Returns the next action. `connects` is true while this station tries to begin a session.
+    // `callsAgain` is true if the vehicle never calls this station; this station then calls the
+    // vehicle again after a minute.
     enum class Step { None, Yield, Resume };
     Step poll(bool connects, bool callsAgain, U32 now) {
         const bool yields = isLost_ && connects;
@@ -68,8 +69,9 @@ private:
     // silence after which this station assumes that the other station has lost the vehicle
     static constexpr U32 quietUs = LINK_AGE_LAST;
     static constexpr U32 longestUs = 60'000'000;
-    // A vehicle in a session sends at least this often, because it is pinged when it is silent.
-    // Bytes heard before this time belong to a frame that was cut off by a reset.
+    // Longest silence of a vehicle that has a session, because its station pings a silent vehicle.
+    // After a longer silence, the vehicle has no session with another station: the last bytes then
+    // belong to a frame that a reset of the vehicle has cut off.
     static constexpr U32 speaksWithinUs = LINK_PING_AFTER + 4 * LINK_PING_EVERY;
 
     bool isYielded_ = false;

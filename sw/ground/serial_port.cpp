@@ -47,8 +47,9 @@ void SerialPort::open(const std::string& device) {
         why = ": process " + std::to_string(userOf(fd_)) + " is using it";
     }
     if (!error) {
-        // Exclusive use also keeps terminal programs away. A pty is not locked, because it would
-        // stay locked if this process were killed.
+        // Exclusive mode also keeps out programs that do not check the lock, such as terminal
+        // programs. It is not used for a pty, because the pty would stay in this mode if this
+        // process were killed.
         if (!isPty(fd_))
             ioctl(fd_, TIOCEXCL);
         return;
@@ -83,7 +84,8 @@ ssize_t SerialPort::write(const void* bytes, size_t size) {
     return count;
 }
 
-// For a pty the system reports an empty queue, so the count of the simulator is used.
+// For a pty, the system always reports an empty queue, so the simulator's number of waiting bytes
+// is used.
 size_t SerialPort::waiting() const {
     int queued = 0;
     ioctl(fd_, TIOCOUTQ, &queued);

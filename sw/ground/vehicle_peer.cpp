@@ -57,8 +57,8 @@ int VehiclePeer::onMessage(void* context, int channel, const U8* data, U32 size)
     U32 now = e.host_.clock.nowUs();
     bool isWanted =
         program.is(ProgramConnection::State::Open) || program.is(ProgramConnection::State::Called);
-    // The link delivers messages in order. Holding back the messages of one program would hold back
-    // those of all programs.
+    // A program that does not read its messages loses its connection. The link delivers messages in
+    // order, so waiting for this program would delay the messages of all programs.
     if (isWanted && !program.give(data, size, now))
         e.end(channel, 0,
               "does not read; more than " + std::to_string(ProgramConnection::mostUnread) +
@@ -133,7 +133,7 @@ bool VehiclePeer::send(int channel, U32 now) {
     return status == LINK_OK;
 }
 
-// Logs the calls of disconnected programs that were not confirmed, because these programs cannot be
+// Logs the unconfirmed calls of programs that have disconnected, because these programs cannot be
 // informed.
 void VehiclePeer::reportLost() {
     if (lost_)
@@ -177,7 +177,7 @@ void VehiclePeer::stop(U32 now) {
 void VehiclePeer::receive(const U8* bytes, size_t size, U32 now) {
     if (!rival_.admits(bytes, size, now))
         return;
-    if (rival_.isYielded()) { // this station has yielded, and the vehicle calls
+    if (rival_.isYielded()) { // the HELLO that was admitted ends the yielding
         resume(now);
         Link_receive(link_.get(), rival_.hello(), LINK_HEADER, now);
     }
@@ -188,8 +188,9 @@ void VehiclePeer::receive(const U8* bytes, size_t size, U32 now) {
         rival_.heard(s.framesReceived != frames);
 }
 
-// Calls again after a minute if this station has another address than 0, because a vehicle without
-// a session only calls the ground station with address 0.
+// Yields the vehicle to another ground station, or resumes. A station with an address other than 0
+// resumes after a minute, because a vehicle without a session calls only the ground station with
+// address 0.
 void VehiclePeer::yieldOrResume(U32 now) {
     const bool connects = Link_state(link_.get()) == LINK_STATE_CONNECTING;
     switch (rival_.poll(connects, host_.settings.source != 0, now)) {

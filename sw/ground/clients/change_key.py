@@ -24,8 +24,8 @@ from reasons import reason_of
 
 
 def write(path, lines):
-    """Writes these lines to a new file in the folder of `path`. The new file has the owner of
-    `path`, and only this owner can read it. Returns its name."""
+    """Writes these lines to a new file in the folder of `path`. The new file has the same owner as
+    `path`, and only this owner can read it. Returns the new file's name."""
     temporary = path + ".new"
     with contextlib.suppress(FileNotFoundError):
         os.remove(temporary)
@@ -49,7 +49,7 @@ def lines_of(path):
 
 def keys_of(lines, address):
     """Returns the number of the vehicle's line, and the words after its address: KEY [NEXT]. If the
-    vehicle has no line, returns the same for the line that applies to all vehicles."""
+    file has no line for the vehicle, uses the line that applies to all vehicles."""
     found = None
     for number, line in enumerate(lines):
         words = line.split("#")[0].split()

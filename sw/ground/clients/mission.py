@@ -87,7 +87,8 @@ def initialize(args):
         "Ice.Default.InvocationTimeout": "-1",
         "Ice.ACM.Close": "0",
         "Station.Endpoints": args.endpoint,
-        # if this process has two devices, proxies of the UAV use this one
+        # A proxy that the UAV sends contains no device. If this process has two devices, such a
+        # proxy uses this one.
         **({"XBeeAT.Device": args.device} if args.observer_device else {}),
     }, args.plugin, args.guard, args.key)
 

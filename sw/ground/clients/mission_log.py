@@ -96,7 +96,7 @@ class Log:
             self.live.flush()
 
     def note(self, text):
-        """Prints a line that is not a call, and shows it on the page."""
+        """Prints a line that does not describe a call, and shows it on the page."""
         self.say(text)
         self.follow({"who": "ground", "what": text})
 

@@ -21,7 +21,8 @@ def initialize(settings, plugin, guard, key):
     file with the key of the link; empty means no key."""
     if plugin:
         entry = os.path.join(plugin, "xbeeat") + ":createXBeeAT"
-        # Ice divides the value at spaces, which the name of the folder may contain.
+        # The value is quoted, because Ice splits it at spaces, and the name of the folder may
+        # contain spaces.
         settings = {"Ice.Plugin.XBeeAT": '"%s"' % entry.replace("\\", "\\\\").replace('"', '\\"'),
                     "XBeeAT.Guard": str(guard),
                     "XBeeAT.KeyFile": key, **settings}

@@ -23,7 +23,7 @@ TIOCSBRK, TIOCCBRK = 0x5427, 0x5428
 GROUP = 0xFFFF  # address that key files use for the group key
 PIPE_WAIT = 10  # time-out for the first bytes if the key file is a pipe, s
 # length of the break and of the pause after it, s; a vehicle without a key restarts every second,
-# so it starts during the break
+# so at least one of its starts is during the break
 BREAK, PAUSE = 1.5, 0.5
 
 

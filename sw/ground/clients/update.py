@@ -300,8 +300,8 @@ def main():
         where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % (first, args.device)
         proxy = Update.FirmwarePrx.uncheckedCast(communicator.stringToProxy(where))
         for name, part in parts:
-            # --proxy names the object of the first part; for other objects, only the identity in it
-            # is replaced
+            # --proxy names the object of the first part; for other objects, the identity in this
+            # proxy is replaced
             own = proxy if name == first else proxy.ice_identity(
                 Ice.stringToIdentity("update" if name == "keys" else name))
             vehicle = Vehicle(Update.FirmwarePrx.uncheckedCast(own), args.patience)

@@ -98,7 +98,8 @@ bool save(const std::vector<GeneratedFile>& files, const std::string& directory)
 }
 
 // Returns the path that an #include uses for the header of `included`: the shortest path relative
-// to one of the -I folders; if it is in none of these, the path relative to the folder of `file`.
+// to one of the -I folders; if the header is in none of these folders, the path relative to the
+// folder of `file`.
 std::string headerOf(const std::string& included, const std::string& file, const Options& o) {
     fs::path path = fs::weakly_canonical(included), best;
     for (const std::string& dir : o.includes) {
@@ -199,7 +200,7 @@ struct Collected {
     nlohmann::ordered_json described = nlohmann::ordered_json::object(); // --describe
 };
 
-// Compiles a file, or adds its dependencies or its description to `all`.
+// Compiles a file; or, depending on the options, adds its dependencies or its description to `all`.
 bool compile(const std::string& file, const Options& o, Collected& all) {
     if (fs::is_directory(file) || !std::ifstream(file)) {
         std::cerr << "slice2c: error: cannot read '" << file << "'\n";

@@ -79,8 +79,8 @@ public:
         }
     }
     // Checks the C name of a member or parameter. The name must not be a macro, and must not equal
-    // a name at file scope that the generated functions use. Only names with an underscore can
-    // equal one.
+    // a name at file scope that the generated functions use; all names at file scope contain an
+    // underscore.
     void checkInner(const std::string& c, const std::string& slice, const Location& at) {
         auto it = names_.find(c);
         if (it != names_.end())
@@ -182,7 +182,7 @@ void checkC(const Unit& unit, const CFileNames& files, Diagnostics& diagnostics)
         if (d->isLocal)
             continue;
         checkInner(*d, names);
-        // this interface was generated from a class; the errors are reported for the class
+        // this interface was generated from a class; errors are reported for that class
         if (d->ofClass)
             continue;
         checkMetadata(*d, diagnostics);

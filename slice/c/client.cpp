@@ -13,7 +13,7 @@ std::string mode(const Operation& o) {
     return hasResults(o) || !o.throws.empty() ? m + " | ICE_RESULTS" : m;
 }
 
-// Writes the declarations at the start of a synchronous or asynchronous call.
+// Writes the declarations at the start of the function for a synchronous or asynchronous call.
 void beginCall(Writer& w, const Operation& o) {
     w.line("Ice_OutputStreamPtr os = Ice_ObjectPrx_begin(self, \"{op}\", {mode});",
            {{"op", o.name}, {"mode", mode(o)}});
@@ -26,8 +26,8 @@ void writeParameters(Writer& w, const Declaration& d, const Operation& o) {
     writeWithValues(w, inSlots(o), "ice_values");
 }
 
-// Writes code that reads an exception into `to` if the operation declares one. A servant in Python
-// can throw exceptions that the operation does not declare; these become
+// Writes code that reads an exception into `to`, if the operation declares exceptions. A servant in
+// Python can throw exceptions that the operation does not declare; these become
 // ICE_UNKNOWN_USER_EXCEPTION.
 void readException(Writer& w, const CContext& c, const Operation& o, const std::string& to) {
     bool isAsked = !o.throws.empty() && to == "ex"; // the caller may pass 0 for `ex`

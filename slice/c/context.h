@@ -21,28 +21,30 @@ std::string cName(const Declaration& d);
 // Returns Module_Sub_NamePrx, the proxy type of an interface or a class.
 std::string cProxy(const Declaration& d);
 // Returns the C name for a name of the user. Generated code uses other names in the same scope:
-// they are listed in names.cpp, or begin with "ice_" or "Ice_". A name that equals one of them, or
-// a keyword of C, gets an underscore appended. No name in Slice ends with an underscore.
+// they are listed in names.cpp, or begin with "ice_" or "Ice_". A user's name that equals such a
+// name, or a keyword of C, gets an underscore appended, which is safe because no name in Slice ends
+// with an underscore.
 std::string cIdentifier(const std::string& name);
 // Returns the name of a member of the struct, class or exception `d`.
 std::string cMember(const Declaration& d, const Field& member);
-// Returns the C name of a parameter. Functions, variables and the members of an asynchronous call
-// all use this name.
+// Returns the C name of a parameter. Functions, variables, and the struct of an asynchronous call
+// use the same name for the parameter.
 std::string cParameter(const Operation& o, const Field& parameter);
-// Returns an operation's part of a C function name, which follows the name of the interface.
+// Returns the part of a C function name that stands for the operation; it follows the name of the
+// interface.
 std::string cOperation(const std::string& name);
 // Returns the C type of a value.
 std::string cType(const Type& type);
-// Returns the name of an enumerator's constant.
+// Returns the name of the C constant for an enumerator.
 std::string cEnumerator(const Declaration& owner, const std::string& name);
 // Returns a constant's value as an expression. The value of a Long is an initialiser {low, high}.
 std::string cValue(const Literal& value, const Type& type);
-// Returns "Folder_File_what": the name of an item that each Slice file has once.
+// Returns "Folder_File_what", a C name that is unique to a Slice file.
 std::string cFileName(const CFileNames& names, const std::string& what);
-// True if icec.h declares the type itself; only its stream functions are generated.
+// True if icec.h declares the type; slice2c then generates only its stream functions.
 bool isRuntimeType(const Declaration& d);
-// Returns the number of elements for which a sequence or dictionary has room inside its struct; 0
-// if the elements are stored outside.
+// Returns the capacity, in elements, of a sequence or dictionary that stores its elements inside
+// its struct; 0 if it stores them outside.
 int statedMaximum(const Declaration& d);
 
 // ---- types: pieces of C that pass, write and read values ----
@@ -63,8 +65,8 @@ struct Slot {
     std::string pointer; // its address
     bool isOptional = false;
     int tag = 0;
-    // C expression for the presence of the value: writing code tests the expression, reading code
-    // assigns to it
+    // C lvalue that is true if the value is present; code that writes the value tests this lvalue,
+    // code that reads the value sets it
     std::string has;
 };
 
@@ -95,8 +97,8 @@ bool isSliced(const Declaration& owner, const Operation& o);
 // holds one.
 bool sendsClasses(const Operation& o);
 bool returnsClasses(const Operation& o);
-// True if a slot holds a class instance. With `isRequired`, only required slots count: encoding 1.0
-// then adds a list of instances.
+// True if a slot holds a class instance. The second function considers only required slots: if one
+// of them holds an instance, encoding 1.0 adds a list of instances.
 bool anyClass(const std::vector<Slot>& slots);
 bool anyRequiredClass(const std::vector<Slot>& slots);
 
@@ -105,8 +107,8 @@ std::string operationName(const Declaration& owner, const Operation& o);
 std::string exceptionType(const Declaration& owner, const Operation& o);
 
 // Return lists of C parameters; each parameter is preceded by a comma (", Ice_Int a, const M_S
-// *b"). The first function returns the in parameters. The second returns the out parameters and the
-// result, as pointers. Class instances that a servant returns may be const.
+// *b"). The first function returns the in parameters. The second function returns the out
+// parameters and the result, as pointers. With `isSent`, pointers to class instances are const.
 std::string inParameters(const Operation& o);
 std::string outParameters(const Declaration& owner, const Operation& o, bool isSent);
 
@@ -135,15 +137,15 @@ struct CContext {
 
     CContext(const Unit& ofFile, const CFileNames& ofFiles);
     std::string header() const;
-    // Returns the name of the table that lists the classes known to this unit. Only instances of
-    // these classes can be received.
+    // Returns the name of the table of the classes that this unit knows; only their instances can
+    // be received.
     std::string valueTable() const;
     bool usesClasses() const;
     Writer begin(const std::string& what) const;
     Writer beginSource(const std::string& what) const;
-    // Returns the prefix ("M_I_op") of the union of the exceptions that an operation throws. All
-    // operations with the same exceptions use the union of the first of these operations in the
-    // file, so an assignment is enough to rethrow an exception.
+    // Returns the prefix ("M_I_op") of the union of the exceptions that an operation throws.
+    // Operations that throw the same exceptions share one union, named after the first of these
+    // operations in the file; an assignment is then enough to rethrow an exception.
     const std::string& thrownAs(const Operation& o) const { return thrown_.at(&o); }
 
     // Calls `f` for each declaration of kind `kind` in the main file, except local declarations.

@@ -24,7 +24,7 @@ std::string unknownOf(const Declaration& d) {
 }
 
 // Returns whether the generated code needs a table of instances. Members that are classes need the
-// table, and so do preserved slices, because these may contain instances.
+// table. Preserved slices also need it, because they may contain instances.
 bool needsTables(const Declaration& d) {
     return hasClasses(d) || d.preserves();
 }
@@ -114,7 +114,8 @@ void writeThrown(Writer& w, const std::vector<Thrown>& family) {
     w.line("}");
 }
 
-// Writes code that reads one slice and compares its type id with the exceptions of this family.
+// Writes code that reads one slice and compares its type id with those of the exceptions in
+// `family`.
 void readOneSlice(Writer& w, const std::vector<Thrown>& family, bool preserves) {
     w.line(std::string(preserves ? "" : "Ice_String ") + "id = Ice_InputStream_startSlice(is);");
     const char* otherwise = "";
@@ -186,8 +187,8 @@ void classFunctions(Writer& w, const Declaration& d) {
            v);
 }
 
-// Returns three kinds of declarations: classes that types of the main file use but do not define,
-// interfaces that these types pass by value, and interfaces derived from those.
+// Returns three kinds of declarations: classes that the main file uses, interfaces that it passes
+// by value, and interfaces derived from such interfaces.
 static std::set<const Declaration*> mentioned(const Unit& unit) {
     std::set<const Declaration*> found;
     auto add = [&](const Type& t) {

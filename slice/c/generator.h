@@ -28,9 +28,9 @@ std::vector<std::string> limitFiles(const std::vector<std::string>& files);
 // precedes the metadata in the source.
 void addLimits(Unit& unit, const std::vector<std::string>& files, Diagnostics& diagnostics);
 
-// Gives the enumerators of an enum long names, as ["c:scoped"] does, if a short name is also the
-// name of something else in the same file. Names in other files are ignored, because a program may
-// or may not include those files.
+// Gives long names to the enumerators of an enum, as ["c:scoped"] does, if one of their short names
+// is also the name of another item in the same file. Names in other files are ignored, because a
+// program may or may not include those files.
 void scopeEnumerators(Unit& unit);
 
 // Reports definitions that cannot be mapped to C, and definitions that would get the same C name.

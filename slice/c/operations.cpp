@@ -79,9 +79,9 @@ bool throwsPreserved(const Unit& unit, const Operation& o) {
                        [](const Declaration* e) { return e->preserves(); });
 }
 
-// Returns whether this exception is the first one in the union that has its name; the first one
-// keeps its name unchanged. The exceptions that the operation declares come before the derived
-// ones, so a new derived exception never renames a declared one.
+// Returns whether this exception is the first exception of its name in the union; only the first
+// one keeps its name unchanged. Declared exceptions come before derived ones, so a new derived
+// exception never renames a declared exception.
 static bool isFirstOfName(const Operation& o, const std::vector<const Declaration*>& family,
                           const Declaration& exception) {
     for (const auto& list : {o.throws, family})
@@ -170,7 +170,7 @@ std::string outParameters(const Declaration& owner, const Operation& o, bool isS
     return list;
 }
 
-// Returns the results as parameters of the function that sends the response.
+// Returns the parameters that pass the results to the function that sends the response.
 static std::string responseParameters(const Operation& o) {
     std::string list;
     for (const Result& r : results(o))

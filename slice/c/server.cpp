@@ -86,8 +86,8 @@ void dispatchOperation(Writer& w, const CContext& c, const Declaration& d, const
             for (const Slot& s : outSlots(o, ""))
                 if (s.isOptional)
                     w.line(s.has + " = 0;");
-            // the servant then has one more parameter: the exception, with its list of unknown
-            // slices
+            // the servant then has an additional parameter: the exception, which has a list of
+            // unknown slices
             if (throwsPreserved(c.unit, o))
                 w.line("memset(&ex, 0, sizeof ex);");
             if (!o.throws.empty())
@@ -158,7 +158,7 @@ void interfaceTable(Writer& w, const Declaration& d) {
 }
 
 // Returns the initialiser of the default operation table, which contains the application's
-// functions. The initialisers of the bases' tables are nested in it.
+// functions. It contains the initialisers for the tables of the bases.
 std::string defaultOperations(const Declaration& top, const Declaration& d) {
     std::string list;
     for (const Declaration* base : d.bases)

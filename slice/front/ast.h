@@ -70,7 +70,7 @@ struct Type {
         String,
         Named, // type defined by `declaration`: enum, struct, sequence, dictionary or class
         Proxy, // proxy to the interface `declaration`; 0 means Object*
-        // instance of a class: Object, Value (any class), or, with `declaration`, an interface
+        // instance of a class: Object, Value (any class), or, if `declaration` is set, an interface
         // passed by value
         Value,
         LocalObject // local object; allowed in local definitions only
@@ -128,7 +128,7 @@ struct Declaration {
     Location at;
     bool fromInclude = false;
     bool isLocal = false;
-    bool isForward = false; // an interface or class that is declared but not defined here
+    bool isForward = false; // an interface or class with only a forward declaration
     std::vector<std::string> metadata;
 
     std::vector<Enumerator> enumerators; // Enum
@@ -143,11 +143,11 @@ struct Declaration {
     std::vector<const Declaration*> implemented; // Class: interfaces that it implements
     // Interface, Class: operations without inherited ones
     std::vector<Operation> operations;
-    // Interface generated for the operations of a class: that class; otherwise null
+    // class for whose operations this interface was generated; null for other declarations
     const Declaration* ofClass = nullptr;
     int compactId = -1; // Class: compact id; -1 if none
 
-    // Facts about the values of this type; set when the definition of the type is complete.
+    // Properties of the type's values; set when the definition of the type is complete.
     struct Facts {
         int leastWireSize = 1;  // bytes
         bool isVariable = true; // true if the encoded size varies

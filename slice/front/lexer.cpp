@@ -61,7 +61,7 @@ private:
     // Returns the block of // comments that ends on the line before `line`.
     std::string linesAbove(int line) const {
         auto end = comments_.end();
-        // skips comments in `line` itself and after it
+        // skips comments in `line` and in later lines
         while (end != comments_.begin() && (end - 1)->first >= line)
             --end;
         auto begin = end;
@@ -75,7 +75,7 @@ private:
         return lines;
     }
 
-    // Handles # 12 "file" or #line 12 "file", as written by the preprocessor, or a #pragma for a
+    // Handles a marker of the preprocessor (# 12 "file" or #line 12 "file") or a #pragma for a
     // compiler.
     void lineMarker() {
         size_t end = text_.find('\n', position_);
@@ -225,7 +225,7 @@ private:
     std::string_view doc_;
     // text of each // comment, with its line
     std::vector<std::pair<int, std::string_view>> comments_;
-    // number of lines that the preprocessor has added so far; it adds one after each comment
+    // number of lines that the preprocessor has added so far (one after each comment)
     int moved_ = 0;
     std::vector<Token> tokens_;
 };

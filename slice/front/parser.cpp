@@ -301,8 +301,8 @@ Declaration& Parser::declareType(Declaration::Kind kind, bool mayBeForward) {
         unit_.declarations.pop_back();
         return *earlier;
     }
-    // Other declarations refer to the object of the forward declaration, so this object becomes the
-    // definition. It is moved to the end, so that the definitions keep their order in the source.
+    // Other declarations point to the object of the forward declaration, so this object becomes the
+    // definition. It is moved to the end, so that definitions are in the order of the source.
     auto it = std::find_if(unit_.declarations.begin(), unit_.declarations.end(),
                            [&](const auto& p) { return p.get() == earlier; });
     *earlier = std::move(d);

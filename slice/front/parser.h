@@ -140,7 +140,8 @@ private:
     size_t position_ = 0;
     std::vector<std::string> scope_;
     std::string scopeId_; // "::A::B"
-    // type that is being parsed; names in it are recorded as used by this type, not by its module
+    // type that is being parsed: the names that it uses are recorded for this type, not for its
+    // module
     std::string user_;
     std::map<std::string_view, bool> isMain_;
     std::set<std::string_view> begun_; // files with at least one definition so far

@@ -196,7 +196,7 @@ Symbol* Parser::ownEnumerator(const Declaration& d, const std::string& name, con
 Literal Parser::namedLiteral(const Type& type, const std::string& what) {
     Location begin = token().at;
     std::string written = scopedName("a value");
-    // An enumerator of the constant's type needs no scope.
+    // The value may be an enumerator of `type`, which needs no scope.
     Symbol* s = nullptr;
     if (type.declaration && type.declaration->kind == Declaration::Kind::Enum &&
         written.find("::") == std::string::npos)

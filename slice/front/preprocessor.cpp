@@ -119,14 +119,14 @@ std::string tooLongLine(const std::filesystem::path& file, const std::vector<std
     return "";
 }
 
-// Removes two messages that Ice's compilers do not print: about line ends of other systems, and
-// about a missing line end.
+// Removes two messages that Ice's compilers do not print: the message about line ends of other
+// systems and the message about a missing line end.
 std::string withoutLineEnds(const std::string& messages) {
     std::istringstream in(messages);
     std::string kept;
     bool isSkipped = false;
     for (std::string line; std::getline(in, line);) {
-        // true if this line belongs to the message before: source text, or the name of the
+        // true if this line belongs to the previous message: source text, or the name of the
         // including file
         bool continues = !line.empty() && line[0] == ' ';
         isSkipped = (isSkipped && continues) ||
@@ -141,8 +141,8 @@ std::string withoutLineEnds(const std::string& messages) {
 } // namespace
 
 Preprocessed preprocess(const std::string& file, const std::vector<std::string>& options) {
-    // -C: comments stay, for doc comments; -k: columns stay, for messages. The version macros are
-    // defined by Ice 3.7's compilers.
+    // -C keeps comments, because doc comments are needed; -k keeps columns, for messages. Ice 3.7's
+    // compilers also define these version macros.
     std::vector<std::string> arguments = {"mcpp",
                                           "-C",
                                           "-k",

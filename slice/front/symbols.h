@@ -38,7 +38,7 @@ class Symbols {
 public:
     explicit Symbols(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
 
-    // Returns the symbol with this full name, ignoring capitals.
+    // Returns the symbol with this full name; capital and small letters are equal.
     Symbol* find(const std::string& id);
     // Declares `name` in `scope` ("" or "::A::B"). Returns the new or the already existing symbol,
     // or 0 after it has reported an error.
@@ -49,13 +49,13 @@ public:
     // must not use the same name with another meaning.
     Symbol* resolve(const std::string& scope, const std::string& written, const Location& at,
                     const std::string& user);
-    // Does the same as resolve, but ignores capitals and records nothing.
+    // Does the same as resolve, but capital and small letters are equal, and nothing is recorded.
     Symbol* innermost(const std::string& scope, const std::string& written);
     // Returns true, and reports an error, if `user` has used the name with another meaning before.
     bool hasChanged(const std::string& user, const std::string& name, const Location& at);
-    // Enumerators by their bare name, without the name of their enum, which Ice still allows.
-    // declareBare adds one to `scope` and its enclosing scopes; bare returns those that are visible
-    // in `scope`.
+    // Enumerators by their bare name: Ice still allows an enumerator without the name of its enum.
+    // declareBare adds an enumerator to `scope` and its enclosing scopes; bare returns the
+    // enumerators of this name that are visible in `scope`.
     void declareBare(const std::string& scope, const std::string& name, Symbol* enumerator);
     const std::vector<Symbol*>& bare(const std::string& scope, const std::string& name) const;
 

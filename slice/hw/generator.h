@@ -26,8 +26,8 @@ constexpr unsigned bufferAlignment = 128;
 constexpr unsigned mostPins = 32; // largest number of pins of a core in one direction
 constexpr unsigned mostOperations = 16, refusedLsb = 16, resetBit = 31;
 
-// A scalar, or half of a 64-bit scalar, as a field of a word. The field is also a range of bits of
-// a port.
+// A field of a word: a scalar, or half of a 64-bit scalar. The same bits are also a range of bits
+// of a port.
 struct Piece {
     Type type;
     std::string name; // name of the field: a_x for member x of parameter a
@@ -36,7 +36,7 @@ struct Piece {
     unsigned portLsb = 0, portWidth = 0;
     // 0 for a parameter or result of the call; n for a member of the n-th exception
     unsigned exception = 0;
-    bool isCode = false; // true for the code of an exception: 0, or the exception's number
+    bool isCode = false; // true for the field with the code of an exception (0: no exception)
     // true if the field is the number of elements of a sequence. The elements are in DDR3, `offset`
     // bytes after the start of the slot's buffers.
     bool isCount = false;
@@ -52,8 +52,8 @@ struct Word {
     unsigned width() const { return pieces.back().lsb + pieces.back().width; }
 };
 
-// A call of an operation of the core, or an event, which is a call by the core: of an operation of
-// a callback interface.
+// A call of one of the core's operations, or an event: a call that the core makes, of an operation
+// of a callback interface.
 struct Call {
     const Operation* operation = nullptr;
     bool isEvent = false;
@@ -101,7 +101,7 @@ struct Block {
     bool hasOwnClock = false;
     // The number of pages is 2^pageBits. 0: the slot has one page, and no word PAGE (word 5).
     unsigned pageBits = 0;
-    unsigned memoryWord = 0;  // number of the word MEMORY; 0 without sequences
+    unsigned memoryWord = 0;  // number of the word MEMORY; 0 if there are no sequences
     unsigned memoryBytes = 0; // size of all buffers in bytes, a power of two
 
     bool hasLong() const;
@@ -119,7 +119,7 @@ struct Port {
     bool isOut = false;
     unsigned width = 1;
     std::string group; // title of the group of ports that begins with this port; otherwise empty
-    // call to which the port belongs; 0 for a port that each wrapper has
+    // call to which the port belongs; null for a port that every wrapper has
     const Call* call = nullptr;
 };
 
@@ -145,16 +145,16 @@ std::string hexDigits(unsigned value, unsigned digits);
 
 // True for a number, a bool, an enum, or a struct of such types.
 bool isMappable(const Type& type);
-// Appends the scalars of a value as fields of words. Successive scalars share a word without an
-// assigned number if they fit. A 64-bit scalar takes two words, the low half first. `c` is the C
-// lvalue of the value; for a pointer p, it is "*p".
+// Appends the scalars of a value as fields of words. Successive scalars share a word if they fit
+// and the word has no assigned number. A 64-bit scalar takes two words, the low half first. `c` is
+// the C lvalue of the value; for a pointer p, it is "*p".
 void addValue(std::vector<Word>& words, const Type& type, const std::string& name,
               const std::string& c, bool isOut, unsigned exception = 0);
 
 // Appends the number of elements of a sequence that lies `offset` bytes into the slot's buffers.
 void addCount(std::vector<Word>& words, const Type& type, const std::string& name,
               const std::string& c, bool isOut, unsigned most, unsigned offset);
-// Appends the code of the exception that was thrown, 1 to `count`.
+// Appends the code of the exception that was thrown, 1 to `count`; 0 means that none was thrown.
 void addCode(std::vector<Word>& words, size_t count);
 // Returns the name "a_base" of the port with the address of a sequence, if `count` is its field
 // "a_count".

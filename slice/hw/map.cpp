@@ -163,8 +163,8 @@ private:
                     w.number = take(w.name);
     }
 
-    // Reports an error if two Slice names lead to the same port name: aB and a_b, for example, or
-    // the member x of p and a parameter p_x.
+    // Reports an error if two Slice names lead to the same port name. Examples: aB and a_b; the
+    // member x of p, and a parameter p_x.
     void checkPorts() {
         std::map<std::string, std::string> owners; // Slice names by port name
         for (const Port& p : wrapperPorts(block_)) {

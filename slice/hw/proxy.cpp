@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// proxy: generates a C++ class for test benches. It represents a core in a simulated slot and has
-// the operations of the core's interface as methods.
+// proxy: generates a C++ class for test benches. The class represents a core in a simulated slot,
+// and has a method for each operation of the core's interface.
 
 #include "c/context.h"
 #include "hw/generator.h"

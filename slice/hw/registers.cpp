@@ -14,8 +14,8 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// Returns the first line of a doc comment without any end of a C comment, or `otherwise` if there
-// is no doc comment.
+// Returns the first line of a doc comment, with any end of a C comment removed; returns `otherwise`
+// if there is no doc comment.
 std::string firstLine(const std::string& doc, const std::string& otherwise) {
     auto lines = docLines(doc);
     return lines.empty() ? otherwise : lines.front();

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// servant: generates the two C90 files of a servant. An operation replies at once, after waiting
-// for the core, or later from a task. The servant also passes on the core's events.
+// servant: generates the two C90 files of a servant. An operation replies at once (after it has
+// waited for the core), or later from a task. The servant also passes on the core's events.
 
 #include "c/context.h"
 #include "hw/generator.h"

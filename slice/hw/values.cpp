@@ -18,7 +18,7 @@ std::string macro(const Block& b, const Word& w, const Piece& p, const char* wha
     return upperCase(b.name) + "_" + w.name + "_" + upperCase(p.name) + half + "_" + what;
 }
 
-// Returns the C expression of a piece; a dereferenced pointer is put in parentheses.
+// Returns the C expression for a piece, with parentheses around a dereferenced pointer.
 std::string lvalue(const Piece& p) {
     return p.c[0] == '*' ? "(" + p.c + ")" : p.c;
 }
@@ -45,7 +45,7 @@ std::string bitsOf(const Piece& p) {
 }
 
 // Returns the start of the C call that reads or writes a word: the function's name and first
-// arguments. For a word on a page, the called function also selects the page.
+// arguments. If the word is on a page, the function that is called also selects the page.
 std::string access(const Block& b, const Word& word, const std::string& what) {
     std::string name = upperCase(b.name) + "_" + word.name;
     return b.isPaged(word.number)

@@ -128,8 +128,8 @@ template <class Choose> std::string bits(const Block& b, Choose choose) {
     return std::to_string(b.events()) + "'b" + text;
 }
 
-// Writes the busy bits. A call is busy from start to done; a start while it is busy, or a done
-// while it is not, has no effect.
+// Writes the busy bits. A call is busy from start to done. A start has no effect while the call is
+// busy; a done has no effect while the call is not busy.
 void longCalls(Writer& w, const Block& b) {
     std::string n = std::to_string(b.events()), top = std::to_string(b.events() - 1);
     std::string done, refused;

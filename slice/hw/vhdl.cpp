@@ -103,8 +103,8 @@ void signals(Writer& w, const Block& b) {
                    c.name + "_refused : std_logic;");
 }
 
-// Writes the signals that start and end calls, and the signal `happened`. It has one bit for each
-// event and for each call that reports its end.
+// Writes the signals that start and end calls, and the signal `happened`, which has one bit for
+// each event and for each call that reports its end.
 void events(Writer& w, const Block& b) {
     for (const Call& c : b.calls)
         if (c.isLong) {
@@ -124,8 +124,8 @@ void events(Writer& w, const Block& b) {
            "\" else '1';");
 }
 
-// Writes the busy bits. A call is busy from start to done; a start while it is busy, or a done
-// while it is not, is ignored.
+// Writes the busy bits. A call is busy from start to done. A start is ignored while the call is
+// busy; a done is ignored while the call is not busy.
 void longCalls(Writer& w, const Block& b) {
     w.line();
     w.line("  long_operations : process (clk_i)");

@@ -30,7 +30,7 @@ void plainLinks(std::string& s) {
 void plainTag(std::string& s) {
     static const struct {
         std::string_view tag, text;
-        bool isNamed; // true if the tag is followed by a name; a colon is then added after the name
+        bool isNamed; // true if a name follows the tag; a colon is then added after this name
     } tags[] = {{"@param ", "", true},
                 {"@return ", "result: ", false},
                 {"@throws ", "throws ", true},

@@ -12,6 +12,6 @@
 // Returns the lines of the text without stars and indentation. @param, @return, @throws and {@link}
 // are replaced by words.
 std::vector<std::string> docLines(const std::string& doc);
-// Writes the doc comment, with an additional line if the metadata contains ["deprecate"]. Writes
-// nothing if there is neither a comment nor this metadata.
+// Writes the doc comment, if there is one, and an additional line if the metadata contains
+// ["deprecate"].
 void writeDoc(Writer& w, const std::string& doc, const std::vector<std::string>& metadata = {});

@@ -88,8 +88,8 @@ void Hw_Core_begin(Hw_Core* self, U32 operation, U32 ms) {
 
 void Hw_Core_later(Hw_Core* self, U32 operation) {
     self->later[operation] = 1;
-    /* Wakes the polling task. The event may already have occurred, or this deadline may be earlier
-     * than all others. */
+    /* Wakes the polling task, which must check this operation now: its event may already have
+     * occurred, or its deadline may be earlier than all others. */
     self->port->post(self->context, operation);
 }
 

@@ -39,10 +39,10 @@ typedef struct Hw_Frames {
     void (*processed)(U32 findings);
 } Hw_Frames;
 
-/* Port of a servant to the operating system: functions with which its task waits, and resources
- * that several servants share. On uC/OS-II, a semaphore (OSSemPend, OSSemPost) implements wait and
- * post. If several tasks call operations that take time, each operation needs a semaphore of its
- * own. */
+/* Interface of a servant to the operating system: functions with which the servant's task waits,
+ * and resources that several servants share. On uC/OS-II, a semaphore (OSSemPend, OSSemPost)
+ * implements wait and post. If several tasks call operations that take time, each operation needs a
+ * semaphore of its own. */
 typedef struct Hw_Port {
     /* Waits until post is called for the operation, or until `ms` have passed. Returns 1 after a
      * post, and 0 after a time-out. A post that precedes the wait is not lost. */
@@ -50,8 +50,8 @@ typedef struct Hw_Port {
     void (*post)(void* context, U32 operation);
     /* Returns milliseconds since an arbitrary time; the count wraps. */
     U32 (*nowMs)(void* context);
-    /* Returns how many accesses have not been answered so far. If this number increases during a
-     * read, the data of the read is not valid. */
+    /* Returns the number of bus errors so far: accesses to which no core has responded. If this
+     * number increases during a read, the data of the read is not valid. */
     U32 (*busErrors)(void* context);
     Hw_Frames* frames; /* frames of the camera; 0 if no core of the program processes frames */
 } Hw_Port;
@@ -76,9 +76,9 @@ Hw_Status Hw_Core_init(Hw_Core* self, U32 slot, U32 id, const Hw_Port* port, voi
  * or by a task. */
 void Hw_Core_interrupt(Hw_Core* self);
 
-/* Access a word on `page` of a slot with more than 16 words, and then restore the register PAGE, so
- * that an interrupted task continues on its page. Tasks of equal priority that share processor time
- * must not use these functions. */
+/* Access a word on `page` of a slot with more than 16 words, and then restore the register PAGE. A
+ * task that was interrupted by such an access thus finds its own page selected again. Tasks of
+ * equal priority that share processor time must not use these functions. */
 U32 Hw_Core_read(const Hw_Core* self, U32 word, U32 page);
 void Hw_Core_write(const Hw_Core* self, U32 word, U32 page, U32 value);
 

@@ -15,8 +15,8 @@ typedef struct Hw_Instance {
     Ice_ObjectPtr servant;
     Hw_Status (*start)(const Hw_Port* port, void* context);
     void (*interrupt)(void);
-    /* Replies to calls that have ended or timed out. Returns the time in ms after which the
-     * function must be called again if there is no event before; HW_NEVER if no call is in
+    /* Replies to calls that have ended or timed out. Returns the time until this function must
+     * be called again even if no event has occurred, ms; HW_NEVER if no call is in
      * progress. */
     U32 (*poll)(U32 nowMs);
 } Hw_Instance;

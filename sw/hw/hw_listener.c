@@ -15,9 +15,9 @@ void Hw_Listener_set(Hw_Listener* self, const Ice_ObjectPrx* proxy, const Ice_Cu
     U8 next = (U8)(self->count + 1U);
     Ice_ObjectPrx* stored = self->proxies + (next & 1U);
     int connection = 0;
-    /* 0 means that the proxy is not bound to a connection */
+    /* generation of the connection to which the proxy is bound; 0 if it is not bound */
     U16 generation = 0;
-    /* true for a proxy without endpoints and without an adapter */
+    /* binds a proxy without endpoints and without an adapter id to the connection of this call */
     if (!Ice_ObjectPrx_isNull(proxy) && proxy->endpointsSize == 2 &&
         Ice_Connection_createProxy(current->communicator, current->connection, "listener",
                                    stored) == ICE_OK) {

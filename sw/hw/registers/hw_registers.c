@@ -12,7 +12,7 @@
 
 enum { ID, EVENT, MASK, PAGE };
 #define ALL 0xFFFFFFFFU
-/* first word of the window: PAGE is the byte address in the core of this word */
+/* first word of the window; PAGE contains the byte address in the core that this word shows */
 #define WINDOW 8U
 #define WINDOW_BYTES 32U /* size of the window, bytes: words 8..15 show this part of the core */
 #define WAIT_MAX 600000  /* ms */
@@ -264,7 +264,7 @@ Ice_Status Hw_Registers_wait(Hw_RegistersPtr servant, Ice_Int ms, const Ice_Curr
     self->deadline = self->port->nowMs(self->context) + (U32)ms;
     self->waits = 1;
     FSMC_write(self->slot, MASK, ALL);
-    /* wakes the polling task, which must learn of the deadline */
+    /* wakes the polling task, which must wait for the new deadline */
     self->port->post(self->context, 0);
     return ICE_LATER;
 }

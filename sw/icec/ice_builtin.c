@@ -4,7 +4,7 @@
  */
 #include "ice_message.h"
 
-#define MODE 1 /* mode of these requests: nonmutating, as in Ice */
+#define MODE 1 /* mode of requests for these operations: nonmutating, as in Ice */
 
 Ice_Status Ice_ObjectPrx_ice_ping(Ice_ObjectPrxPtr self) {
     Ice_InputStreamPtr is;

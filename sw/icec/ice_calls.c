@@ -66,8 +66,8 @@ static void finish(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id, Ice_Statu
         callback = call->callback;
         cookie = call->cookie;
         call->status = status;
-        /* The slot is free before the callback runs, because the callback may make the next call.
-         */
+        /* Frees the slot before the callback runs, because the callback may make the next
+         * call. */
         call->state = callback ? ICE_CALL_FREE : ICE_CALL_DONE;
         if (!callback) {
             call->is.size = 0; /* empty: there is no reply, so there are no results */

@@ -7,8 +7,9 @@
 
 #include <string.h>
 
-/* Rank of a servant's entry for a request: an exact entry is preferred to the default servant of
- * the category, and that one to the default servant of all categories. */
+/* Rank of a servant's entry for a request: an entry with exactly this identity is preferred to the
+ * default servant of the category, and the default servant of the category to the default servant
+ * of all categories. */
 enum { NO_MATCH, DEFAULT_OF_ALL, DEFAULT_OF_CATEGORY, EXACT };
 
 static int match(const Ice_Servant* entry, const Ice_Current* current, Ice_Status* status) {
@@ -90,7 +91,7 @@ Ice_Status Ice_Object_invoke(Ice_ObjectPtr servant, const Ice_Current* current,
 }
 
 /* Executes an operation that is counted as in progress on its connection. Sets `answers` to 0 if no
- * reply must be sent now: the servant replies later, or the caller has disconnected. */
+ * reply is to be sent now, because the servant replies later or the caller has disconnected. */
 static Ice_Status runCounted(Ice_ObjectPtr servant, const Ice_Current* current,
                              Ice_InputStreamPtr is, Ice_OutputStreamPtr os, int* answers) {
     Ice_CommunicatorPtr ic = current->communicator;
@@ -145,8 +146,8 @@ static Ice_Status sendReply(Ice_CommunicatorPtr ic, int connection, Ice_OutputSt
     if (os->failed)
         status = ICE_MARSHAL;
     reason = os->failed ? Ice_Failed_text(os->failed, os->bound) : Ice_Status_text(status);
-    /* A reply with this failure would have to repeat the names in the request, but the request's
-     * bytes no longer exist. */
+    /* A reply with one of these failures must repeat the names in the request. If the request's
+     * bytes no longer exist, another failure is sent. */
     if (!target && status >= ICE_OBJECT_NOT_EXIST && status <= ICE_OPERATION_NOT_EXIST)
         status = ICE_UNKNOWN_EXCEPTION;
     writeHead(os, id);
@@ -293,7 +294,7 @@ void* Ice_Current_allocate(const Ice_Current* current, Ice_Int bytes) {
     void* room;
     is->failed = 0;
     room = bytes > 0 ? Ice_InputStream_allocate(is, bytes, 1) : 0;
-    /* restored, because a lack of room here is a failure of the servant, not of the stream */
+    /* restored, because a lack of room here must not make the reading of the stream fail */
     is->failed = failed;
     return room;
 }

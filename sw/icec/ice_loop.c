@@ -137,7 +137,7 @@ static Ice_Status receive(Ice_CommunicatorPtr ic, Ice_Byte* in, Ice_Int timeoutM
     return status;
 }
 
-#define SERVE (-1) /* value for timeoutMs: no time-out, until shutdown is called */
+#define SERVE (-1) /* value for timeoutMs: no time-out; waiting ends when shutdown is called */
 #define POLL_MS 1000
 
 /* Handles at most one event of the transport whose turn it is. The calling task acts as the
@@ -175,7 +175,7 @@ typedef enum Role {
     /* this task already had the role, because it makes this call while it executes an operation */
     ROLE_HAD
 } Role;
-/* value for timeoutMs: waits until the role is free, or until shutdown is called */
+/* value for timeoutMs: no time-out; waiting ends when the role is free or shutdown is called */
 #define FOREVER 0x7FFFFFFF
 
 /* Gives up the role of the receiver, and wakes a task that may want the role. The caller holds the

@@ -81,7 +81,7 @@ struct Ice_Communicator {
     int servers;       /* number of servers, which want the role of the receiver */
     int depth;         /* number of messages being handled */
     Ice_Int lastId;
-    Ice_OutputStream request; /* request that is being built, under ICE_LOCK_SEND */
+    Ice_OutputStream request; /* request that is being built; protected by ICE_LOCK_SEND */
     Ice_Int requestBody;      /* offset of the request's encapsulation */
     /* stream of the operation that is being executed (the innermost one), with its part of the
      * arena */

@@ -27,7 +27,7 @@ static const char* nextWord(const char* text, const char** word, Ice_Int* size) 
     if (*text == '"' || *text == '\'')
         quote = *text++;
     *word = text;
-    /* A colon also ends the endpoint within single quotes. */
+    /* A colon ends the endpoint even if the colon is within single quotes. */
     text += strcspn(text, quote == '"' ? "\"" : quote ? "':" : ICEC_SPACES ":'\"");
     *size = (Ice_Int)(text - *word);
     if (quote && *text == quote && text[-1] != '\\')
@@ -67,7 +67,7 @@ Ice_Bool Ice_areOptions(const char* options, const char* letters) {
 const char* Ice_findOption(const char* options, char letter, Ice_Int* size) {
     const char *word, *found = 0;
     Ice_Int length;
-    int matches = 0; /* 1 if the previous word was this option */
+    int matches = 0; /* 1 if the previous word was the option that is searched for */
     while (options && (options = nextWord(options, &word, &length)) != 0) {
         if (matches) {
             found = word;

@@ -58,11 +58,11 @@ typedef struct Ice_Event {
 typedef struct Ice_Endpoint {
     const char* name; /* name in proxy strings: "xbee-at", "tcp" */
     /* Waits up to timeoutMs for one event. A message of up to ICE_MESSAGE_MAX bytes is stored in
-     * `buffer`, which the transport does not write after the function has returned. The event
-     * OPENED reports a connection that the peer has made. */
+     * `buffer`. After the function has returned, the transport no longer writes to `buffer`. The
+     * event OPENED reports a connection that the peer has made. */
     Ice_Status (*receive)(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ice_Event* event);
-    /* Sends one message. Returns ICE_CONNECTION_LOST if the connection has ended; the event
-     * CLOSED is also reported. */
+    /* Sends one message. Returns ICE_CONNECTION_LOST if the connection has ended; receive then also
+     * reports the event CLOSED. */
     Ice_Status (*send)(void* context, int connection, const Ice_Byte* message, Ice_Int size);
     /* Connects to one endpoint, which is encoded as in a proxy: type (2 bytes) and encapsulation.
      * Uses the open connection to the same peer if there is one. Returns ICE_NO_ENDPOINT if the

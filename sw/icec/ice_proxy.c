@@ -61,7 +61,7 @@ Ice_String Ice_ObjectPrx_getFacet(const Ice_ObjectPrx* prx) {
     return facet;
 }
 
-/* Sets the encoding of those endpoints whose transport this program has to the encoding of the
+/* In endpoints whose transport this program supports, replaces the encoding by the encoding of the
  * message, as Ice does. Other endpoints remain unchanged. */
 static void adoptEncoding(Ice_CommunicatorPtr ic, Ice_Byte* endpoints, Ice_Byte minor) {
     Ice_Byte* at = endpoints + 1;

@@ -123,6 +123,6 @@ void Ice_InputStream_endValues(Ice_InputStreamPtr is);
 /* Skips a slice of type `id` as skipSlice does. If the encoding can preserve slices, also appends
  * the slice to the list; an empty list is 0. */
 Ice_Bool Ice_InputStream_keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_UnknownSlice** list);
-/* Writes preserved slices before the slices of the exception. In other formats than the sliced one,
- * writes nothing. */
+/* Writes preserved slices before the slices of the exception. In formats other than the sliced
+ * format, writes nothing. */
 void Ice_OutputStream_writeUnknown(Ice_OutputStreamPtr os, const Ice_UnknownSlice* list);

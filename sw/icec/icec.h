@@ -131,9 +131,9 @@ Ice_Status Ice_ObjectAdapter_add(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr ser
                                  const char* identity);
 Ice_Status Ice_ObjectAdapter_addFacet(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
                                       const char* identity, const char* facet);
-/* Adds a default servant for a category: it gets the requests to each identity of the category for
- * which there is no servant. With category "", it gets the requests to every identity for which
- * there is no other servant. */
+/* Adds a default servant for a category: it receives the requests to identities of this category
+ * that have no servant. With category "", it receives the requests to all identities that have no
+ * other servant. */
 Ice_Status Ice_ObjectAdapter_addDefaultServant(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,
                                                const char* category);
 /* Removes a servant. Returns ICE_OBJECT_NOT_EXIST if no servant has this identity. */
@@ -149,7 +149,7 @@ Ice_ObjectPtr Ice_ObjectAdapter_find(Ice_ObjectAdapterPtr adapter, const char* i
 void Ice_ObjectAdapter_activate(Ice_ObjectAdapterPtr adapter);
 void Ice_ObjectAdapter_deactivate(Ice_ObjectAdapterPtr adapter);
 void Ice_ObjectAdapter_destroy(Ice_ObjectAdapterPtr adapter);
-/* Makes a proxy to an object of this adapter, which can be passed to a peer. `identity` is
+/* Makes a proxy to an object of this adapter; the proxy can be passed to a peer. `identity` is
  * "category/name", or the identity in an Ice_Current. Returns ICE_LIMIT if ICE_IDENTITY_MAX or
  * ICE_ENDPOINT_MAX is too small. */
 Ice_Status Ice_ObjectAdapter_createProxy(Ice_ObjectAdapterPtr adapter, const char* identity,
@@ -243,8 +243,8 @@ void Ice_ObjectPrx_ice_encodingVersion(Ice_ObjectPrxPtr prx, Ice_Byte minor);
 Ice_Status Ice_ObjectPrx_ice_ping(Ice_ObjectPrxPtr self);
 Ice_Status Ice_ObjectPrx_ice_isA(Ice_ObjectPrxPtr self, const char* id, Ice_Bool* result);
 Ice_Status Ice_ObjectPrx_ice_id(Ice_ObjectPrxPtr self, Ice_String* result);
-/* Makes `self` a copy of `from` if the object has the type `id`; otherwise makes it a null proxy.
- * Returns the status of the call that asks the object. */
+/* Asks the object for its type. If the object has the type `id`, makes `self` a copy of `from`;
+ * otherwise makes `self` a null proxy. Returns the status of the call to the object. */
 Ice_Status Ice_ObjectPrx_checkedCast(Ice_ObjectPrxPtr self, const Ice_ObjectPrx* from,
                                      const char* id);
 /* Opens the connection that later calls will use, and sets `connection` to its number. */

@@ -55,9 +55,9 @@ void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
         return;
     if (!isOpen)
         end(self, channel);
-    /* If an opening is still pending when the channel closes, both cancel each other. At most one
-     * closing and one later opening are therefore pending for a channel, even if the ground station
-     * restarts often. */
+    /* If the event of an opening is still pending when the channel closes, neither event is
+     * delivered. At most one closing and one later opening are therefore pending for a channel,
+     * even if the ground station restarts often. */
     if (isOpen || !cancel(self, ICE_EVENT_OPENED, channel))
         self->events |= EVENT(isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel);
 }

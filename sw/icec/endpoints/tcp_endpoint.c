@@ -76,7 +76,7 @@ static Ice_Int frontSize(TcpEndpoint_Connection* c) {
     return TcpEndpoint_refuse(c, size) ? 0 : -1;
 }
 
-/* Takes one event that does not require waiting. Returns 1 if there was such an event. */
+/* Fetches one event that has already occurred, without waiting. Returns 0 if there is none. */
 static int ready(TcpEndpoint* self, Ice_Byte* buffer, Ice_Event* event) {
     int i;
     for (i = 0; i < ICE_CONNECTIONS; ++i) {
@@ -206,13 +206,14 @@ static Ice_Status sendAll(void* context, int connection, const Ice_Byte* message
     if (c->over)
         closeOne(c);
     else if (ends)
-        /* the task that receives detects the end and reports the event */
+        /* the receiving task then detects the end of the connection and reports the event */
         (void)shutdown(fd, SHUT_RDWR);
     unlock(self);
     return ends ? ICE_CONNECTION_LOST : ICE_OK;
 }
 
-/* Returns the number of an open connection to this peer; -1 if there is none. */
+/* Returns the number of an open connection that this side has made to this peer; -1 if there is
+ * none. */
 static int connectionTo(TcpEndpoint* self, const TcpEndpoint_Place* to) {
     int slot, found = -1;
     lock(self);
@@ -303,7 +304,7 @@ static Ice_Status listenTo(void* context, const char* options) {
     if (self->listener < 0)
         return ICE_NO_ENDPOINT;
     (void)setsockopt(self->listener, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
-    /* non-blocking: a peer may disconnect before accept is called, and accept must not wait then */
+    /* non-blocking: if a peer disconnects before accept is called, accept must return at once */
     (void)fcntl(self->listener, F_SETFL, O_NONBLOCK);
     if (bind(self->listener, (struct sockaddr*)&at->at, at->size) != 0 ||
         listen(self->listener, SOMAXCONN) != 0 ||

@@ -63,8 +63,8 @@ Ice_Int TcpEndpoint_sendSome(int fd, const Ice_Byte* message, Ice_Int size, Ice_
  * for a reply, sends an error, skips the rest of the message and returns 1. Otherwise returns 0;
  * the connection must then be closed. */
 int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size);
-/* Returns the connection that a new connection can displace first, and sets `left` to the time
- * after which it can be displaced. Returns -1 if no connection can be displaced. */
+/* Returns the connection that can be displaced first by a new connection, and sets `left` to the
+ * time until it can be displaced. Returns -1 if no connection can be displaced. */
 int TcpEndpoint_idlest(TcpEndpoint* self, Ice_Int* left);
 /* Returns the listening socket if a connection can be accepted now. Otherwise returns -1, and
  * reduces timeoutMs to the time after which a connection can be accepted. */

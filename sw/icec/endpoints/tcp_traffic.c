@@ -99,7 +99,7 @@ int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size) {
     return 1;
 }
 
-/* Returns whether a message, or a part of one, has arrived that was not handled yet. */
+/* Returns whether bytes have arrived that belong to a message which was not handled yet. */
 static int isArriving(const TcpEndpoint_Connection* c) {
     Ice_Byte byte;
     return c->have > 0 || c->skip > 0 || recv(c->fd, &byte, 1, MSG_PEEK | MSG_DONTWAIT) > 0;

@@ -12,12 +12,12 @@
 #define NOBODY 255
 #define HEAD 8
 #define BODY 7
-/* Number of attempts to send while the link has no room, 20 ms apart: 20 s in total. The limit is
- * below 27 s: after that time without acknowledgement of a fragment, the session would end with all
+/* Number of attempts to send while the link has no room, 20 ms apart: 20 s in total. This is less
+ * than 27 s, the time without acknowledgement of a fragment after which the session ends with all
  * its connections. Two replies of 8 KB take 4 s if three of ten packets are lost. */
 #define RETRIES 1000
-/* number of attempts to send to a peer other than the first ground station; smaller, because the
- * first ground station waits during these attempts */
+/* number of attempts to send to a peer other than the first ground station; it is smaller, because
+ * messages to the first ground station wait during these attempts */
 #define OTHER_RETRIES 100
 
 /* Beginning of an encoded endpoint: type, encapsulation of 13 bytes, encoding 1.1. */
@@ -45,8 +45,8 @@ static int isOwn(const XBeeATEndpoint* self, int connection) {
     return connection == self->own[PEER_OF(connection)];
 }
 
-/* Sets whether the link keeps a message that could not be delivered. Returns the previous
- * setting. */
+/* Records whether the link keeps a message that could not be delivered. Returns the previous
+ * value. */
 static int setHeld(XBeeATEndpoint* self, Ice_Byte held) {
     const int before = self->held;
     if (held != before)
@@ -114,9 +114,9 @@ void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
     }
     if (!isOpen)
         end(self, channel);
-    /* If an opening is still pending when the channel closes, both cancel each other. At most one
-     * closing and one later opening are therefore pending for a channel, even if the ground station
-     * restarts often. */
+    /* If the event of an opening is still pending when the channel closes, neither event is
+     * delivered. At most one closing and one later opening are therefore pending for a channel,
+     * even if the ground station restarts often. */
     if (isOpen || !cancel(self, ICE_EVENT_OPENED, channel))
         report(self, EVENT(isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel));
 }
@@ -184,8 +184,8 @@ void XBeeATEndpoint_dial(XBeeATEndpoint* self, int peer, U32 nowUs) {
     }
 }
 
-/* Returns whether the connection of the message to be sent has ended, even if the receiver has not
- * been informed yet. The channel may already belong to another connection. */
+/* Returns whether the connection of the message to be sent has ended, even if the receiving task
+ * does not know this yet. The channel may already belong to another connection. */
 static int hasEnded(const XBeeATEndpoint* self, int connection) {
     return (self->events & EVENT(ICE_EVENT_CLOSED, connection)) || self->offered != connection;
 }
@@ -251,8 +251,8 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
     if (size < 2 || encoded[0] != head[0] || encoded[1] != head[1] || peer < 0)
         return ICE_NO_ENDPOINT;
     *connection = self->own[peer];
-    /* a closing of the previous connection may still be pending, so the channel is opened by
-     * offer */
+    /* opens the channel by offer, which tries again as long as the closing of the previous
+     * connection is pending */
     return offer(self, *connection, 0, 0);
 }
 

@@ -41,7 +41,7 @@ typedef struct XBeeATEndpoint {
     const XBeeATEndpoint_Port* port;
     void* context;
     U16 address; /* address of this side's modem, MY */
-    /* addresses of the peers' modems; that of the first ground station is 0 */
+    /* addresses of the peers' modems; the first ground station has address 0 */
     U16 addresses[XBEE_PEERS];
     U32 events;   /* pending events, one bit each */
     Ice_Int size; /* size of the pending message, bytes */
@@ -66,15 +66,15 @@ void XBeeATEndpoint_init(Ice_CommunicatorPtr ic, const char* name, XBeeATEndpoin
                          U16 address, const XBeeATEndpoint_Port* port, void* context);
 
 /* Makes a two-way proxy to an object of a peer, like stringToProxy for "IDENTITY:xbee-at -a
- * ADDRESS". The adapter must have no other transport. If a program does not call stringToProxy, the
- * parser of proxies is not linked. */
+ * ADDRESS". The adapter must have no other transport. A program that uses this function instead of
+ * stringToProxy is linked without the parser of proxies. */
 Ice_Status XBeeATEndpoint_makeProxy(Ice_ObjectAdapterPtr adapter, const char* identity, U16 address,
                                     Ice_ObjectPrxPtr prx);
 
 /* Adds the link of a peer (xbee_peers.c). Calls to any address that belongs to no peer fail. */
 void XBeeATEndpoint_addPeer(XBeeATEndpoint* self, int peer, Link* link, U16 address);
-/* Makes a peer a vehicle (xbee_peers.c). `isGround` is 1 if this side acts as the ground station on
- * the link. */
+/* Declares that a peer is a vehicle (xbee_peers.c). `isGround` is 1 if this side acts as the ground
+ * station on the link. */
 void XBeeATEndpoint_setVehicle(XBeeATEndpoint* self, int peer, int isGround);
 /* Starts a vehicle's link while a call waits for a session with the vehicle; stops the link
  * otherwise. Must be called before each Link_poll, with the lock held. */

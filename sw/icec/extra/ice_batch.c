@@ -23,8 +23,9 @@ static Ice_Status flush(Ice_ObjectPrxPtr prx) {
 }
 
 /* Adds a complete request to the batch. If the batch has no room for the request and has an open
- * connection, sends the batch first. A connection cannot be opened here, because the wait for it
- * could receive a request, whose reply would use the buffer of this request. */
+ * connection, sends the batch first. A connection cannot be opened here: while waiting for it, this
+ * task could receive another request, and the reply to that request would overwrite the buffer that
+ * holds this request. */
 static Ice_Status keep(Ice_ObjectPrxPtr prx) {
     Ice_Batch* batch = prx->batch;
     Ice_OutputStreamPtr request = &prx->communicator->request;
@@ -61,7 +62,7 @@ Ice_Status Ice_ObjectPrx_ice_flushBatchRequests(Ice_ObjectPrxPtr prx) {
     int connection;
     if (!batch || batch->count == 0)
         return ICE_OK;
-    prx->batch = 0; /* without a batch, ice_getConnection connects as for any other call */
+    prx->batch = 0; /* hidden from ice_getConnection, which then connects as for any call */
     status = Ice_ObjectPrx_ice_getConnection(prx, &connection);
     prx->batch = batch;
     if (status != ICE_OK)

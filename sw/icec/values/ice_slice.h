@@ -16,7 +16,7 @@ enum {
     ICE_SLICE_TABLE = 0x08,
     ICE_SLICE_SIZE = 0x10,
     ICE_SLICE_LAST = 0x20,
-    ICE_SLICE_INSIDE = 0x80 /* never sent: the stream is inside a slice */
+    ICE_SLICE_INSIDE = 0x80 /* used only in memory: the stream is inside a slice */
 };
 
 /* Sets the failure of a stream, unless it has already failed. */

@@ -51,7 +51,7 @@ void Ice_InputStream_beginValues(Ice_InputStreamPtr is, Ice_InputValues* values,
 }
 
 /* Sets a pointer to the instance with this number. If the type of the instance is not known yet,
- * does this at the end of the message. */
+ * the pointer is set at the end of the message instead. */
 static void set(Ice_InputStreamPtr is, void* at, Ice_Int number, const Ice_ValueType* expected,
                 Ice_Bool last) {
     Ice_InputValues* values = is->values;

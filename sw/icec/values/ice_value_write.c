@@ -39,8 +39,8 @@ static Ice_Int placeOf(Ice_OutputStreamPtr os, const Ice_Value* v, Ice_Int* plac
     return 1;
 }
 
-/* Returns the number that this type name got when it was written first. Returns 0 if this is the
- * first time; the name then gets a number. */
+/* Returns the number of a type name that was written before. Returns 0 for a new name, and gives it
+ * the next number. */
 static Ice_Int typeNumber(Ice_OutputStreamPtr os, Ice_String id) {
     Ice_OutputValues* values = os->values;
     Ice_Int i;

@@ -28,7 +28,7 @@ for number, line in enumerate(sys.stdin):
     seeds=$work/seeds
 fi
 # libFuzzer also tries values that the program compares, and these values can be addresses. If the
-# system allows fixed addresses, every run therefore uses the same addresses and the same inputs.
+# system allows it, every run therefore uses fixed addresses, so that every run has the same inputs.
 alike=$(setarch -R true 2>/dev/null && echo "setarch -R" || :)
 $alike "$program" -seed="${SEED:-1}" "$end" -timeout=60 -print_final_stats=1 \
     -artifact_prefix="$work/" "$@" "$found" $seeds >"$work/log" 2>&1 || {

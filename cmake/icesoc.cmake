@@ -133,7 +133,8 @@ function(icesoc_test name)
   set_property(DIRECTORY APPEND PROPERTY TEST_INCLUDE_FILES ${labels})
 endfunction()
 
-# icesoc_sanitized(TARGET...): adds programs to the target `sanitized`, for tests with that label.
+# icesoc_sanitized(TARGET...): adds programs to the target `sanitized`. Tests with the label
+# `sanitized` run these programs.
 function(icesoc_sanitized)
   set_property(GLOBAL APPEND PROPERTY ICESOC_SANITIZED ${ARGN})
 endfunction()
@@ -219,8 +220,8 @@ endmacro()
 # COVERAGE, a FAST model counts only soc.v, because the test of each block counts the block. With
 # all counters, a few simulated seconds of flight took minutes.
 #
-# Clang compiles the model: it takes 0.6 of the time of g++ (fir), and its code is 1.18 times as
-# fast (the chip).
+# Clang compiles the model. Compiling takes 0.6 of the time of g++ (measured with fir), and the code
+# is 1.18 times as fast (measured with the chip).
 function(icesoc_verilate name)
   cmake_parse_arguments(A "FAST" "TOP;CLASS" "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;FLAGS" ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name})

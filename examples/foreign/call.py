@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: MIT
 """Calls third-party cores and two cores of this project by radio. Usage:
 call.py DEVICE GUARD STATUS PLUGIN "NAME ..." cores.json Registers.ice File.ice ...
- The "calls" of each core in cores.json; keys and blocks of FIPS 197 for AES; packets through the
-COBS encoder's AXI-Streams; a CRC-32 of buffers in DDR3; a servo's pulses, which orders.sh measures
-at the pins. With stock ZeroC Ice. """
+
+It makes the "calls" of each core in cores.json. It also encrypts blocks of FIPS 197 with the AES
+cores, sends packets through the COBS encoder's AXI-Streams, computes the CRC-32 of buffers in
+DDR3, and sets a servo's pulses, which orders.sh measures at the pins. It uses stock ZeroC Ice."""
 import ast
 import json
 import re
@@ -60,7 +61,8 @@ def aes(core):
 
 
 def cobs(data):
-    """Consistent overhead byte stuffing (Cheshire and Baker, 1999), and the zero at its end."""
+    """Returns the data after consistent overhead byte stuffing (Cheshire and Baker, 1999), with the
+    zero that ends a packet."""
     out = bytearray()
     for part in data.split(b"\0"):
         while len(part) >= 254:
@@ -71,8 +73,9 @@ def cobs(data):
 
 
 def call(core, word):
-    """One word of a core's "calls": REGISTER=value sets it; REGISTER==value waits for that, and
-    REGISTER&mask==value for some bits; operation(arguments) calls, and ==result compares."""
+    """Executes one word of a core's "calls". REGISTER=value sets the register. REGISTER==value
+    waits until the register has this value, and REGISTER&mask==value compares only the bits of the
+    mask. operation(arguments) calls the operation, and ==result after it compares the result."""
     name, ending, arguments, value = re.fullmatch(r"(\w+)(&\w+==|==?|\((.*?)\)(?:==)?)(.*)",
                                                   word).groups()
     if ending == "=":

@@ -48,7 +48,7 @@ for order in ${ORDERS:-listed}; do
         '{device}' '{guard}' '{status}' "$build/ground/xbeeat:createXBeeAT" "$names" \
         "$here/cores.json" sw/hw/registers/Registers.ice $slices
     [ "$pins" ] || continue
-    # Servos' frames of 20 ms, with pulses of 1.5 ms on pin 2, as the pins had them.
+    # Measures the servo's signal at the pins: frames of 20 ms, with pulses of 1.5 ms on pin 2.
     awk '$2 != "servo.pwm_o" { next }
          $3 == 4 { frames += up && $1 - up > 19.999 && $1 - up < 20.001; up = $1 }
          $3 == 0 && up { pulses += $1 - up > 1.499 && $1 - up < 1.501; all++ }

@@ -67,8 +67,7 @@ for _ in 1 2; do
     run
     { [ $status -eq 3 ] && ! grep -q '^kept:' "$work/said"; } || fail "a failure: status $status"
 done
-# The result of a killed test is not stored either, nor that of a test whose files change while it
-# runs.
+# The result of a test that is killed, or whose files change while it runs, is not stored either.
 begun() { # earlier output
     rm -rf own
     $kept "$PWD/own" tests/t.sh "$PWD/own" >"$work/said" 2>&1 &

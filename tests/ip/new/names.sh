@@ -76,7 +76,8 @@ for language in verilog vhdl; do
     [ ! -e "$work/ip/low_pass" ] && [ ! -s "$work/ip/cores.list" ] ||
         { echo 'rm-ip left something' && exit 1; }
 done
-# If cores drive an input only from other cores, the core that drives it can still be removed.
+# A core that drives inputs of another core can be removed only if these inputs are marked as
+# internal, because otherwise they would become pins.
 new low_pass --lang verilog --ice "$work/a.ice" >/dev/null
 mkdir -p "$work/ip/taker"
 touch "$work/ip/taker/taker.v" "$work/ip/taker/taker.regs.json"

@@ -142,7 +142,8 @@ new my_port gain own gain write=we wdata=d rdata=q PARAM:G=2.5e3 gain.v "$PWD/./
 grep -q 'gain #(.G(2.5e3)) u_core' gain/my_port.v &&
     [ "$(grep -c 'gain\.v"' gain/core.toml)" = 1 ] ||
     { cat log gain/core.toml gain/my_port.v && exit 1; }
-# OpenCores' parameter sets the level of a reset, whatever other signal uses the name.
+# OpenCores' parameter ARST_LVL sets the active level of the reset port, even if an internal signal
+# has the usual name of a reset.
 echo 'module level #(parameter ARST_LVL = 0) (input clk, arst_i, we, input [31:0] d,
         output reg [31:0] q);
     wire rst = arst_i ^ ARST_LVL[0];
@@ -284,8 +285,8 @@ prints 'state_o: pin state_o' "sv2v --top=system .*/widths.sv .*/sizes.sv .*/sys
     grep -q '"width": 16' system/my_port.regs.json &&
     ! grep -q UNOPTFLAT system/core.toml ||
     { cat log system/my_port.v && exit 1; }
-# A register has the width of the data that is written to it, or of the data that is read from it if
-# that is wider.
+# A register has the width of the data that is written to it, or of the data that is read from it,
+# whichever is wider.
 echo 'module narrow(input clk, we, input [16:0] d, output [12:0] q);
     assign q = d[12:0];
 endmodule' >narrow.v

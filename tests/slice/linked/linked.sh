@@ -32,8 +32,8 @@ build() { # name, flags
         awk 'NR == 2 {print $1}') bytes of text, $(wc \
         -l <"$work/$name.names") names of IceC and of generated code"
 }
-# The same with AddressSanitizer on the host, without the tables of the interfaces that the program
-# does not serve.
+# The host build of the server, with AddressSanitizer, must also not contain the tables of the
+# interfaces that the program does not serve.
 (mkdir -p "$work/host" && cd "$work/host" &&
     # shellcheck disable=SC2046 # a list of words
     gcc -std=c90 -Os -fsanitize=address --param asan-globals=0 -ffunction-sections -fdata-sections \

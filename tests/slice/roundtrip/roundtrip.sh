@@ -14,9 +14,9 @@ mkdir -p "$work"
 /usr/bin/python3 "$here/echo.py" generate "$seed" "$work"
 "$slice2c" "$work/Random.ice" "$work/Definer.ice" --output-dir "$work"
 "$icec/bridge.py" "$work/Random.h" >"$work/bridged.c"
-# In a coverage run (COVERAGE_DIR) it also counts lines. With room for graphs and long sequences;
-# -O0, since most of the time is spent compiling. Variables without a value contain a pattern,
-# instead of zeros.
+# With COVERAGE_DIR, the program also counts lines. The limits of IceC are large enough for graphs
+# and long sequences. -O0 is used because most of the time is spent compiling. Variables without a
+# value contain a pattern instead of zeros.
 # shellcheck disable=SC2046
 cc -O0 -w -ftrivial-auto-var-init=pattern ${COVERAGE_DIR:+--coverage} -fsanitize=address,undefined \
     -fno-sanitize-recover=undefined -DICE_ARENA_BYTES=262144 -DICE_MESSAGE_MAX=65536 \

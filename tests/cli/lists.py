@@ -31,6 +31,9 @@ class Lists(unittest.TestCase):
             listed = sum(option.listed for option in each.options)
             self.assertGreaterEqual(len(each.examples), min(3, 1 + listed), f"{name}: examples")
             self.assertEqual([line for line in each.examples if name.split()[0] not in line], [])
+            for line in each.parser().format_help().partition("\nexamples:\n")[2].splitlines():
+                self.assertTrue(line.startswith("  ./icesoc "), line)
+                command.find(shlex.split(line)[1:])
             for option in each.options:
                 if option.listed:
                     text = option.explain()

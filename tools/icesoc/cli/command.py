@@ -58,8 +58,7 @@ class Command:
         parser.description = self.help + ("\n\n" + "\n".join(map(str.strip, self.more.split("\n")))
                                           if self.more else "")
         parser.epilog = "examples:\n" + "".join(
-            f"  {self.program}{each.removeprefix(self.name)}\n"
-            for each in self.examples) if self.examples else None
+            f"  {self.example(each)}\n" for each in self.examples) if self.examples else None
         parser.allow_abbrev = False
         for option in self.options:
             if not option.listed:
@@ -85,6 +84,11 @@ class Command:
                                                         dest=f"--{option.field}", **more)
                 again.completer = getattr(action, "completer", None)
         return parser
+
+    def example(self, text):
+        """Returns the command line of an example, which may run another command."""
+        is_own = text.startswith(self.name)
+        return self.program + text.removeprefix(self.name) if is_own else f"./icesoc {text}"
 
     def explained(self, option):
         """Returns the help text of an option."""
@@ -302,9 +306,9 @@ def group_help(group):
     lines = [f"usage: ./icesoc {group} COMMAND [option...]", "", GROUPS[group], ""]
     lines += [row(name.split()[1], each.help) for name, each in COMMANDS.items()
               if name.startswith(group + " ")]
-    lines += ["", f"./icesoc {group} COMMAND --help explains one."]
+    lines += ["", f"./icesoc {group} COMMAND --help explains a command."]
     if group in DEFAULTS:
-        lines.append(f"./icesoc {group} without a command is ./icesoc {DEFAULTS[group]}.")
+        lines.append(f"Without COMMAND, ./icesoc {group} runs ./icesoc {DEFAULTS[group]}.")
     return "\n".join(lines)
 
 

@@ -57,14 +57,14 @@ FIELDS = [
     ),
     Option("wire", SWITCH, "connect vehicle and ground station by a serial cable, without modems"),
     Option("modem", one_of("s1", "s2c", "xb3"),
-           "modems of vehicle and ground station: XBee series 1, S2C or XBee 3; with --board its "
-           "modem", "s1"),
+           "modems of vehicle and ground station: XBee series 1, S2C or XBee 3; with --board, the "
+           "board's modem by default", "s1"),
     Option("board", TEXT,
-           "board whose wires are flown: its name, its file board.toml, or a folder made by board "
-           "make; the vehicle runs the ARM binary", ""),
+           "board of the vehicle: its name, its file board.toml, or a folder made by board make; "
+           "the vehicle then runs the ARM binary", ""),
     Option("fault", WORDS,
            "faults of the vehicle's board, such as D3:open D1-D2:short NWE:late=12ns "
-           "(docs/simulation.md); the vehicle runs the ARM binary"),
+           "(docs/simulation.md); the vehicle then runs the ARM binary"),
     Option("pins", FILE,
            "script that drives the input pins of cores (docs/simulation.md); OUT/pins.log records "
            "the output pins", ""),

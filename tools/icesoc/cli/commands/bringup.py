@@ -50,7 +50,8 @@ def board_bringup(values):
     Loads the self-test into the microcontroller's RAM by OpenOCD, listens to the console, and
     writes OUT/bringup.html and OUT/bringup.json. Run it twice: first with the bitstream of
     synth/ise/lines.v in the FPGA, which tests the wires, then with the chip's bitstream.
-    --cable then loads the firmware and calls it. --simulated runs all parts on a model."""
+    Then run it with --cable, to load the firmware and to call it over a serial cable. With
+    --simulated, all of this runs on a model of the board."""
     board = read(values.name)
     folder = Path(values.out or f"build/board/{board.name}")
     report = bringup.Report(board)

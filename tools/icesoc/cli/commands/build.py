@@ -68,10 +68,10 @@ def build_firmware(values):
              "build size --jobs 2",
              "build size --build build/other"])
 def build_size(values):
-    """print the code size of each firmware layer next to the paper's
+    """compare the code size of each firmware layer with the paper
 
-    Compares two sizes of each layer with the paper: all its files, and the parts that the minimal
-    program links. Writes build/size.json.
+    Prints two sizes of each layer: the size of all its files, and the size of the parts that the
+    minimal program links. Writes build/size.json.
     """
     configured(values).ninja("size")
 

@@ -54,8 +54,8 @@ def one_more(status, other):
 def proofs(values):
     """run the formal proofs again and print their total CPU time
 
-    A proof is run even if its module has not changed since the proof last passed. A failed proof
-    leaves a waveform in build/main/tests/hdl/formal.
+    Runs every proof, even if nothing has changed since the proof passed. A failed proof leaves a
+    waveform in build/main/tests/hdl/formal.
     """
     build = configured(values, "regmaps")
     chosen = ["-R", values.name] if values.name else []
@@ -117,8 +117,8 @@ def netlist(values):
 def sanitizers(values):
     """run programs with AddressSanitizer and ThreadSanitizer
 
-    Builds IceC, engine, gateway and plugin with both sanitizers and runs their tests. Afterwards
-    it fuzzes the simulator's GDB stub.
+    Builds IceC, and the engine, gateway and plugin of the ground station, with both sanitizers, and
+    runs their tests. Then fuzzes the simulator's GDB stub.
     """
     build, status = configured(values, tests=True), 0
     # the programs of each sanitizer are built in a separate build folder
@@ -180,7 +180,7 @@ def mutants(values):
 
     Plants each fault of tests/mutants in a copy of the sources, and runs the test that must detect
     it. With --draw, Yosys plants random faults instead, and the proofs or tests of the module must
-    detect each. Exit status 1: a fault was not detected.
+    detect each of them. Exit status 1: a fault was not detected.
     """
     build = configured(values, tests=True)
     build.ninja("regress", *(["regmaps"] if values.draw else []))
@@ -234,10 +234,10 @@ def faults(values):
 def soak(values):
     """test the radio for a long time: bad channel, restarts, noise
 
-    A quarter of the time tests the link alone, a quarter tests the link under attack, and half
-    tests stock Ice, which calls IceC on the chip's RTL through the plugin. In addition, ten
-    vehicles and two ground stations fly for --minutes of simulated time, which adds a twentieth to
-    the CPU time.
+    In a quarter of the time, tests the link alone; in a quarter, the link under attack; in half of
+    the time, stock Ice calls IceC on the chip's RTL through the plugin. In addition, ten vehicles
+    and two ground stations fly for --minutes of simulated time, which adds a twentieth to the CPU
+    time.
     """
     build = configured(values, "soak", "test_chip_soak", "test_ground_engine", "test_modem_soak",
                        "test_link")

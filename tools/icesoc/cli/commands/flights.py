@@ -215,9 +215,10 @@ def explain_failure(values, status, has_flown):
 def replay(values):
     """repeat a recorded flight bit by bit, or write a part as waveform
 
-    Without --from and --to, repeats the flight and compares every result. With them, writes the
-    waveform of that part to OUT/wave.fst; the first time, this builds a simulator with waveforms.
-    For a flight with --cpu m3, the waveform also shows task, interrupt and function.
+    Without --from and --to, repeats the flight and compares every result. With one of them, writes
+    the waveform of this part of the flight to OUT/wave.fst. The first time, it also builds a
+    simulator that records waveforms. The waveform of a flight with --cpu m3 also shows the task,
+    the interrupt and the function that the processor executes.
     """
     try:
         FLIGHT.read(values.replay)  # the default folder has not been checked yet
@@ -302,8 +303,8 @@ def gdb(values):
                                   "a missing authority.pem is created"),
     Option("signing", SWITCH, "make a private key for signing updates, and its public half "
                               "(spare.pub for spare.key); an existing key is kept"),
-    Option("list", COUNT, "make list number N of signing keys; N must be the number of the "
-                          "previous list plus 1"),
+    Option("list", COUNT, "make a list of signing keys with the number N, which must be the "
+                          "number of the previous list plus 1"),
     Option("by", FILE, "private key that signs the list; it must be in the previous list"),
     Option("first", FILE, "first public key of the list"),
     Option("second", FILE, "second public key of the list"), BUILD, JOBS], make="key",
@@ -317,7 +318,7 @@ def gdb(values):
 def key(values):
     """make a key for the radio link, or a certificate
 
-    It also makes keys that sign updates, and lists of such keys. docs/security.md explains link
+    Also makes keys that sign updates, and lists of such keys. docs/security.md explains link
     keys and certificates; docs/firmware.md explains signing keys."""
     if not values.file:
         raise Stop("key: expected the name of a file: ./icesoc key my.key", 2)

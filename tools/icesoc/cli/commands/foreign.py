@@ -108,8 +108,7 @@ def put_and_fly(values, listed, known):
 
 @command("core examples", [
     Option("cores", WORDS, "names of the cores to use, from examples/foreign/cores.json (default: "
-                           "all); the chip with these cores is then built with one order of "
-                           "the cores; without this option, with three"),
+                           "all); the chip is then built only once, not in three orders"),
     Option("chip", SWITCH, "also print the cost of each core in the chip"), SEED,
     *(o for o in FIELDS if o.name == "image"), BUILD, JOBS], make="foreign",
          brief="core examples --cores foreign_i2c foreign_arbiter foreign_queue",
@@ -124,9 +123,9 @@ def examples(values):
     The cores have Wishbone, Avalon-MM, AXI4-Lite, AXI-Stream and plain buses, and are written
     in Verilog, SystemVerilog and VHDL. They are downloaded from Debian's mirror and GitHub; a core
     that cannot be downloaded is skipped. Together with two cores of this tree they form a chip,
-    which is built with three orders of the cores. Cores in SystemVerilog that Yosys cannot read
-    fly in a second chip, which is not synthesised. Exit status 77: no core, or not every core of
-    --cores, could be downloaded.
+    which is built and flown three times, with its cores in three orders. Cores in SystemVerilog
+    that Yosys cannot read fly in a second chip, which is not synthesised. Exit status 77: none of
+    the cores, or not all cores of --cores, could be downloaded.
     """
     listed = json.loads(Path("examples/foreign/cores.json").read_text())
     known = {name for source in listed.values() for name in source["cores"]}

@@ -38,7 +38,7 @@ mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd $3 && $2"
     Option("steps", TEXT, "commands to run, separated by semicolons",
            "; ".join([*README, PACKAGES])),
     Option("packages", INPUT_FOLDER, "only test the Debian packages in this folder, in a new "
-                                     "system of that --release"),
+                                     "system of the given --release"),
     Option("folder", FOLDER, "folder for the systems and their logs; each system takes 8 GB",
            "/var/tmp/icesoc-fresh"),
     Option("list", SWITCH, "only print earlier results, each with its status and duration")],

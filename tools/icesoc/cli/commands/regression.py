@@ -37,8 +37,7 @@ def selection(values, *more):
 @command("test", [
     Option("folder", TEXT, "folder of the tests, such as hdl/fsmc or ip/fir (default: all)", "",
            positional=True), LABEL, TEST_NAME,
-    Option("all", SWITCH, "run all tests, including those that passed and whose inputs have not "
-                          "changed since"),
+    Option("all", SWITCH, "run all tests, also those that have passed with the same inputs"),
     SEED, FRESH, TESTS, UCOS2, BUILD, JOBS], make="test",
          brief="test tree", examples=[
              "test hdl/fsmc", "test --label rtl", "test --name Burst --seed 7", "test --all"])
@@ -46,9 +45,9 @@ def test(values):
     """run all tests, the tests of a folder, or tests selected by options
 
     Without options, runs the tests of the build folder, then the tests of firmware, models and
-    IceC again with sanitizers. Tests that passed and whose inputs (program, files, packages and
-    seed) have not changed since are left out. With a folder, a name or a label, builds only the
-    programs of the selected tests, and runs all selected tests."""
+    IceC again with sanitizers. Leaves out tests that have passed with the same inputs (program,
+    files, packages and seed). With a folder, a name or a label, builds only the programs of the
+    selected tests, and runs all selected tests."""
     build = BuildFolder(values.build, values).prepare(tests=True)
     some, tests, seed = values.folder or values.name or values.label, at_once(values), {
         "SEED": values.seed, "FRESH": "1" if values.fresh else ""}
@@ -231,8 +230,8 @@ def nightly(values):
     """run the nightly suite: failing seeds, new seeds, slow commands
 
     Runs the tests with seeds that failed before and with new seeds. Then runs ZeroC's test suites,
-    the longest missions, and the slow variant of each command that has one. Writes a table of the
-    steps, build/nightly.md."""
+    the longest missions, and the slow variants of some commands (docs/regression.md). Writes a
+    table of the steps, build/nightly.md."""
     build, tests = BuildFolder(values.build, values), at_once(values)
     # Longer tests: COMPARE_MS is the simulated time that test_sim_quiet compares, in ms; HOSTILE is
     # the number of packets in test_link.

@@ -110,7 +110,7 @@ void writeThrown(Writer& w, const std::vector<Thrown>& family) {
         w.nested("{e}_writeToOutputStream(&v->u.{member}, os);", e.names);
         w.nested("break;");
     }
-    w.single("default:", "os->failed = 1; /* the servant has not said which */");
+    w.single("default:", "os->failed = 1; /* the servant has not set the type */");
     w.line("}");
 }
 

@@ -125,7 +125,8 @@ void declareType(Writer& w, const Declaration& d) {
     if (d.kind != DKind::Exception) {
         w.line("void {c}_readFromInputStream({c} *v, Ice_InputStreamPtr is);", v);
     } else {
-        w.line("/* The slices of this type and of its bases, without the exception's header. */");
+        w.line("/* Write and read the slices of the type and its bases, without the exception "
+               "header. */");
         w.line("void {c}_writeSlices(const {c} *v, Ice_OutputStreamPtr os);", v);
         w.line("void {c}_readSlices({c} *v, Ice_InputStreamPtr is);", v);
     }
@@ -174,7 +175,7 @@ void declareThrown(Writer& w, const CContext& c, const Declaration& d, const Ope
         w.line("} u;");
     });
     w.line("void " + type + "_writeToOutputStream(const " + type + " *v, Ice_OutputStreamPtr os);");
-    w.line("/* ICE_USER_EXCEPTION; ICE_UNKNOWN_USER_EXCEPTION: none of these; ICE_MARSHAL. */");
+    w.line("/* Returns ICE_USER_EXCEPTION, ICE_UNKNOWN_USER_EXCEPTION or ICE_MARSHAL. */");
     w.line("Ice_Status " + type + "_readFromInputStream(" + type + " *v, Ice_InputStreamPtr is);");
 }
 
@@ -227,7 +228,7 @@ void declareServant(Writer& w, const Declaration& d) {
     w.line("} {c}, *{c}Ptr;", v);
     w.blank();
     w.line(
-        "/* A servant's functions, one for each operation; 0 if the servant does not have it. */");
+        "/* A servant's functions, one for each operation; 0 for an operation that is missing. */");
     w.type("struct", cName(d) + "_Operations", [&] {
         for (const Declaration* base : d.bases)
             w.line(cName(*base) + "_Operations " + cName(*base) + "_;");
@@ -254,7 +255,7 @@ void declareResponses(Writer& w, const Declaration& d) {
             continue;
         if (first) {
             w.blank();
-            w.line("/* Answers to calls for which the servant returned ICE_LATER. */");
+            w.line("/* Send the replies to calls for which the servant returned ICE_LATER. */");
         }
         first = false;
         w.line(responseSignature(d, o) + ";");
@@ -278,7 +279,8 @@ void declareInterface(Writer& w, const CContext& c, const Declaration& d) {
     declareProxy(w, d);
     if (!d.operations.empty()) {
         w.blank();
-        w.line("/* Asynchronous calls: the caller keeps the object until it is done. */");
+        w.line(
+            "/* Asynchronous calls. The caller keeps the call object until the call has ended. */");
     }
     for (const Operation& o : d.operations)
         declareAsync(w, d, o);

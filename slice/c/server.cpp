@@ -97,8 +97,8 @@ void dispatchOperation(Writer& w, const CContext& c, const Declaration& d, const
         if (isAmd(d, o)) {
             w.line("(void)os;");
             if (hasResults(o))
-                w.line("return status == ICE_OK ? ICE_UNKNOWN_EXCEPTION : status; /* ICE_LATER "
-                       "was due */");
+                w.line("return status == ICE_OK ? ICE_UNKNOWN_EXCEPTION : status; /* must be "
+                       "ICE_LATER */");
             else
                 w.line("return status;");
         } else {

@@ -162,7 +162,7 @@ void readSlots(Writer& w, const std::vector<Slot>& slots) {
         std::string format = optionalFormat(*s.type);
         w.line(s.has + " = Ice_InputStream_readOptional(is, " + std::to_string(s.tag) +
                ", ICE_OPTIONAL_" + format + ");");
-        std::string skip = format == "FSIZE" ? "(void)Ice_InputStream_readInt(is); /* its size */"
+        std::string skip = format == "FSIZE" ? "(void)Ice_InputStream_readInt(is); /* the size */"
                            : !sizeBefore(s).empty() ? "(void)Ice_InputStream_readSize(is);"
                                                     : "";
         if (skip.empty()) {

@@ -85,10 +85,10 @@ GeneratedFile proxyFile(const Block& b) {
     w.line("// " + b.name +
            "_proxy: a Verilated core, or its wrapper alone, as an object with the operations of");
     w.line("// " + b.interface->id() +
-           ", by the generated servant. A failure is thrown as CoreError, an exception");
-    w.line("// of the core as the operation's _Exception. Functions of events return whether the "
-           "event was");
-    w.line("// raised, and its values.");
+           ". Calls use the generated servant. A failure throws CoreError; an exception");
+    w.line("// of the core throws the operation's _Exception. The function of an event returns "
+           "whether");
+    w.line("// the event was raised, and its values.");
     w.blank();
     w.line("#pragma once");
     w.blank();

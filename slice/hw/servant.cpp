@@ -99,7 +99,7 @@ void answerFunction(Writer& w, const Block& b, const Call& c) {
         [&] {
             std::string pointers;
             for (const Slot& s : outSlots(o, "")) {
-                w.line("static " + cVariable(*s.type, s.value) + "; /* off the stack */");
+                w.line("static " + cVariable(*s.type, s.value) + "; /* static to save stack */");
                 pointers += ", &" + s.value;
             }
             if (!o.throws.empty()) {
@@ -135,8 +135,7 @@ void eventFunctions(Writer& w, const Block& b, const Listener& l, const Call& c)
     w.function(takeSignature(b, c), {}, [&] {
         resultVariables(w, c);
         readResults(w, b, c);
-        w.line("Hw_Core_act(&hw_core->core, " + number(c.bit) +
-               "); /* taken: the next may come */");
+        w.line("Hw_Core_act(&hw_core->core, " + number(c.bit) + "); /* allows the next event */");
         w.line("return ICE_OK;");
     });
     w.function("static void " + c.name + "_event(" + coreType(b) + " *hw_core)", {}, [&] {
@@ -154,13 +153,13 @@ void eventFunctions(Writer& w, const Block& b, const Listener& l, const Call& c)
 }
 
 void amdDeclarations(Writer& w, const Block& b, const Call& c) {
-    w.line("/* " + c.operation->name + ", which is answered later, in two parts. */");
+    w.line("/* The two parts of " + c.operation->name + ", which is answered later. */");
     w.line(beginSignature(b, c) + ";");
     w.line(endSignature(b, c) + ";");
 }
 
 void eventDeclaration(Writer& w, const Block& b, const Call& c) {
-    w.line("/* The values of the event " + c.operation->name + ", which may then come again. */");
+    w.line("/* Returns the values of the event " + c.operation->name + "; allows the next one. */");
     w.line(takeSignature(b, c) + ";");
 }
 
@@ -169,7 +168,7 @@ void amdFunctions(Writer& w, const Block& b, const Call& c) {
     w.function(beginSignature(b, c), {}, [&] {
         w.line("Ice_Status hw_status;");
         w.single("if (hw_core->core.later[" + std::to_string(c.bit) + "])",
-                 "return ICE_LIMIT; /* the call before is not answered yet */");
+                 "return ICE_LIMIT; /* the previous call is not answered yet */");
         failUnlessOk(w, "Hw_Core_ready(&hw_core->core, " + bit + ")");
         writeParameters(w, b, c);
         w.line("Hw_Core_begin(&hw_core->core, " + bit + ", " + number(c.timeout) + ");");
@@ -281,20 +280,20 @@ GeneratedFile servantHeader(const Block& b) {
     sequenceMembers(w, b);
     w.line("} " + type + ";");
     w.blank();
-    w.line("/* Resets the core. HW_WRONG_CORE: the slot holds another one, or another version.");
-    w.line(" * memory: DDR3 byte address of its buffers" +
+    w.line("/* Resets the core. HW_WRONG_CORE: the slot has a different core or version.");
+    w.line(" * memory: DDR3 byte address of the core's buffers" +
            (b.memoryBytes
                 ? ", a multiple of " + std::to_string(b.memoryBytes) + " (else HW_UNALIGNED)."
                 : ".") +
            " */");
     w.line(initSignature(type) + ";");
-    w.line(
-        "/* To be called when the slot's line is high, from the interrupt routine or a task. */");
+    w.line("/* Call this when the slot's interrupt line is high, in the interrupt routine or a "
+           "task. */");
     w.line("void " + type + "_interrupt(" + type + " *self);");
-    w.line("/* Replies to calls that have ended or timed out, and delivers events. To be called by "
-           "a task");
-    w.line(" * after an interrupt, and again within the returned ms unless HW_NEVER is returned. "
-           "*/");
+    w.line(
+        "/* Replies to calls that have ended or timed out, and delivers events. A task calls this");
+    w.line(
+        " * after each interrupt, and again after the returned time, ms (not after HW_NEVER). */");
     w.line("U32 " + type + "_poll(" + type + " *self, U32 nowMs);");
     for (const Call& c : b.calls)
         if (c.isAmd)

@@ -70,7 +70,7 @@ void head(Writer& w, const Block& b, const char* comment) {
 // words, for reading and writing the core's buffers. No operation may have a name that begins with
 // npi_.
 const char npiStream[] =
-    R"(    // The buffers in DDR3 as two streams of words, which rest here (docs/memory.md, npi_stream).
+    R"(    // The buffers in DDR3 as two idle streams of words (docs/memory.md, npi_stream).
     wire        npi_read_start = 1'd0, npi_read_take = 1'd0;
     wire [31:0] npi_read_base = 32'd0, npi_write_base = 32'd0;
     wire [23:0] npi_read_words = 24'd0;
@@ -82,7 +82,7 @@ const char npiStream[] =
 
     npi_stream u_stream (
         `include "memory_connect.vh"
-        .clk_i(clk_i), .rst_i(rst_i), // not by core_rst: what was asked for must be taken
+        .clk_i(clk_i), .rst_i(rst_i), // not core_rst: requested words must be taken
         .read_start_i(npi_read_start), .read_base_i(npi_read_base[31:6]),
         .read_words_i(npi_read_words), .read_stop_i(core_rst), .read_valid_o(npi_read_valid),
         .read_data_o(npi_read_data), .read_take_i(npi_read_take), .read_idle_o(npi_read_idle),
@@ -97,7 +97,7 @@ const char npiStream[] =
 
 // The same statements in VHDL: npiSignals has the signal declarations.
 const char npiSignals[] =
-    R"(  -- The buffers in DDR3 as two streams of words, which rest here (docs/memory.md, npi_stream).
+    R"(  -- The buffers in DDR3 as two idle streams of words (docs/memory.md, npi_stream).
   signal npi_read_start, npi_read_take, npi_read_valid, npi_read_idle : std_logic;
   signal npi_write_start, npi_write_valid, npi_write_ready : std_logic;
   signal npi_write_flush, npi_write_idle : std_logic;
@@ -127,7 +127,7 @@ const char npiStatements[] =
       npi_rd_data_i => npi_rd_data_i, npi_rd_word_i => npi_rd_word_i,
       npi_rd_pop_o => npi_rd_pop_o, npi_rd_empty_i => npi_rd_empty_i,
       npi_rd_flush_o => npi_rd_flush_o, npi_init_done_i => npi_init_done_i,
-      clk_i => clk_i, rst_i => rst_i, -- not by core_rst: what was asked for must be taken
+      clk_i => clk_i, rst_i => rst_i, -- not core_rst: requested words must be taken
       read_start_i => npi_read_start, read_base_i => npi_read_base(31 downto 6),
       read_words_i => npi_read_words, read_stop_i => core_rst, read_valid_o => npi_read_valid,
       read_data_o => npi_read_data, read_take_i => npi_read_take, read_idle_o => npi_read_idle,

@@ -77,7 +77,7 @@ void readSequence(Writer& w, const Call& c, const Piece& p, const std::string& c
     std::string sequence = lvalue(p), bytes = std::to_string(p.elementBytes) + "U";
     w.line(sequence + ".size = (Ice_Int)" + count + ";");
     w.single("if (" + sequence + ".size > " + std::to_string(p.most) + ")",
-             "return ICE_UNKNOWN_EXCEPTION; /* more than the buffer holds */");
+             "return ICE_UNKNOWN_EXCEPTION; /* too long for the buffer */");
     if (statedMaximum(*p.type.declaration) <= 0)
         w.line(sequence + ".data = hw_core->" + roomOf(c, p) + ";");
     w.line("FSMC_readMemory(" + address(p) + ", (U8 *)" + sequence + ".data, (U32)" + sequence +
@@ -169,7 +169,7 @@ void writeParameters(Writer& w, const Block& b, const Call& c) {
             if (!word.isOut && p.isCount) {
                 std::string sequence = lvalue(p);
                 w.single("if (" + sequence + ".size > " + std::to_string(p.most) + ")",
-                         "return ICE_LIMIT; /* more than the buffer holds */");
+                         "return ICE_LIMIT; /* too long for the buffer */");
                 w.line("FSMC_writeMemory(" + address(p) + ", (const U8 *)" + sequence +
                        ".data, (U32)" + sequence + ".size * " + std::to_string(p.elementBytes) +
                        "U);");

@@ -148,11 +148,11 @@ void longCalls(Writer& w, const Block& b) {
     }
     w.line("    reg  [" + top + ":0] busy, refused;");
     w.line("    wire [" + top + ":0] timed = " + bits(b, [](const Call& c) { return c.isLong; }) +
-           "; // operations that end by done");
+           "; // calls that end with done");
     w.line("    wire [" + top + ":0] start = act[" + top + ":0] & ~busy;");
     if (hasEvents)
         w.line("    wire [" + top + ":0] event_bits = " +
-               bits(b, [](const Call& c) { return c.isEvent; }) + "; // at any time");
+               bits(b, [](const Call& c) { return c.isEvent; }) + "; // may happen at any time");
     w.line("    wire [" + top + ":0] done  = {" + done + "} & " +
            (hasEvents ? "(busy | event_bits);" : "busy;"));
     w.line("    always @(posedge clk_i) begin");
@@ -261,7 +261,7 @@ GeneratedFile verilogFile(const Block& b) {
     w.line();
     b.pageBits ? pages(w, b) : registers(w, b, 0);
     w.line();
-    w.line("    // A clock after the write, from a register: the whole core hangs on it.");
+    w.line("    // One clock after the write; from a register, because it drives the whole core.");
     w.line("    reg core_rst;");
     w.line("    assign core_rst_o = core_rst;");
     w.line("    always @(posedge clk_i)");

@@ -86,11 +86,11 @@ unsigned eventBits(const Block& b) {
 
 void signals(Writer& w, const Block& b) {
     w.line("  signal writes, core_rst : std_logic;");
-    w.line("  signal act : std_logic_vector(31 downto 0); -- CONTROL, while it is written");
+    w.line("  signal act : std_logic_vector(31 downto 0); -- value written to CONTROL");
     w.line("  signal happened, event_bits, mask_bits : " + vectorType(eventBits(b)) + ";");
     if (b.pageBits) {
         w.line("  signal page : " + vectorType(pageLsb + b.pageBits) + ";");
-        w.line("  signal place : " + vectorType(4 + b.pageBits) + "; -- words 8..15 have pages");
+        w.line("  signal place : " + vectorType(4 + b.pageBits) + "; -- page and word accessed");
     }
     if (b.memoryWord)
         w.line("  signal memory : " + vectorType(32 - b.memoryLsb()) + ";");
@@ -157,7 +157,7 @@ void registers(Writer& w, const Block& b) {
     w.line("  registers : process (clk_i)");
     w.line("  begin");
     w.line("    if rising_edge(clk_i) then");
-    w.line("      -- an event in the cycle of its clear stays set");
+    w.line("      -- an event that arrives while it is cleared stays set");
     w.line("      event_bits <= event_bits or happened;");
     w.line("      if writes = '1' then");
     w.line("        case " + addressed(b) + " is");
@@ -299,7 +299,7 @@ GeneratedFile vhdlFile(const Block& b) {
                " & bus_addr_i;");
     w.line("  act <= bus_wdata_i when writes = '1' and " + addressed(b) + " = " +
            address(b, control) + " else " + hex(0) + ";");
-    w.line("  -- A clock after the write, from a register: the whole core hangs on it.");
+    w.line("  -- One clock after the write; from a register, because it drives the whole core.");
     w.line("  core_rst_o <= core_rst;");
     w.line("  core_resets : process (clk_i)");
     w.line("  begin");

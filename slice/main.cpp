@@ -267,7 +267,7 @@ void addOptions(CLI::App& app, Options& o) {
     for (size_t i = 0; i < std::size(hardwareOutputs); ++i)
         app.add_option(hardwareOutputs[i].option, o.hardware[i], hardwareOutputs[i].help);
     app.add_flag("--hw-own-clock", o.hwOwnClock,
-                 "for cores whose clock may stop: servants check that the core has answered");
+                 "make servants check that the core has answered, because its clock may stop");
     app.add_flag("--describe", o.describe,
                  "print the declarations as JSON, generate nothing (docs/call.md)");
     app.add_flag("--depend", o.depend, "print make dependencies, generate nothing");

@@ -152,7 +152,7 @@ void describe(CLI::App& app, Options& o) {
     auto chance = [&app](const char* option, double& value, const char* what) {
         app.add_option(option, value, what)->check(CLI::Range(0.0, 1.0))->capture_default_str();
     };
-    chance("--loss", o.weather.loss, "probability that a packet is lost after all its tries");
+    chance("--loss", o.weather.loss, "probability that a packet is lost despite its retries");
     chance("--burst-begin", o.weather.burstBegin,
            "probability per packet that a burst of losses begins (Gilbert-Elliott model)");
     chance("--burst-end", o.weather.burstEnd, "probability per packet that a burst ends");

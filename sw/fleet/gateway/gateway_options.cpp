@@ -102,11 +102,11 @@ void addOptions(CLI::App& app, Options& o) {
         ->excludes(station);
     app.add_option("--maintenance", o.maintenance,
                    "HOST:PORT, or Ice endpoints, for maintenance objects such as 'keys', 'update' "
-                   "and 'fpga'; these objects can only be called there (default: none)");
+                   "and 'fpga', which accept calls only at this endpoint (default: none)");
     app.add_option("--page", o.page,
                    "HOST:PORT of a web page with forms for all operations. Open it under exactly "
-                   "this HOST. Browsers call a ws endpoint (wss with IceSSL.CertFile), which is "
-                   "added unless --listen has one");
+                   "this HOST. Browsers make calls to a ws endpoint (wss with IceSSL.CertFile); if "
+                   "--listen has no such endpoint, one is added");
     app.add_option("--origin", o.origins,
                    "origin of another web page that may make calls, such as "
                    "https://example.org:8443");
@@ -115,12 +115,12 @@ void addOptions(CLI::App& app, Options& o) {
                    "operations (default: every client may call everything)");
     app.add_option(
            "--wait", o.wait,
-           "time for which a call may wait until the radio is free, and then again until the "
-           "vehicle has received it, s (default 30)")
+           "limit of each of the two waits of a call, s (default 30): until the radio is free, and "
+           "then until the vehicle has received the call")
         ->check(CLI::Range(1, 3600));
     app.add_option(
            "-t,--trace", o.trace,
-           "messages to print: 0 errors (default), 1 also those about link and connections, "
+           "messages to print: 0 errors (default); 1 also messages about link and connections; "
            "2 also AT commands")
         ->check(CLI::Range(0, 2));
     app.footer(

@@ -419,7 +419,7 @@ int main(int argc, char** argv) {
     add("public", "KEYFILE KEY.pub", 2, 2, "writes the public key of a private key",
         [&] { savePublic(word[0], word[1]); });
     add("keys", "NUMBER KEYFILE KEY.pub [SECOND.pub] NEW.update", 4, 5,
-        "signs the next list of public keys; NUMBER is one more than that of the list before (1 "
+        "signs the next list of public keys; NUMBER is the previous list's number plus 1 (1 "
         "for a new vehicle)",
         [&] {
             std::vector<Bytes> open;

@@ -414,12 +414,12 @@ def main():
         description="Puts the cores of a list into the chip: address map, instances in Verilog, "
                     "the firmware's table.")
     parser.add_argument(
-        "list", help="one core per line: folder [name=] [identity=] [slot=] [memory=] [gate=on] "
-        "[clock=3/8] [signals=u_fir.count:9] [input=core.output] [pin=@places]")
+        "list", help="cores.list, with one core per line: folder [name=] [identity=] [slot=] [memory=] "
+        "[gate=on] [clock=3/8] [signals=u_fir.count:9] [input=core.output] [pin=@places]")
     parser.add_argument("--base", required=True, help="the platform's map.regs.json")
     for option, text in (
-            ("--core", "folder=its manifest (core.toml)=its registers (*.regs.json)"),
-            ("--slice", "folder=a Slice file of its servant"),
+            ("--core", "FOLDER=MANIFEST=REGISTERS of a core (core.toml, *.regs.json)"),
+            ("--slice", "FOLDER=FILE of a core: a Slice file of its servant"),
             ("--block", "slot=name=description of a block of the platform, for the pages")):
         parser.add_argument(option, action="append", default=[], help=text)
     parser.add_argument("--output-dir", default=".", help="output folder")

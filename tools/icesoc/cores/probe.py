@@ -193,9 +193,9 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", help="output file for the waveform (VCD)")
     parser.add_argument("--map", default=str(TREE / "build/main/gen/chip.json"),
-                        help="default: build/main/gen/chip.json")
+                        help="chip.json of the build (default: build/main/gen/chip.json)")
     parser.add_argument("--probe", default="probe",
-                        help="name in the list of cores, if it was renamed (name=)")
+                        help="name of the probe in ip/cores.list (default: probe)")
     parser.add_argument("--trigger", default="",
                         help="signals and values, such as u_fir.sent=1,u_fir.count=0x10; the "
                              "capture begins when all signals have changed to these values "
@@ -203,15 +203,16 @@ def main():
     parser.add_argument("--level", action="store_true",
                         help="begin at once if the signals already have these values")
     parser.add_argument("--before", type=int, default=500,
-                        help="changes before the trigger (default: 500)")
+                        help="number of changes before the trigger (default: 500)")
     parser.add_argument("--after", type=int, default=1500,
-                        help="changes after the trigger (default: 1500)")
+                        help="number of changes after the trigger (default: 1500)")
     parser.add_argument("--wait", type=float, default=60,
-                        help="time-out, s, after which the changes so far are used (default: 60)")
+                        help="time to wait for the trigger, s; then the changes recorded so "
+                             "far are used (default: 60)")
     parser.add_argument("--device", help="serial port of the modem")
     parser.add_argument("--proxy",
-                        help="instead of --device: proxy of the object, such as 'probe:tcp -h host "
-                             "-p 4061'")
+                        help="proxy of the probe, such as 'probe:tcp -h host -p 4061'; replaces "
+                             "--device")
     parser.add_argument("--plugin", help="folder of libxbeeat.so.37")
     parser.add_argument("--key", default="", help="file with the link key (default: unencrypted)")
     parser.add_argument("--guard", type=int, default=1000, help="guard time of the modem, ms")

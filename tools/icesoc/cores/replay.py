@@ -105,16 +105,17 @@ def captured(path):
 def words():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("capture", help="VCD of probe.py")
-    parser.add_argument("--scope", required=True, help="the block in the chip, as u_fir.u_filter")
+    parser.add_argument("capture", help="VCD file written by probe.py")
+    parser.add_argument("--scope", required=True,
+                        help="instance in the chip, such as u_fir.u_filter")
     parser.add_argument("--top", required=True, help="module of the block")
     parser.add_argument("--out", default="build/replay-block",
-                        help="folder for what is written (build/replay-block)")
+                        help="output folder (build/replay-block)")
     parser.add_argument("-I", action="append", default=[], metavar="FOLDER",
-                        help="where Verilator looks for modules and headers")
+                        help="folder in which Verilator searches modules and headers")
     parser.add_argument("files", nargs="+",
-                        help="Verilog files of the block; for VHDL the generated "
-                        "build/main/gen/NAME.v")
+                        help="Verilog files of the block; for a block in VHDL, the "
+                        "generated build/main/gen/NAME.v")
     return parser.parse_args()
 
 

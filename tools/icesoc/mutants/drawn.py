@@ -267,12 +267,13 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--build", default="build/main", help="build folder with the proofs")
-    parser.add_argument("--out", default="build/mutants", help="where results go")
-    parser.add_argument("--block", default="", help="proofs by regular expression (default: all)")
-    parser.add_argument("--number", type=int, default=20, help="mutants a proof")
-    parser.add_argument("--seed", default="1", help="seed of the draw")
+    parser.add_argument("--out", default="build/mutants", help="output folder of results")
+    parser.add_argument("--block", default="",
+                        help="regular expression of the proofs (default: all)")
+    parser.add_argument("--number", type=int, default=20, help="number of mutants per proof")
+    parser.add_argument("--seed", default="1", help="seed of the random numbers")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(),
-                        help="mutants tried at once")
+                        help="number of mutants tried in parallel")
     options = parser.parse_args()
     out = pathlib.Path(options.out).resolve()
     shown = subprocess.run(["ctest", "--test-dir", options.build, "--show-only=json-v1", "-R",

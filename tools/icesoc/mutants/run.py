@@ -237,11 +237,11 @@ def main():
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument(
         "--block", default="*",
-        help="the bugs of one block or core, or a single one as block/name (default: all)")
+        help="block or core with the bugs, or one bug as block/name (default: all)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(),
-                        help="bugs tried at once")
+                        help="number of bugs tried in parallel")
     parser.add_argument("--check", nargs="?", const="", metavar="BUILD",
-                        help="only look whether each is found in its file, and its test in BUILD")
+                        help="only check that each bug fits its file, and that BUILD has its test")
     options = parser.parse_args()
     os.chdir(TOP)
     chosen = bugs(options.block)

@@ -50,31 +50,33 @@ def parse(words):
     add, folder = parser.add_argument, pathlib.Path
     add("--source", type=folder, default=folder("."), help="root of the tree (default: .)")
     add("--build", type=folder, default=folder("build/main"), help="build folder with the tests")
-    add("--out", type=folder, default=folder("build/regress"), help="where reports go")
+    add("--out", type=folder, default=folder("build/regress"), help="output folder of reports")
     add("--name", type=functools.partial(regex, kind=Name), default=Name(""),
-        help="a whole word of test names, or a regular expression on them")
+        help="whole word in test names, or a regular expression")
     add("--folder", default="", help="tests of this folder, such as hdl/fsmc or ip/fir")
     add("--select", type=folder, metavar="FILE",
         help="only write the numbers of the chosen tests, for ctest -I")
     add("--block", help="one block: modem, link, bus, ...")
     add("--label", type=regex, default=regex(""), help="labels: rtl, formal, lint, firmware, ...")
     only = parser.add_mutually_exclusive_group()
-    only.add_argument("--changed", action="store_true", help="only tests that failed last, and "
-                      "tests with a program or sources that have changed since they last passed")
-    only.add_argument("--rerun-failed", action="store_true", help="only tests that failed last")
-    only.add_argument("--kept", action="store_true", help="only tests that failed with some seed "
-                      "and have not passed with it since, with these seeds")
+    only.add_argument("--changed", action="store_true", help="only tests that failed in their "
+                      "last run, and tests whose program or sources have changed since they passed")
+    only.add_argument("--rerun-failed", action="store_true", help="only tests that failed "
+                      "in their last run")
+    only.add_argument("--kept", action="store_true", help="only tests that failed earlier and "
+                      "have not passed since, each with the seeds with which it failed")
     add("--seed", default="1", help="seed of the random tests, or `random`")
     add("--repeat", type=int, default=1, help="number of runs, each with the next seed")
-    add("--jobs", type=int, default=2, help="tests at once")
-    add("--waves", type=int, default=3, help="largest number of failures with a waveform")
+    add("--jobs", type=int, default=2, help="number of tests run in parallel")
+    add("--waves", type=int, default=3, help="number of failures for which waveforms are "
+        "recorded")
     add("--make", action="store_true", help="build what the chosen tests need first")
     add("--prepare", action="store_true", help="only build what the chosen tests need; with "
         "--list, only print it")
     add("--tree", metavar="FOLDERS", help="only print the state of these folders")
-    add("--plan", action="store_true", help="only look whether each pattern of tests/plan.toml "
+    add("--plan", action="store_true", help="only check that each pattern of tests/plan.toml "
         "matches a test")
-    add("--list", action="store_true", help="only say which tests are chosen")
+    add("--list", action="store_true", help="only print the chosen tests")
     return parser.parse_args(words)
 
 

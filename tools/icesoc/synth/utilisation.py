@@ -192,28 +192,29 @@ def options_of(words):
     parser.add_argument("--output", type=folder, default="build/synth",
                         help="folder of the reports (%(default)s)")
     parser.add_argument("--design", action="append", default=[],
-                        help="only this design (may be repeated)")
+                        help="design to synthesise (may be repeated; default: all)")
     parser.add_argument("--family", action="append", default=[], choices=FAMILIES,
                         help="further FPGA family, in addition to xc6s (may be repeated)")
-    parser.add_argument("--yosys", default="yosys", help="the program")
+    parser.add_argument("--yosys", default="yosys", help="path of Yosys (%(default)s)")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(),
                         help="number of parallel synthesis runs (%(default)s)")
     parser.add_argument("--accept", action="store_true",
-                        help="record these figures in synth/baseline.json")
+                        help="write the figures into synth/baseline.json")
     parser.add_argument("--core", action="append", default=[],
                         help="only print the cost of this core in the accepted chip (may be "
                              "repeated), or with --design soc, in the current chip")
     parser.add_argument("--compare", type=folder, metavar="REPORT.JSON",
-                        help="only print how the last report differs from this one")
+                        help="only print how the last report differs from REPORT.JSON")
     parser.add_argument("--reports", action="store_true",
                         help="only compare the estimates with published reports")
     parser.add_argument("--edif", metavar="DESIGN",
                         help="only write this design as EDIF for ISE, into the folder ise")
     parser.add_argument("--list", action="store_true", help="only print the designs' names")
     parser.add_argument("--equivalent", action="store_true",
-                        help="only prove that netlists are equivalent to their RTL, or list the "
-                             "tests for it")
-    parser.add_argument("--junit", type=folder, help="results of the tests that --equivalent lists")
+                        help="only prove that netlists are equivalent to their RTL; for large "
+                             "designs, list the tests to run on their netlists")
+    parser.add_argument("--junit", type=folder,
+                        help="with --equivalent: JUnit file with the results of the listed tests")
     parser.add_argument("--seconds", type=int, default=300,
                         help="time limit of each proof of --equivalent, s (%(default)s)")
     parser.add_argument("--netlist", metavar="DESIGN",

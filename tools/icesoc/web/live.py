@@ -367,7 +367,7 @@ def options(program, build):
     parser = argparse.ArgumentParser(
         prog=program, description="Serves the page on which a browser calls the vehicles of a "
         "gateway; icesoc-gateway --page starts this program." if build else
-        "Serves the page that shows a mission as it runs, on 127.0.0.1.")
+        "Serves the page of a mission in progress, on 127.0.0.1.")
     parser.add_argument("--dir", default="", help=of_flight(
         "folder of the mission: status, calls.jsonl, before.png"))
     parser.add_argument("--build", default=build, help=of_flight(
@@ -375,8 +375,8 @@ def options(program, build):
     parser.add_argument("--vehicle", type=Vehicle, action="append", default=[],
                         help="NAME=ws:PORT or NAME=wss:PORT: a vehicle of the gateway; can be "
                         "repeated")
-    parser.add_argument("--listen", type=place, help="HOST:PORT of the page, opened by this HOST; "
-                        "default: 127.0.0.1 and --port")
+    parser.add_argument("--listen", type=place, help="HOST:PORT of the page, which must be opened "
+                        "under this HOST; default: 127.0.0.1 and --port")
     parser.add_argument("--certificate", help="PEM file with certificate and key, for https")
     parser.add_argument("--gateway", type=place, help=of_flight(
         "HOST:PORT of a gateway to call instead of the flight's"))

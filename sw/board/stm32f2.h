@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * stm32f2: the registers of an STM32F2 that the firmware uses. Source: RM0033 (chapter and page
- * names at each block); ARMv7-M Architecture Reference Manual for the core registers. */
+ * names at each block); ARMv7-M Architecture Reference Manual for the core registers.
+ */
 #pragma once
 
 #include "base.h"

@@ -70,7 +70,7 @@ typedef struct Link_Config {
         U8 message[LINK_ROOM(maxMessage)];          \
     }
 
-/* Initialises the fields of a Link_Config from `send` to `window` with such buffers. */
+/* Initialises the fields `send` to `window` of a Link_Config with such buffers. */
 #define LINK_USE(buffers)                                                              \
     (buffers).send, sizeof(buffers).send, (buffers).message,                           \
         sizeof(buffers).message - LINK_ROOM(0U), (buffers).fragments, (buffers).slots, \
@@ -93,9 +93,10 @@ void Link_limitFrame(Link* link, U32 bytes);
  * copied. `side` is the vehicle's address, plus LINK_GROUND on the ground. A session is only
  * possible between a ground station and the vehicle with that address, even if others have the key.
  * If `key` is 0, wipes the slot and ends a session that was made with its key. After the first key
- * was set, sessions are authenticated and encrypted, and a peer without the key is always refused:
- * when both slots have been wiped, no session is possible. The layer sends HELLO frames with the
- * keys of both slots in turn, and answers a HELLO with either key. Call this after Link_init. */
+ * was set, sessions are authenticated and encrypted, and a peer without the key is always refused.
+ * If both slots are wiped later, no session is possible. The layer uses the keys of both slots in
+ * turn for its HELLO frames, and answers a HELLO that was made with either key. Call this after
+ * Link_init. */
 void Link_setKey(Link* link, int slot, const U8* key, U32 side);
 
 /* Returns the slot of the key with which the current session was made; -1 if there is no session or
@@ -127,7 +128,8 @@ Link_Status Link_closeChannel(Link* link, int channel);
  * reports no results. Results determine when the next packet is sent, and the contents of a lost
  * packet are sent again at once. If the line to the modem is faster than the radio, two packets
  * keep the radio busy: one is on the air, one waits in the modem. With a line of 111,111 baud,
- * three packets are needed. A call is sent only after all packets before it. */
+ * three packets are needed. More packets would delay calls, because a call is sent only after all
+ * packets before it. */
 void Link_expectAnswers(Link* link, U32 packets);
 
 /* Lets a link share the radio of another link. The packets of both links then wait in one list for
@@ -138,12 +140,15 @@ void Link_shareRadio(Link* link, Link* with);
 
 /* Returns the modem's RN for the current traffic. RN is the smallest exponent of the random wait
  * before the modem's first try.
- * - 0 for a lone sender, which need not wait.
- * - LINK_WAIT_SHARED for two streams, which would otherwise begin packets at the same time. If many
- *   packets are lost without failed tries, the two seldom begin together; then 0, unless the modem
- *   encrypts.
- * - LINK_WAIT_SHARED for a stream during which the peer calls, so that calls get through; and for a
- *   side that sends little while packets are lost, so that an interferer does not meet all of them.
+ * - 0 if only this side sends, because it need not wait.
+ * - LINK_WAIT_SHARED if the peer sends a stream, because two modems would otherwise often begin
+ *   packets at the same time. Exception: 0 if both sides send streams and many packets are lost
+ *   without failed tries, because the modems then seldom begin at the same time. The exception does
+ *   not apply to a modem that encrypts.
+ * - LINK_WAIT_SHARED if the peer makes calls during a stream of this side, so that the calls get
+ *   through.
+ * - LINK_WAIT_SHARED if this side sends little and packets are lost, so that an interferer does not
+ *   hit all of the packets.
  * `transmit` may call this function. */
 U32 Link_randomWait(Link* link);
 

@@ -7,10 +7,11 @@
 
 #include "link_config.h"
 
-/* A loss is called quick if the radio reported it as fast as it reports other packets, so there
- * were no retries; this happens if two modems start at the same time. After a loss, a side that
- * sends little must pause. The pause doubles after each further loss, and shrinks to a quarter
- * after each delivered packet. Its limit is longest while the peer is silent. */
+/* A loss is called quick if the radio reported it as fast as it reports other packets. The modem
+ * has then made no retries; if two modems had begun at the same time, it would have made retries.
+ * After a loss, a side that sends little must pause. The pause doubles after each further loss, and
+ * shrinks to a quarter after each delivered packet. Its limit is longest while the peer is
+ * silent. */
 U32 link_noteAnswer(Link_Backoff* c, U32 now, int isDelivered, U32 silence, int isBusy) {
     U32 took = now - c->answeredAt;
     U32 last = LINK_REST_LAST + 4U * silence;

@@ -31,7 +31,8 @@ typedef struct Link_Backoff {
     U32 quick;
 } Link_Backoff;
 
-/* Returns whether the peer makes calls while this side sends a stream and the peer does not. */
+/* Returns whether the peer makes calls while this side sends a stream and the peer sends no
+ * stream. */
 #define LINK_IS_CALLED(c) ((c)->isCalled && !(c)->peers.isStream)
 
 /* Records the radio's result for a packet at time `now`. `silence` is the time since the peer was

@@ -39,7 +39,7 @@ typedef struct Link_Identity {
 /* Key and numbers of one frame. */
 typedef struct Link_Seal {
     const U8* key; /* key of LINK_KEY_BYTES bytes; ignored by the clear codec */
-    U32 session;   /* Link_Identity.key; or only its epoch, with LINK_NO_SEED */
+    U32 session;   /* Link_Identity.key, or LINK_NO_SEED with the epoch */
     U32 number;    /* number of the frame; byte 1 of the frame is its lowest byte */
     U32 acked;     /* number that a PIGGYBACK acknowledges; otherwise 0 */
 } Link_Seal;

@@ -28,7 +28,7 @@ static void makeNonce(U8* nonce, const U8* frame, U32 clear, U32 number, U32 ack
     link_put32(nonce + 4, acked);
     if ((frame[0] & LINK_CONTROL) && LINK_IS_HANDSHAKE(kind))
         memcpy(nonce, frame + LINK_HEADER, LINK_NONCE_BYTES);
-    /* an acknowledgement has up to 9 bytes; those beyond CLEAR_MOST do not fit at CLEAR_AT */
+    /* an acknowledgement has up to 9 bytes; only the first CLEAR_MOST bytes fit at CLEAR_AT */
     else if (clear > CLEAR_MOST)
         memcpy(nonce + 4, frame + LINK_HEADER + CLEAR_MOST,
                clear < LINK_BITMAP + 1U ? clear - CLEAR_MOST : LINK_BITMAP + 1U - CLEAR_MOST);

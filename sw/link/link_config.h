@@ -51,20 +51,20 @@
 #define LINK_RTO_MIN 60000U /* smallest value (longer than a round trip) */
 #define LINK_RTO_MAX 2000000U
 
-/* Time without further data after which an acknowledgement is sent that was not requested (less
- * than LINK_RTO_MIN, otherwise fragments are sent twice). In the middle of a message,
- * LINK_ACK_WITHIN is used instead, because more fragments will arrive. */
+/* Delay of an acknowledgement that was not requested; further data restarts the delay (less than
+ * LINK_RTO_MIN, otherwise fragments are sent twice). In the middle of a message, LINK_ACK_WITHIN is
+ * used instead, because more fragments will arrive. */
 #define LINK_ACK_DELAY 30000U
 #define LINK_ACK_WITHIN 80000U
 
 /* first interval between HELLOs; each interval is twice the previous one */
 #define LINK_HELLO_FIRST 300000U
-/* the interval doubles until it is at least this long, which is at 2.4 s */
+/* the interval no longer doubles when it has reached this value, that is at 2.4 s */
 #define LINK_HELLO_LAST 2000000U
 #define LINK_PING_AFTER 5000000U /* silence after which the peer is pinged */
 #define LINK_PING_EVERY 200000U  /* interval of pings */
-/* silence after which the peer is considered lost (more than LINK_PING_AFTER, below 2^31). In the
- * minimal layer, times are constants with few 1 bits, each of which fits into an instruction. */
+/* silence after which the peer is considered lost (more than LINK_PING_AFTER, below 2^31). The
+ * minimal layer uses times with few 1 bits, so that each time fits into an instruction. */
 #define LINK_DEAD_AFTER (LINK_IS_FULL ? 9000000U : 0x890000U)
 
 /* With a key: time without an authenticated reply to a PING, after which the peer is considered
@@ -110,12 +110,12 @@
 #define LINK_PACKET_ENCRYPTED_US 13450U
 #define LINK_BYTE_US 32U
 
-/* Wait before the next packet after a frame was heard, in quarters of the airtime
+/* Wait before the next packet if a frame was heard, in quarters of the airtime of this frame
  * (docs/link.md). */
 #define LINK_HEARD_QUARTERS 7U
 
-/* Additional wait after a short packet. If the wait is shorter, a modem that has not sent the short
- * packet yet joins it with the next packet. */
+/* Additional wait after a short packet. With a shorter wait, the modem could join this packet with
+ * the next packet, because it has not sent the short packet yet. */
 #define LINK_SHORT_MARGIN 1500U
 
 /* largest number of packets that wait for a result of the radio, for all links of the radio
@@ -132,8 +132,9 @@
 #define LINK_ANSWER_LAST 3000000U
 
 /* Choice of RN (Link_randomWait). The bytes in each span of time are counted; the air carries about
- * 5,000 bytes in a span. A side sends a stream when a span has at least LINK_SPAN_MANY bytes, until
- * a span has fewer than LINK_SPAN_FEW bytes. A loss affects the choice for a limited time. */
+ * 5,000 bytes in a span. A stream begins with a span of at least LINK_SPAN_MANY bytes from one
+ * side, and ends with a span of fewer than LINK_SPAN_FEW bytes. A loss affects the choice for a
+ * limited time. */
 #define LINK_WAIT_SHARED 2U /* RN that the modem has after set-up */
 /* limit for the share of packets lost without retries; above it, such losses count as frequent;
  * 65,536 means all packets */

@@ -69,7 +69,7 @@ U32 link_epochBits(const U8* frame, U32 key) {
 
 int link_isOfEpoch(const U8* frame, U32 key) {
     U32 bits = link_epochBits(frame, key);
-    /* cleared for control frames, because kinds of PIGGYBACK also use these bits */
+    /* these bits are set in a data frame with a complete message, and in both kinds of PIGGYBACK */
     U32 whole = LINK_FIRST | LINK_LAST;
     return bits == 0 || (bits == LINK_READY && (frame[2] & whole) == whole);
 }

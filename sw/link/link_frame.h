@@ -31,7 +31,7 @@
 #define LINK_CONTROL 0x80U
 #define LINK_LENGTH_OF(header) ((header) & 0x7FU)
 #define LINK_LENGTH(frame) LINK_LENGTH_OF((frame)[0])
-#define LINK_FILL 0xFFU /* padding byte; it stands where the first byte of a frame would be */
+#define LINK_FILL 0xFFU /* padding byte, at a place where the first byte of a frame is expected */
 
 /* Byte 2 of a data frame: flags, channel and epoch. Byte 2 of a control frame: its kind. */
 #define LINK_FIRST 0x80U

@@ -10,7 +10,7 @@
 
 void link_useRules(Link_Handshake* handshake, const Link_HandshakeRules* rules) {
     handshake->rules = rules;
-    handshake->slot = 1; /* the first HELLO uses slot 0, because each HELLO changes the slot */
+    handshake->slot = 1; /* each HELLO first changes the slot, so the first HELLO uses slot 0 */
 }
 
 void link_setSecret(Link_Handshake* handshake, int slot, const U8* key, U32 side) {

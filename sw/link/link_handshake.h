@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * link_handshake: agrees with the peer on the identity of a session: nonces, features, keys. It
- * holds the state of the link, the identity of the current session and that of the next one (the
- * candidate). It sends and processes handshake frames, and returns the effects of each frame on the
- * session (Link_Verdict).
+ * holds the state of the link, the identity of the current session, and the identity of the next
+ * session (the candidate). It sends and processes handshake frames, and returns the effects of each
+ * frame on the session (Link_Verdict).
  */
 #pragma once
 
@@ -27,13 +27,13 @@ typedef struct Link_HandshakeRules {
     U32 (*cost)(const struct Link_Handshake* handshake, const U8* frame);
     /* Writes the seal with which a genuine frame must have been made. Two seals may be possible;
      * `attempt` (0 or 1) selects one. Returns 0 if there is no such seal. Without a key, also
-     * returns a seal for data and other frames of the candidate's session. */
+     * writes seals for all other frames of the candidate's session, such as data. */
     int (*expect)(struct Link_Handshake* handshake, const U8* frame, U32 attempt, Link_Seal* seal);
     /* Processes a handshake frame that was opened with the seal of `attempt`. Returns a set of
      * Link_Verdict. */
     U32 (*onFrame)(struct Link_Handshake* handshake, const U8* frame, U32 attempt);
-    /* Sends HELLO. If `unknown` is not 0, it is a frame of an unknown session, which is answered.
-     */
+    /* Sends HELLO. If `unknown` is not 0, answers this frame of an unknown session
+     * instead. */
     void (*sendHello)(struct Link_Handshake* handshake, const U8* unknown);
 } Link_HandshakeRules;
 
@@ -91,7 +91,8 @@ void link_leave(Link_Handshake* handshake, Link_State next);
 /* Records that a frame of the current session arrived, which confirms the session. */
 #define LINK_NOTE_CONFIRMED(handshake) ((handshake)->isUnconfirmed = 0)
 
-/* Drops the candidate. Frames that the peer has already sent are not answered. */
+/* Drops the candidate. For a short time, frames of unknown sessions are not answered, because the
+ * peer may have sent them earlier. */
 void link_forgetPeer(Link_Handshake* handshake);
 
 /* Answers a frame of an unknown session, unless such a frame was answered a short time ago. */

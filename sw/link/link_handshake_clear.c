@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_handshake_clear: makes sessions without a key. A HELLO is answered with HELLO-ACK; the peer
- * confirms the session by its first frame in it.
+ * link_handshake_clear: makes sessions without a key. A HELLO is answered with HELLO-ACK. The first
+ * frame that the peer sends in the new session confirms the session.
  */
 #include "link_handshake_clear.h"
 
@@ -36,7 +36,8 @@ static U32 onFrame(Link_Handshake* handshake, const U8* frame, U32 attempt) {
     Link_Kind kind = LINK_KIND_OF(frame);
     U32 epoch = LINK_KEY_EPOCH(handshake->present.key);
     (void)attempt;
-    /* an RST may answer a frame with LINK_READY, which inverts a bit of EPOCH */
+    /* an RST repeats the EPOCH of the frame that it answers, in which LINK_READY may invert a
+     * bit */
     if (kind == LINK_KIND_RST)
         return handshake->state == LINK_STATE_UP && ((LINK_EPOCH(frame) ^ epoch) & 3U) == 0
                    ? LINK_VERDICT_LOST
@@ -51,7 +52,7 @@ static U32 onFrame(Link_Handshake* handshake, const U8* frame, U32 attempt) {
         link_get32(payload + 4) != link_get32(handshake->nonce))
         return LINK_VERDICT_NONE;
     link_makeCandidate(handshake, payload, frame[2]);
-    /* the first frame of the peer confirms the session */
+    /* the acknowledgement, the first frame of this side, confirms the session to the peer */
     return LINK_VERDICT_BEGIN | LINK_VERDICT_ACK;
 }
 

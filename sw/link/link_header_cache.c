@@ -187,7 +187,7 @@ static U8* unpackRequest(Link_HeaderCache* cache, U32 channel, U8* p, const U8* 
     return p;
 }
 
-/* Replaces a reply's token at `p`, and the bytes that belong to it, in the same way. */
+/* Replaces a reply's token at `p`, and the bytes that belong to it, as unpackRequest does. */
 static U8* unpackReply(const Link_HeaderCache* cache, U32 channel, U8* p, const U8* end) {
     U32 token = *p++;
     U32 id = cache->lastReply[channel] + 1U;

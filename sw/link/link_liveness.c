@@ -33,8 +33,8 @@ void link_onPing(Link_Liveness* liveness, const U8* frame) {
         if (LINK_BEFORE(liveness->pingsAnswered, number) &&
             !LINK_BEFORE(liveness->pingsSent, number)) {
             liveness->pingsAnswered = liveness->pingsSent;
-            /* the time of the question is used, not the current time, because the reply may have
-             * been delayed */
+            /* uses the time of the PING, not the current time, because the answer may have been
+             * delayed */
             liveness->provenAt = liveness->askedAt;
             LINK_NOTE_ALIVE(liveness);
         }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * link_liveness: detects whether the peer is still there. It records signs of life, sends PING to a
- * silent peer, and decides when the peer counts as lost. * With a key, PINGs are numbered, because
- * an attacker may have recorded any other frame.
+ * silent peer, and decides when the peer counts as lost. With a key, PINGs are numbered, because an
+ * attacker may have recorded any other frame.
  */
 #pragma once
 

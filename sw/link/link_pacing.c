@@ -6,8 +6,8 @@
 
 #include <string.h>
 
-/* Smallest room for which a packet waits for another fragment: an acknowledgement with a payload of
- * 9 bytes must also fit. */
+/* Smallest free space with which a packet waits for another fragment; an acknowledgement with a
+ * payload of 9 bytes also fits into it. */
 #define LEAST(pacing) (pacing->env.codec->overhead + 10U)
 
 /* After the radio had no room, the modem is assumed to be slow for this number of packets. */
@@ -81,7 +81,7 @@ static int handOver(Link_Pacing* pacing, int isFollowed) {
         size = full;
     }
     if ((pacing->quietUntil - pacing->env.now - 1U) >> 21 ==
-        0) /* the time is in the past if the difference is larger */
+        0) /* with a larger difference, quietUntil is in the past */
         return 0;
     if (pacing->env.port->transmit(pacing->env.context, pacing->packet, size) != 0) {
         pacing->slow = SLOW;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * link_pacing: puts frames into packets, and passes each packet to the radio at the right time. If
- * the radio reports results, this is when only few packets wait for a result; otherwise, when the
- * modem has sent the previous packets.
+ * the radio reports results, the right time is when only few packets wait for a result; otherwise,
+ * it is when the modem has sent the previous packets.
  */
 #pragma once
 
@@ -35,14 +35,14 @@ typedef struct Link_Pacing {
     U8 mostWaiting;
     /* handed: packets passed to the radio, modulo 256. waiting: packets without a result. */
     U8 handed, waiting;
-    U8 isHeld; /* 1: until paceUntil, only a message may be sent that overtakes others */
+    U8 isHeld; /* 1: until paceUntil, only messages that overtake others may be sent */
     Link_Env env;
     const Link_Identity* session; /* identity of the current session, whose key seals the frames */
     Link_Unanswered* radio;
     struct Link* owner;
     U32 byteTimeUs16; /* time of one byte on the slowest line, in units of 1/16 us */
     U32 fastest;      /* shortest round trip of the session, us */
-    U32 slack;        /* time by which the next packet may be sent before paceUntil, us */
+    U32 slack;        /* time before paceUntil at which the next packet may already be sent, us */
     /* time at which the modem will have sent all packets that were passed to it, us */
     U32 paceUntil;
     U32 early;                 /* largest time by which a received frame shortens the wait, us */

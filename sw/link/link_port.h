@@ -58,7 +58,7 @@ typedef struct Link_Port {
 typedef struct Link_Statistics {
     U32 framesSent, framesReceived; /* number of frames, of all kinds */
     U32 bytesSent, bytesReceived;   /* number of bytes on the air, including overhead */
-    U32 fragmentsResent;            /* number of data fragments that were sent again */
+    U32 fragmentsResent;            /* number of retransmissions of data fragments */
     U32 acksSent;                   /* number of acknowledgements, alone or in a PIGGYBACK */
     /* number of bytes skipped during the search for the next frame */
     U32 bytesSkipped;

@@ -106,9 +106,10 @@ static int accept(Link_Receiver* receiver, U32 flags, const U8* data, U32 size) 
     return 1;
 }
 
-/* Delivers a complete message from its slot although earlier fragments are missing, because these
- * belong to other channels. The message stays in its slot if an earlier message of the same channel
- * waits, or if the program does not accept it now. Returns 0 if the peer violated the protocol. */
+/* Delivers a complete message from its slot although earlier fragments are missing; the missing
+ * fragments belong to other channels. The message stays in its slot if an earlier message of the
+ * same channel waits, or if the program does not accept the message now. Returns 0 if the peer
+ * violated the protocol. */
 static int takeEarly(Link_Receiver* receiver, U32 seq) {
     Link_HeaderCache* heads = &receiver->heads;
     Link_ReorderSlot* slot = SLOT(receiver, seq);
@@ -234,7 +235,7 @@ void link_pollAck(Link_Receiver* receiver) {
         (!receiver->ackNow && LINK_BEFORE(receiver->pacing->env.now, receiver->ackAt)))
         return;
     size = gaps(receiver, payload + 1);
-    /* The credit: no further fragments while the program does not accept a message. */
+    /* The credit: while a message waits for the program, the peer may send no further fragments. */
     payload[0] = (U8)((receiver->isHeld ? receiver->waiting : receiver->mask) + 1U);
     if (link_sendControl(receiver->pacing, frame, LINK_KIND_BITS(LINK_KIND_ACK), receiver->expected,
                          size + 1U))

@@ -10,7 +10,7 @@
 
 /* Reorder slot, which holds a fragment that arrived before an earlier one. */
 typedef struct Link_ReorderSlot {
-    U8 flags; /* flags of the frame, with LINK_ACK_NOW; 0 if the slot is free */
+    U8 flags; /* flags of the frame, and LINK_ACK_NOW; 0 if the slot is free */
     /* size of the fragment, bytes; LINK_TAKEN if the program has already accepted its message */
     U8 size;
     U8 bytes[LINK_MAX_PAYLOAD];
@@ -58,7 +58,7 @@ void link_resetReceiver(Link_Receiver* receiver, int isWiped);
  * trusted, and the session must end. link_pollReceiver returns 0 in the same case. */
 int link_onData(Link_Receiver* receiver, U32 seq, U32 flags, const U8* data, U32 size);
 
-/* Offers the complete message again that the program did not accept before. */
+/* If the program has not accepted a complete message yet, offers the message again. */
 int link_pollReceiver(Link_Receiver* receiver);
 
 /* Schedules an acknowledgement after a short time. */

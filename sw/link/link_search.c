@@ -39,9 +39,9 @@ static int mayTry(Link_Search* search, U32 rounds) {
     return 1;
 }
 
-/* Opens a plausible frame with the seal with which it should have been made. Returns the opened
- * frame, which is in place or in `copy`, and sets `attempt` to the attempt that has opened it.
- * Returns 0 if no seal matches. */
+/* Opens a plausible frame with the seal that the session expects for it. Returns the opened frame,
+ * which is in place or in `copy`, and sets `attempt` to the attempt that has opened it. Returns 0
+ * if no seal matches. */
 static const U8* unseal(const Link_Search* search, const U8* frame, U8* copy, U32* attempt) {
     const Link_Codec* codec = search->session->handshake.pacing->env.codec;
     const U8* opened;
@@ -53,7 +53,7 @@ static const U8* unseal(const Link_Search* search, const U8* frame, U8* copy, U3
     return 0;
 }
 
-/* Returns whether a frame without a tag can be trusted if the search has found it; its checksum
+/* Returns whether a frame without a tag that was found by the search can be trusted; its checksum
  * might match by coincidence. The frame is trusted if the bytes end after it, or if a valid frame
  * follows. Returns 1 if so, 0 if not, and -1 if this is not known yet. */
 static int isConfirmed(const Link_Search* search, const U8* next, U32 left, int isEnd) {
@@ -109,9 +109,9 @@ static int take(Link_Search* search, const U8* frame, U32 left, int isSearch, in
     return 1;
 }
 
-/* Counts a byte at which no frame begins. Directly after a frame, this byte may begin a frame of an
- * unknown session, which is then answered. It is not answered if its length is impossible for a
- * frame, as in a broadcast. */
+/* Counts a byte at which no frame begins. If the byte directly follows a frame, it may be the first
+ * byte of a frame of an unknown session. Such a frame is answered, unless the length in its header
+ * is impossible, as in a broadcast. */
 static void skip(Link_Search* search, const U8* frame, U32 left) {
     Link_Env* env = &search->session->handshake.pacing->env;
     if (!search->outOfStep && LINK_LENGTH(frame) <= LINK_MAX_PAYLOAD &&

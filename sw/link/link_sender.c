@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_sender: sends fragments, and sends lost ones again.
+ * link_sender: sends fragments, and sends lost fragments again.
  */
 #include "link_sender.h"
 
@@ -136,8 +136,9 @@ static U32 askEvery(const Link_Sender* sender) {
     return sender->fullCredit / 4U * 3U;
 }
 
-/* Returns whether a fragment should request an immediate acknowledgement: one of every n fragments
- * does (askEvery), the last one that the credit allows, and the last one of a retransmission. */
+/* Returns whether a fragment should request an immediate acknowledgement. This applies to one of
+ * every n fragments (askEvery), to the last fragment that the credit allows, and to the last
+ * fragment of a retransmission. */
 static int mustAsk(const Link_Sender* sender, U32 seq) {
     if (sender->unasked + 1U >= askEvery(sender) || seq - sender->base + 1U >= sender->credit)
         return 1;
@@ -279,8 +280,8 @@ static int markAcked(Link_Sender* sender, U32 advance, const U8* bitmap, U32 siz
         isNew = 1;
         if (f->tries != 1U && elapsed < sender->srtt - sender->srtt / 4U) {
             /* The time since the newest transmission is too short for a round trip, so the
-             * acknowledgement answers an earlier one. With a radio that reports losses, that is the
-             * first transmission: the peer has become slower. */
+             * acknowledgement answers an earlier transmission. If the radio reports losses, it
+             * answers the first transmission, because the peer has become slower. */
             elapsed = sender->pacing->env.now - f->firstAt;
             if (sender->pacing->mostWaiting && !sender->pacing->backoff.own.isStream &&
                 elapsed < LINK_RTO_FIRST)

@@ -31,7 +31,8 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
     auto script =
         inOrder({ground.pinging(3),
                  [&] {
-                     // sends a call; the UAV's modem loses its settings before the call is answered
+                     // this call is sent, and then the UAV's modem loses its settings before it is
+                     // answered
                      ground.ping(100, "hwengine1");
                      since = soc.now();
                      return true;

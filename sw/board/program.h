@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * program: the functions of a program that the board calls; each program implements them.
+ * program: the functions that the board calls and that each program must implement.
  */
 #pragma once
 

@@ -4,7 +4,7 @@
  * reports on the UART of the console (console.h).
  *
  * Each step relies on the earlier steps. The wires are tested while the FPGA is loaded with
- * line_tester, everything else with the chip itself.
+ * line_tester. For all other tests, the FPGA is loaded with the chip.
  */
 #include "bringup.h"
 #include "board_pins.h"

@@ -193,7 +193,8 @@ Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr* is) {
     Ice_CommunicatorPtr ic = self->communicator;
     Ice_Status status = (Ice_Status)self->status;
     *is = &ic->is;
-    /* cleared, because the caller checks this stream, and a oneway call reads nothing */
+    /* clears the failure of an earlier call: the caller checks this stream even after a oneway
+     * call, which reads nothing */
     ic->is.failed = 0;
     if (ic->os.failed)
         status = ICE_MARSHAL;

@@ -15,7 +15,7 @@
 #define DUE (LINK_FIRST | LINK_LAST)
 
 /* Sends link->frame, whose payload is already in place (link_seal). If the radio has no room, the
- * frame is lost, as a frame can be lost on the air. */
+ * frame is lost; the link handles this like a loss on the air. */
 static void transmit(Link* link, U32 header) {
     (void)link->port->transmit(link->context, link->frame,
                                link_seal(link->frame, header, link->key));
@@ -131,7 +131,7 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
             lose(link);
         return;
     } else if (link->state != LINK_STATE_UP) {
-        /* the peer still has an earlier session, to which the frame belongs */
+        /* the frame belongs to an earlier session, which the peer has not ended yet */
         link->key = LINK_EPOCH_KEY(epoch) | LINK_NO_SEED;
         transmit(link, LINK_CONTROL_HEADER(LINK_KIND_RST, 0, 0U));
         return;

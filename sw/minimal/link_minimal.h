@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_minimal: a small link layer for a side that only answers. It has the same wire format and
- * functions as the full layer (link.h). It sends one fragment at a time, waits for its
+ * link_minimal: a small link layer for a side that never starts a handshake. It has the same wire
+ * format and functions as the full layer (link.h). It sends one fragment at a time, waits for its
  * acknowledgement, and queues one message (docs/link.md).
  */
 #pragma once

@@ -29,12 +29,12 @@ static XBeeATEndpoint endpoint;
 static Link radioLink;
 static volatile U32 now; /* time since the start, ms */
 
-/* Sleeps until the next tick. */
+/* Sleeps until the next interrupt, which is the tick. */
 static void sleep(void) {
     __asm__ volatile("wfi");
 }
 
-/* The only function of an operating system that the radio driver calls. */
+/* Replaces the kernel's function. The radio driver calls no other function of a kernel. */
 void OSTimeDly(INT32U ticks) {
     INT32U begin = now;
     while (now - begin < ticks)

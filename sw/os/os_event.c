@@ -49,8 +49,8 @@ static U8 waitFor(OS_EVENT* event, U32 timeout, OS_CPU_SR* cpu_sr) {
     return task->timedOut;
 }
 
-/* Makes the first task ready that waits for the event, and returns it. Returns 0 if no task
- * waits. */
+/* Of the tasks that wait for the event, makes the task with the highest priority ready, and returns
+ * this task. Returns 0 if no task waits. */
 static OS_Task* wake(OS_EVENT* event) {
     U8 priority;
     OS_Task* task;

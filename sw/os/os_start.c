@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * os_start: starts the kernel and its idle task. Separate from os_core, which must not depend on
- * os_task.
+ * os_start: starts the kernel and its idle task. It is separate from os_core, because os_core must
+ * not depend on os_task.
  */
 #include "os_core.h"
 

@@ -22,7 +22,8 @@ struct Machine {
     std::function<void()> serve;
 };
 
-// Sets the machine, which must outlive run(). Call this before OSInit.
+// Sets the machine. Everything to which its functions refer must exist until run() has returned.
+// Call this before OSInit.
 void setMachine(Machine machine);
 
 // Runs the tasks, as OSStart does. Returns after a call of stop(); rethrows an exception that a

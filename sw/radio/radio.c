@@ -29,8 +29,8 @@
 #define STATUS 0x89U
 #define PACKET 0x81U
 #define HEAD 5U
-#define ID_BASE                                                                       \
-    0x80U /* bit that all ids have, so that no id is 0, which would request no result \
+#define ID_BASE                                                                           \
+    0x80U /* bit that is set in all ids, so that no id is 0; id 0 would request no result \
            */
 #define ID_MASK 0x7FU
 #define SILENT_TICKS (3U * OS_TICKS_PER_SEC) /* time-out for the modem's result of a packet */
@@ -223,7 +223,7 @@ static void takeStatus(U8 id, int isDelivered) {
     }
 }
 
-/* Reports packets as lost whose results did not arrive in time. */
+/* Reports packets whose results did not arrive in time as lost. */
 static void expire(void) {
     if (radio.handed != radio.answered && OSTimeGet() - radio.handedAt >= SILENT_TICKS)
         takeStatus((U8)(radio.handed - 1U), 0);

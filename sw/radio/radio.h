@@ -43,8 +43,8 @@ typedef enum Radio_Baud {
 /* Called with the modem's result for each sent packet: delivered to the target's modem, or lost. */
 typedef void (*Radio_OnAnswer)(int isDelivered);
 
-/* Settings of the modem. The first three are those of the paper; 0 selects the default of each
- * other setting. */
+/* Settings of the modem. The first three are those of the paper. For each of the others, 0 selects
+ * its default. */
 typedef struct XBeeInitTypeDef {
     Radio_Baud baud;
     U16 source;  /* MY: address of this modem */
@@ -56,8 +56,8 @@ typedef struct XBeeInitTypeDef {
      * packet carries 95 bytes instead of 100 (Link_limitFrame). */
     const U8* key;
     /* function that Radio_receive calls for each sent packet, oldest first; 0 selects transparent
-     * mode. If it is not 0, API mode is used if controller and modem support it (Radio_answers). In
-     * API mode, each received packet has a source address (Radio_source). */
+     * mode. With a function, API mode is used, provided that controller and modem support it
+     * (Radio_answers). In API mode, each received packet has a source address (Radio_source). */
     Radio_OnAnswer onAnswer;
 } XBeeInitTypeDef;
 

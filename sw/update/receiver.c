@@ -212,8 +212,9 @@ static void prepare(Receiver* self) {
         self->state = RECEIVER_ERASING;
 }
 
-/* Erases the first sector of the slot that is not empty; if all are empty, writes the header. The
- * sector of the header is erased first, so that an image that is partly erased has no header. */
+/* Looks for the first sector in the slot that is not empty, and erases it. If all sectors are
+ * empty, writes the header. The sector with the header is the first sector, so a partly erased
+ * image has no header. */
 static void erase(Receiver* self) {
     const Slots_Port* port = self->port;
     const U32 at = slotAt(self), size = port->layout->sectorBytes;

@@ -2,7 +2,7 @@
  *
  * receiver: receives a new image (firmware or bitstream) into the free slot, in steps. A function
  * whose work takes long (a check, an erase) only requests this work. Receiver_work does the work
- * later, in a task of low priority; nothing else may use the flash during this time.
+ * later, in a task of low priority; nothing else may use the flash while it runs.
  */
 #pragma once
 

@@ -4,8 +4,9 @@
  * (docs/firmware.md).
  *
  * A slot begins with a signed header and with state words. The header contains the digest of the
- * image that follows. Each state word is written at most once after an erase. It is set only if it
- * equals SLOTS_TRUE. If a loss of power interrupts the write, writing the word again completes it.
+ * image that follows. Each state word is written at most once after an erase. A state word counts
+ * as set only if it equals SLOTS_TRUE. If a loss of power interrupts the write, writing the word
+ * again completes it.
  */
 #pragma once
 
@@ -100,9 +101,9 @@ int Slots_isSigned(const Slots_Port* port, const Slots_Header* keys, const Slots
 int Slots_isWhole(const Slots_Port* port, U32 slot, const Slots_Header* header);
 /* Returns the highest confirmed version; 0 if no version is confirmed. */
 U32 Slots_confirmed(const Slots_Port* port, U32 product);
-/* Clears READY of a slot that will be erased. If its version is the highest confirmed one, first
- * writes this version to the log. A slot that is partly erased therefore never starts, and an older
- * version is never accepted. */
+/* Clears READY of a slot that will be erased. If the version in the slot is the highest confirmed
+ * version, first writes this version to the log. A slot that is partly erased therefore never
+ * starts, and an older version is never accepted. */
 int Slots_retire(const Slots_Port* port, U32 slot);
 
 /* Returns the slot to run, or SLOTS_NONE. With `mayTry`, chooses a new image, but only once;

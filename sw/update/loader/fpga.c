@@ -32,8 +32,8 @@
 /* Longest wait for DONE, ticks of 10 ms. Loading 3.7 Mbit takes 1.9 s at 2 MHz and 3.7 s at 1 MHz,
  * and the FPGA tries up to four times. */
 #define WAIT_TICKS 1600U
-/* Time without a falling chip select, ticks of 10 ms. After this time, the FPGA has stopped
- * reading, or the wire is missing. */
+/* Time without an edge of chip select, ticks of 10 ms, after which the FPGA counts as hung: it has
+ * stopped reading, or the wire is missing. */
 #define QUIET_TICKS 100U
 #define READS_A_PAUSE 64U
 
@@ -61,8 +61,7 @@ static void pause(void) {
 
 static const SpiNor_Bus bus = {select, transfer, pause};
 
-/* Reads the flash in parts. Other tasks, such as the one that serves the watchdog, run in
- * between. */
+/* Reads from the flash. After some reads, lets other tasks run, such as the watchdog task. */
 static void read(void* context, U32 offset, U8* bytes, U32 count) {
     static U32 reads;
     SpiNor_read(context, offset, bytes, count);
@@ -156,7 +155,7 @@ static U32 load(void) {
     SPI1_CR1 = SPI1_CR1_MASTER;
     __asm__ volatile("cpsie i");
     if (!isDone() && isSelected())
-        hold(); /* frees the bus: the FPGA hangs and is cleared */
+        hold(); /* the FPGA hangs; clearing it frees the bus */
     return heard;
 }
 

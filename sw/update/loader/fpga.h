@@ -9,10 +9,10 @@
 
 /* Returns the slots of bitstreams in the FPGA's flash; 0 if there is no such flash. Makes the FPGA
  * load a bitstream and waits for DONE before it returns. With `mayTry`, a new bitstream is loaded
- * if there is one; if the new bitstream was tried before and not confirmed, or if the FPGA does not
- * accept it, the golden one is loaded. With `mustLoad`, the FPGA loads its bitstream again, so that
- * its reads of the flash can be observed. The FPGA stays cleared until a bitstream was found that
- * is complete and correctly signed; other bitstreams are refused. If the golden bitstream is
- * refused as well, the FPGA remains empty. Sets `running` to the slot of the bitstream in the FPGA.
- */
+ * if there is one. If the new bitstream was tried before and not confirmed, or if the FPGA does not
+ * accept it, the golden bitstream is loaded. With `mustLoad`, the FPGA loads its bitstream again,
+ * so that its reads of the flash can be observed. The FPGA stays cleared until a bitstream was
+ * found that is complete and correctly signed; other bitstreams are refused. If the golden
+ * bitstream is refused as well, the FPGA remains empty. Sets `running` to the slot of the bitstream
+ * in the FPGA. */
 const Slots_Port* Fpga_slots(const Slots_Port* firmware, int mustLoad, int mayTry, U32* running);

@@ -2,7 +2,8 @@
  *
  * loader: checks the images in the slots and starts one of them. It has no variables. Its stack is
  * at the end of RAM, where the firmware keeps nothing that must survive a reset. A signature check
- * needs a few functions from other files of libsodium; they are at the end of this file.
+ * needs a few functions from files of libsodium that are not linked; replacements are at the end of
+ * this file.
  */
 #include "loader.h"
 #include "backup.h"
@@ -15,7 +16,7 @@
 #include <sodium/utils.h>
 
 #define TRIAL_PRESCALER 6UL /* divides LSI by 256, so that one count takes 8 ms */
-/* 10 s: time within which new firmware must start to serve the watchdog itself */
+/* 10 s: time within which new firmware must begin to refresh the watchdog itself */
 #define TRIAL_RELOAD 1250UL
 
 typedef void (*Vector)(void);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * firmware: starts the kernel with the application and the watchdog task. This task has the lowest
- * priority. It runs, and serves the watchdog, only if no other task and no interrupt occupies the
+ * priority. It therefore refreshes the watchdog only if no other task and no interrupt occupies the
  * processor permanently.
  */
 #include "board.h"
@@ -48,8 +48,8 @@ void Program_run(void) {
         (void)OSTaskCreateExt(watchTask, 0, &watchStack[WATCH_WORDS - 1], PRIO_WATCH, 0, watchStack,
                               WATCH_WORDS, 0, OS_TASK_OPT_STK_CHK | OS_TASK_OPT_STK_CLR);
     } else {
-        /* The watchdog is not served here, so it resets the chip, which then tries again, once per
-         * second. */
+        /* The watchdog is not refreshed here. It therefore resets the chip after a second, and the
+         * chip tries again. */
         Boot_note(status == UAV_NO_KEY ? BOOT_NO_KEY : BOOT_NO_FPGA);
     }
     /* Interrupt routines call the kernel, so interrupts stay masked until the first task runs. */

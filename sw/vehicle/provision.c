@@ -23,7 +23,7 @@ static int isBreak(void) {
     return !(GPIO_IDR(PORT) >> RECEIVE & 1UL);
 }
 
-/* Returns 1 if 10 ms have passed since it last returned 1. */
+/* Returns 1 if 10 ms have passed since the last call that returned 1. */
 static U32 tick(void) {
     return SYST_CSR >> 16 & 1UL;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * uav_fleet: all peers except the first ground station (an observer, another vehicle), and calls to
- * all vehicles. They require API mode, in which each packet has a source address. * An observer
+ * all vehicles. They require API mode, in which each packet has a source address. An observer
  * connects by itself. Another vehicle is dialed when this vehicle calls it.
  */
 #include "uav_fleet.h"
@@ -71,8 +71,8 @@ void UAV_dialVehicle(void) {
 }
 
 /* Handles a packet from an unknown source, which may be a call to all vehicles; the same call is
- * accepted only once. While a call waits for IceC, further calls are dropped, because a later copy
- * of them may still arrive in time. */
+ * accepted only once. While a call waits for IceC, further calls are dropped; later copies of a
+ * dropped call may still be accepted. */
 static void onAnyPacket(void* context, const U8* bytes, U32 size) {
     if (*bytes != LINK_BROADCAST) {
         UAV_onPacketOf(context, bytes, size);
@@ -92,7 +92,7 @@ int UAV_offerCall(void) {
     if (toAllSize && XBeeATEndpoint_onMessage(&uav_endpoint, XBEE_OWN_CHANNEL,
                                               toAll + LINK_BROADCAST_HEAD, toAllSize) == 0)
         toAllSize = 0;
-    return toAllSize != 0; /* when the endpoint has accepted the call, it wakes the radio task */
+    return toAllSize != 0; /* the endpoint wakes the radio task when it can accept the call */
 }
 
 int UAV_makeVehicleProxy(Ice_ObjectAdapterPtr adapter, Ice_ObjectPrxPtr other) {

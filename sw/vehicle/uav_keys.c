@@ -19,8 +19,8 @@ static U32 slotAt(int role, int slot) {
     return (U32)role * UAV_PEER_WORDS + (U32)slot * SLOT_WORDS;
 }
 
-/* Returns the check word of a key; it is never 0. It detects a key of which only a part was written
- * because of a loss of power. It is no protection against attackers. */
+/* Returns the check word of a key; it is never 0. The check word detects a key that was written
+ * only in part because of a loss of power. It does not protect against attackers. */
 static U32 checkOf(const U32* words) {
     U32 check = CHECK_SEED, i;
     for (i = 0; i < BACKUP_KEY_WORDS; ++i)
@@ -93,8 +93,8 @@ int UAV_hasGroundsPart(void) {
     return UAV_address() < UAV_addressOf(UAV_VEHICLE);
 }
 
-/* Sets a key of a link. A session is bound to an address: that of the vehicle; between two
- * vehicles, that of the vehicle that does not act as the ground station. */
+/* Sets a key of a link. A session is bound to the address of the vehicle. A session between two
+ * vehicles is bound to the address of the vehicle that does not act as the ground station. */
 static void giveKey(int role, Link* link, int slot, const U8* key) {
     Link_setKey(link, slot, key,
                 role == UAV_VEHICLE && UAV_hasGroundsPart()
@@ -126,7 +126,7 @@ int UAV_setNextKey(int role, Link* link, const U8* key) {
     if (isSame)
         return 1;
     /* The slot is emptied first, then the state is written, then the key: as soon as both slots
-     * have a key, the state must select the next one. */
+     * have a key, the state must already contain the number of the slot with the next key. */
     UAV_writeKey(role, slot, 0);
     UAV_store(UAV_STATE_AT(role), STATE_NEXT + (U32)slot);
     UAV_writeKey(role, slot, key);

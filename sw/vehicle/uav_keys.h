@@ -44,8 +44,8 @@ int UAV_isOpen(void);
  * not open. */
 U32 UAV_addressOf(int role);
 
-/* Returns 1 if this vehicle acts as the ground station in sessions with the other vehicle, which is
- * the case if its address is lower. */
+/* Returns 1 if this vehicle acts as the ground station in sessions with the other vehicle, that is,
+ * if this vehicle has the lower address. */
 int UAV_hasGroundsPart(void);
 
 /* Sets the keys of both slots of a role on the peer's link. Returns the number of keys. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_links: the links to the vehicle's peers: sending, receiving, and changes of the links'
- * states.
+ * uav_links: manages the links to the vehicle's peers: sends and receives packets, and records
+ * which peers have a session.
  */
 #pragma once
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav_peers: the roles of a vehicle's peers, and their addresses. * The backup memory (backup.h)
- * has a place for each role, with its keys; all roles except the first ground station also have an
+ * uav_peers: the roles of a vehicle's peers, and their addresses. The backup memory (backup.h) has
+ * a place for each role, with its keys; all roles except the first ground station also have an
  * address there. All roles except the group have a link.
  */
 #pragma once

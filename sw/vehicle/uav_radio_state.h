@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * uav_radio_state: the state that the files of the radio share: peers, endpoint, and the lock of
- * the links. These files are, each depending only on earlier ones: uav_radio_state, uav_os,
- * uav_links, uav_fleet (observer, other vehicle, calls to all vehicles), uav_modem (radio task).
+ * the links. The files are listed in an order in which each file depends only on earlier files:
+ * uav_radio_state, uav_os, uav_links, uav_fleet (observer, other vehicle, calls to all vehicles),
+ * uav_modem (radio task).
  */
 #pragma once
 

@@ -72,9 +72,9 @@ Ice_Status Update_Firmware_begin(Update_FirmwarePtr self, const Update_Header* s
     return answer(Receiver_begin(receiverOf(self), &header), result);
 }
 
-/* Returns the bytes of a piece; 0 if their number differs from the one in the call. The dictionary
- * of a compressed piece is the part of the image that is already in flash, which the processor
- * reads like memory. The dictionary therefore also exists after a loss of power. */
+/* Returns the unpacked bytes of a piece; 0 if their number is not the size given in the call. The
+ * dictionary of a compressed piece is the part of the image that is already in flash, which the
+ * processor reads like memory. The dictionary therefore also exists after a loss of power. */
 static const U8* unpack(const Receiver* receiver, U32 offset, Ice_Int size,
                         const Update_Piece* bytes) {
     static U8 unpacked[PIECE_BYTES];

@@ -11,8 +11,8 @@
  * "fpga"). */
 typedef enum UAV_Updatable { UAV_FIRMWARE, UAV_BITSTREAM, UAV_UPDATABLES } UAV_Updatable;
 
-/* An image that can be updated. `slots`: its flash; 0 (the initial value) means that it is not
- * updated over the air. `running`: slot in use. `product`: kind of vehicle. */
+/* An image that can be updated. `slots`: the flash with its slots; 0 (the initial value) means that
+ * this image is not updated over the air. `running`: slot in use. `product`: kind of vehicle. */
 typedef struct UAV_Update {
     const Slots_Port* slots;
     U32 running, product;

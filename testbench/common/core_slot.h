@@ -32,8 +32,8 @@ constexpr U32 coreClocksOfMs = 100;
 // byte address of the core's buffers in DDR3, as the driver uses it
 constexpr U32 coreMemory = 0x01000000;
 
-// Reports the status of a call that failed for another reason than one of the operation's own
-// exceptions.
+// Reports the status of a call that failed, unless the call threw one of the exceptions of its
+// operation.
 class CoreError : public std::runtime_error {
 public:
     explicit CoreError(Ice_Status status)
@@ -84,7 +84,7 @@ private:
     unsigned hz_ = CORE_OWN_HZ, time_ = 0;
 };
 
-// A core in a slot, with the driver's port, the interrupt and the wait.
+// A core in a slot, with everything that its driver needs: register access, interrupts, waiting.
 template <class Module> class CoreSlot {
 public:
     CoreSlot() {
@@ -133,8 +133,8 @@ public:
         hw_check(status);
     }
     // Polls until a deferred operation has ended. Like the task of the firmware, it polls after
-    // each interrupt of the core, and a few milliseconds after the time that the operation
-    // requested.
+    // each interrupt of the core, and otherwise a few milliseconds after the time that the last
+    // poll returned.
     void hw_finish(U32 operation) {
         Hw_Status status = HW_OK;
         U32 next = HW_NEVER;

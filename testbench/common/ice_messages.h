@@ -63,7 +63,7 @@ inline Bytes request(uint32_t id, const Bytes& body) {
     return message(IceHeader::Request, m);
 }
 
-// Returns a complete request; id 0 makes it a one-way request.
+// Returns a complete request; with id 0, the request is one-way.
 inline Bytes request(uint32_t id, const std::string& object, const std::string& operation,
                      const Bytes& parameters, const std::string& facet = "", uint8_t minor = 1) {
     return request(id, requestBody(object, operation, minor, parameters, facet));

@@ -40,7 +40,7 @@ protected:
     // Sends a frame. Returns whether there was room.
     virtual bool transmit(const U8* frame, U32 size) = 0;
     virtual U32 random() = 0;
-    // Accepts a message from the link. If it returns false, the link must deliver the message again
+    // Accepts a message from the link. Returns false if the link must deliver the message again
     // later.
     virtual bool take(int channel, const U8* data, U32 size) {
         (void)channel, (void)data, (void)size;

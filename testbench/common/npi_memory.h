@@ -39,9 +39,9 @@ public:
     void setStall(double stall) { stall_ = stall; }
     // Holds back all requests while `held` is true, like a memory that hangs.
     void hold(bool held) { held_ = held; }
-    // Sets the probability per cycle that a word stays in the write FIFO although its write has
-    // been acknowledged, as in a memory that is busy with other ports. With 0, all words leave the
-    // FIFO at the acknowledgement.
+    // Sets the probability per cycle that a word of an acknowledged write stays in the write FIFO,
+    // as in a memory that is busy with other ports. With 0, all words leave the FIFO at the
+    // acknowledgement.
     void setLinger(double linger) { linger_ = linger; }
     uint64_t reads() const { return reads_; }
     uint64_t writes() const { return writes_; }
@@ -144,7 +144,7 @@ private:
                     bytes_[address_ + 8 * w + b] = static_cast<uint8_t>(word.data >> (8 * b));
         }
         if (linger_ > 0)
-            // these words still occupy the write FIFO and reduce the space for later requests
+            // these words still occupy the write FIFO, so later requests have less space
             lingering_ += words;
     }
 

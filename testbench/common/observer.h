@@ -46,7 +46,7 @@ public:
 #ifdef ICESOC_COVERAGE
         if (const char* folder = std::getenv("COVERAGE_DIR")) {
             std::string file = std::string(folder) + "/XXXXXX.dat";
-            // mkstemps makes a unique name; a process id would not, since process ids repeat in a
+            // mkstemps makes a unique name; a process id would not be unique, since ids repeat in a
             // long run
             close(mkstemps(file.data(), 4));
             context_.coveragep()->write(file.c_str());
@@ -60,8 +60,8 @@ public:
 #ifdef ICESOC_TRACE
         if (window_.file.empty() || clock < window_.from || clock > window_.to)
             return;
-        // each model of a test overwrites the file, so that it shows the last model, in which the
-        // test failed
+        // each model of a test overwrites the file, so the file shows the last model: the test
+        // failed in this model
         if (!wave_) {
             wave_.reset(new VerilatedFstC);
             top.trace(wave_.get(), 99);

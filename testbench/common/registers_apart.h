@@ -35,8 +35,8 @@ template <class Module> bool saysIdle(Module&, long) {
     return false;
 }
 
-// A signal in the state of a model, with its path in the slot as name. state_members.awk generates
-// V<core>_slot_state.h, which lists the signals of a core.
+// A signal in the state of a model; its name is its path in the slot. V<core>_slot_state.h lists
+// the signals of a core; state_members.awk generates this file.
 struct StateMember {
     template <class Root, class T>
     StateMember(const Root& root, const T& member, const char* name)
@@ -51,9 +51,8 @@ template <class Root> std::vector<StateMember> stateOf(const Root&) {
 }
 
 // Prints a note if the core is active although nothing calls it. In an idle core only counters
-// should change, because a flight skips the clocks in which nothing else changes
-// (docs/simulation.md). The generated test includes the header that describes the state of the
-// model.
+// should change: a simulated flight can then skip clocks (docs/simulation.md). The generated test
+// includes the header that describes the state of the model.
 template <class Module> void noteWhetherItRests(Bench<Module>& bench) {
     constexpr unsigned settling = 64, clocks = 1000, named = 3;
     const auto& state = *bench.top().rootp;

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 #
-# state_members: lists the signals in the header of a Verilated model's state that have names
-# beginning with `top`, one line each: MEMBER(name, "path"). With `class`, the type of the state, it
-# writes them as the function stateOf (registers_apart.h).
-# Not state: random values that reads beyond the end of an array return, and scratch variables for
-# writes there.
+# state_members: reads the header that declares the state of a Verilated model, and lists the
+# signals whose names begin with `top`, one line each: MEMBER(name, "path"). If `class` is set to
+# the type of the state, the list is written as the function stateOf (registers_apart.h).
+# Not listed: random values that are read beyond the end of an array, and variables that take writes
+# beyond the end of an array.
 
 BEGIN {
     if (class) {

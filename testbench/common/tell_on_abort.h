@@ -15,8 +15,8 @@
 // Clock cycle of the model that ran last; the messages of failed assertions contain it.
 inline uint64_t observedClock = 0;
 
-// Functions that return one line of text about each existing model; the key is the address of the
-// model. A model removes its function when it is destroyed.
+// One function for each existing model, which returns a line of text about the model; the key is
+// the model's address. A model removes its function when it is destroyed.
 inline std::map<const void*, std::function<std::string()>> tellers;
 
 inline void tellOnAbort(const void* model, std::function<std::string()> tell) {

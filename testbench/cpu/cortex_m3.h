@@ -25,7 +25,7 @@
 class CpuBus {
 public:
     virtual ~CpuBus() = default;
-    // Exception that the bus throws for a failed access. The access becomes a BusFault with this
+    // Exception that the bus throws for a failed access. The processor takes a BusFault with this
     // text.
     class Error : public std::runtime_error {
     public:
@@ -34,8 +34,8 @@ public:
     // `bytes` is the size of the access: 1, 2 or 4
     virtual uint32_t read(uint32_t address, unsigned bytes) = 0;
     virtual void write(uint32_t address, unsigned bytes, uint32_t value) = 0;
-    // Lets `cycles` of HCLK pass without an access. The model never calls this from within another
-    // call of it.
+    // Lets `cycles` of HCLK pass without an access. The model does not call pass() while a call of
+    // pass() is in progress.
     virtual void pass(unsigned cycles) = 0;
     // Lets up to `limit` cycles pass while the processor sleeps; returns earlier if an interrupt
     // line changes. Returns the number of cycles that passed, at least 1.
@@ -77,7 +77,7 @@ public:
     bool writeMemory(uint32_t address, const void* data, uint32_t bytes);
     void loadFlash(uint32_t address, const std::vector<uint8_t>& bytes);
     // Read and write on behalf of a debugger. Memory is accessed directly. Registers and windows
-    // are accessed over the bus, as by the processor.
+    // are accessed over the bus, in the same way as by the processor.
     bool debugRead(uint32_t address, void* data, uint32_t bytes);
     bool debugWrite(uint32_t address, const void* data, uint32_t bytes);
     uint8_t* flash() { return memory_.flash(); }
@@ -96,10 +96,11 @@ public:
     enum class Stop { Asked, Breakpoint, Stepped };
     Stop run(bool singleStep = false);
     // Makes run() also stop, with Stop::Stepped, when `instructions()` reaches this number; 0
-    // disables the limit. Within an IT block the processor cannot stop; it then stops after the
-    // block.
+    // disables the limit. If the number is reached within an IT block, the processor stops after
+    // the block.
     void setLimit(uint64_t instructions) { limit_ = instructions; }
-    // Returns the last earlier instruction count at which the processor could have stopped.
+    // Returns the last value of instructions(), before the current one, at which the processor
+    // could have stopped.
     uint64_t lastStop() const { return boundaries_[0]; }
     // Makes run() return before the next instruction; called by the bus or by a listener.
     void stop() { stopAsked_ = attention_ = true; }
@@ -201,7 +202,7 @@ private:
     uc_engine* uc_ = nullptr;
     CpuMemory memory_;
     FlashWrites flashWrites_;
-    Instruction scratch_; // decoded instruction, if its address is outside flash
+    Instruction scratch_; // decoded instruction at an address outside flash
     struct MappedWindow {
         CortexM3* cpu;
         uint32_t base;
@@ -216,7 +217,7 @@ private:
     bool masksChanged_ = false;
     uint8_t special_ = 0;     // number of the special register that the last MSR instruction wrote
     bool exclusive_ = false;  // true if the exclusive monitor may be open
-    bool isClearing_ = false; // true while the CLREX that the model inserts is being executed
+    bool isClearing_ = false; // true while a CLREX that the model has inserted is executed
     bool attention_ = false, stopAsked_ = false, resetAsked_ = false, stepped_ = false,
          breakpointHit_ = false;
     bool singleStep_ = false, passBreakpoint_ = false;

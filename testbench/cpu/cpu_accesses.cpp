@@ -63,7 +63,7 @@ uint32_t CortexM3::guardedAccess(uint32_t address, unsigned bytes, Access access
         if (address >= 0xE0000000) {
             value = access(true);
             // A write to a system register may allow an exception that was blocked. DSB and ISB
-            // after it take no additional cycles in this model.
+            // after such a write take no additional cycles in this model.
             attention_ = attention_ || exceptions_.deliverable() || stopAsked_;
             return value;
         }
@@ -105,8 +105,9 @@ void CortexM3::writeBit(uint32_t address, uint32_t value) {
     }
 }
 
-// Returns true if an unaligned access must be split into aligned accesses, as for memory. An
-// unaligned access to a device is unpredictable, so the model reports it as not modelled.
+// Returns true if an unaligned access must be split into aligned accesses, as is done for memory.
+// The result of an unaligned access to a device is unpredictable, so the model reports such an
+// access as not modelled.
 bool CortexM3::isSplit(uint32_t address, unsigned bytes) {
     if (address % bytes == 0 || address >= 0xE0000000)
         return false;

@@ -15,8 +15,8 @@ constexpr unsigned entryCycles = 12, exitCycles = 10, chainCycles = 6;
 constexpr uint32_t returnHandler = 0xFFFFFFF1, returnMain = 0xFFFFFFF9, returnProcess = 0xFFFFFFFD;
 constexpr uint32_t thumb = 1u << 24, aligned = 1u << 9, exceptionMask = 0x1FF;
 constexpr uint32_t ifThenMask = 0x0600FC00; // ICI/IT bits of xPSR
-// A page at the end of the FSMC's address range, into which the model puts a CLREX instruction. The
-// model executes this instruction itself.
+// A page at the end of the FSMC's address range. The model puts a CLREX instruction there, and
+// executes it in order to close the exclusive monitor.
 constexpr uint32_t clrexPage = 0x9FFFF000, pageBytes = 0x1000;
 constexpr uint16_t clrex[2] = {0xF3BF, 0x8F2F};
 
@@ -95,7 +95,7 @@ bool CortexM3::writeMemory(uint32_t address, const void* data, uint32_t bytes) {
     if (address >= config_.ramBase || !readMemory(address, &was, 1) ||
         !readMemory(address + bytes - 1, &was, 1))
         return false;
-    // Writes to flash without erasing it first, as a flash programmer does.
+    // Changes flash as a flash programmer would; the model needs no erase for this.
     const uint32_t offset = memory_.flashOffset(address);
     std::memcpy(memory_.flash() + offset, data, bytes);
     flashChanged(offset, bytes);
@@ -124,9 +124,9 @@ uint32_t CortexM3::reg(int number) const {
 void CortexM3::setReg(int number, uint32_t value) {
     if (number == Pc) {
         pc_ = value & ~1u;
-        // A debugger has moved the program counter, so the fault of the instruction that it was at
-        // does not happen: an empty flash has no valid reset vector, but a program in RAM can
-        // start.
+        // A debugger has moved the program counter, so a fault of the previous instruction does not
+        // happen. A program in RAM can therefore start although an empty flash has no valid reset
+        // vector.
         synchronous_.number = 0;
         updateAttention();
     } else
@@ -163,8 +163,8 @@ void CortexM3::reset() {
     updateAttention();
 }
 
-// libunicorn does not notice when an exception is entered or left. Both close the exclusive
-// monitor.
+// Exception entry and exception return close the exclusive monitor, but libunicorn does not notice
+// them; this function closes the monitor.
 void CortexM3::clearExclusive() {
     if (!std::exchange(exclusive_, false))
         return;
@@ -360,7 +360,7 @@ void CortexM3::handleRaised() {
         return;
     case Breakpoint:
         pc_ = executing_;
-        breakpointHit_ = true; // the breakpoint stops run() even if no debugger is connected
+        breakpointHit_ = true; // a BKPT instruction stops run() even if no debugger is connected
         return;
     case Fetch:
         return fetchFault();

@@ -30,7 +30,7 @@ public:
             decoded_[at].bytes = 0;
         }
     }
-    // Returns true if libunicorn has translated code of flash that has changed since.
+    // Returns true if flash has changed after libunicorn translated code from it.
     bool isStale() const { return isStale_; }
     void translated() { isStale_ = false; }
 
@@ -55,7 +55,7 @@ private:
         unsigned bytes;
         uint8_t was[8];
     };
-    // bytes that the stores of the current instruction have overwritten
+    // old values of the bytes that the current instruction has overwritten
     std::vector<Store> stores_;
     std::vector<Instruction> decoded_; // decoded instructions, one entry per halfword of flash
     bool isStale_ = false;

@@ -106,7 +106,8 @@ Instruction decodeInstruction(uint16_t first, uint16_t second) {
         i.kind = (second & 0xFF) == 3                      ? Instruction::Sleep
                  : (second & 0xFF) && (second & 0xFF) <= 4 ? Instruction::Refused
                                                            : Instruction::Plain;
-    // LDRT, STRT and similar instructions; with PC as base the same bits are a literal's offset
+    // LDRT, STRT and similar instructions; if the base is PC, the instruction is a load of a
+    // literal instead
     if ((first & 0xFE80) == 0xF800 && (second & 0x0F00) == 0x0E00 && (first & 0xF) != 15)
         i.kind = Instruction::Unprivileged;
     if ((first & 0xFE00) == 0xE800)

@@ -29,8 +29,8 @@ struct Instruction {
     uint8_t cycles = 1;
     uint8_t conditional = 0; // number of conditional instructions after an IT, 1..4
     Kind kind = Plain;
-    // for the alignment check of an access (A3.2.1): number of the base register, and mask of the
-    // address bits that must be zero
+    // number of the base register, and mask of the address bits that must be zero, for the
+    // alignment check of an access (A3.2.1)
     uint8_t base = noBase, alignment = 0;
     uint8_t special = 0; // number (SYSm) of the special register that an MSR accesses
 };

@@ -9,8 +9,8 @@
 
 class MaskedTime {
 public:
-    // Longest time since start() for which interrupts of the measured priority and of less urgent
-    // ones were blocked, and the time at which this ended; both in cycles.
+    // Longest time since start() for which interrupts of the measured priority, and of less urgent
+    // priorities, were blocked; and the time at which it ended. Both are in cycles.
     struct Longest {
         uint64_t cycles = 0;
         // address of the instruction that blocked the interrupts, and of the instruction that

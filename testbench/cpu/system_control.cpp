@@ -12,7 +12,7 @@ namespace {
 constexpr uint32_t dwt = 0xE0001000, scs = 0xE000E000;
 constexpr uint32_t keyIn = 0x05FA, keyOut = 0xFA05;
 
-// Returns true if the exception has a configurable priority: all interrupts, and those of the
+// Returns true if the exception has a configurable priority. These are all interrupts, and those
 // exceptions 4..15 that exist (SHPR1..3).
 bool hasPriority(unsigned number) {
     return number >= FirstInterrupt || (number >= MemManage && number <= UsageFault) ||
@@ -66,8 +66,8 @@ bool hasBytes(uint32_t address) {
 
 } // namespace
 
-// Registers that only store the written value. If a program writes a bit that is not listed here,
-// the model reports it as not modelled.
+// Registers that only store the written value. The bits in `unknown` are not modelled: the model
+// reports a program that sets one of them.
 struct SystemControl::Stored {
     uint32_t at;
     uint32_t SystemControl::* value;
@@ -78,8 +78,8 @@ const SystemControl::Stored SystemControl::stored[] = {
     {0x008, &SystemControl::actlr_, ~0u, ~2u}, // only the bit DISDEFWBUF is modelled
     // The vector table has 97 entries, so its address is a multiple of 512.
     {0xD08, &SystemControl::vtor_, 0x3FFFFF80, 0x1FF},
-    {0xD10, &SystemControl::scr_, 0, 0x16}, // SLEEPONEXIT, SLEEPDEEP, SEVONPEND
-    // NONBASETHRDENA, USERSETMPEND, UNALIGN_TRP, DIV_0_TRP, BFHFNMIGN
+    {0xD10, &SystemControl::scr_, 0, 0x16}, // not modelled: SLEEPONEXIT, SLEEPDEEP, SEVONPEND
+    // not modelled: NONBASETHRDENA, USERSETMPEND, UNALIGN_TRP, DIV_0_TRP, BFHFNMIGN
     {0xD14, &SystemControl::ccr_, 0x200, 0x11B},
     {0xD28, &SystemControl::cfsr_, 0, 0, true},
     {0xD2C, &SystemControl::hfsr_, 0, 0, true},
@@ -346,8 +346,8 @@ bool SystemControl::accessOther(uint32_t at, bool write, uint32_t& value) {
     return true;
 }
 
-// A new reload value takes effect when the counter next reaches zero, or at once if the counter is
-// zero.
+// A new reload value takes effect when the counter reaches zero the next time, or at once if the
+// counter is zero.
 void SystemControl::loadSysTick(uint32_t value) {
     load_ = value;
     if ((control_ & 1) && tickDue_ == ~0ull && stoppedAt_ == 0 && value)

@@ -58,8 +58,8 @@ public:
     };
 
     void reset() { *this = Exceptions(), update(); }
-    // Sets or clears the pending state of an exception. An interrupt with a line that is still high
-    // becomes pending again at once, unless it is active.
+    // Sets or clears the pending state of an exception. An interrupt whose line is high becomes
+    // pending again at once, unless it is active.
     void pend(unsigned number, bool pending = true) {
         State& s = states_[number];
         s.pending = pending || (s.level && !s.active);
@@ -122,11 +122,11 @@ public:
     // Returns the current execution priority, raised by the mask registers; `none` in thread mode
     // without masks.
     int runningPriority() const { return runningPriority_; }
-    // Returns the most urgent pending exception, or 0 if BASEPRI or FAULTMASK masks it or nothing
-    // is pending.
+    // Returns the most urgent pending exception; 0 if no exception is pending, or if BASEPRI or
+    // FAULTMASK masks this exception.
     unsigned firstPending() const { return bestPriority_ < maskPriority_ ? best_ : 0; }
-    // Returns true if a pending exception ends WFI, which means that it would be entered if PRIMASK
-    // were 0 (B1.5.19).
+    // Returns true if a pending exception ends WFI. This is an exception that would be entered if
+    // PRIMASK were 0 (B1.5.19).
     bool wakes() const { return bestPriority_ < sleepPriority_; }
     int priorityOf(unsigned number) const {
         switch (number) {
@@ -191,7 +191,8 @@ public:
     uint32_t read(uint32_t address, unsigned size);
     void write(uint32_t address, unsigned size, uint32_t value);
 
-    // Advances the time by `cycles`. SysTick becomes pending when its counter reaches zero.
+    // Advances the time by `cycles`. The exception SysTick becomes pending when its counter reaches
+    // zero.
     void pass(unsigned cycles) {
         cycles_ += cycles;
         if (cycles_ >= tickDue_)

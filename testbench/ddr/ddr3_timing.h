@@ -32,8 +32,8 @@ constexpr Ddr3Part mt41j64m16{
 
 class Ddr3Timing {
 public:
-    // `refreshLater`: number of memory clocks that the controller waits, after precharging all
-    // banks and tRP, before a refresh
+    // `refreshLater`: additional time between the precharge of all banks (plus tRP) and a refresh,
+    // memory clocks
     explicit Ddr3Timing(const Ddr3Part& part, unsigned refreshLater = 0)
         : part_(part), refreshLater_(refreshLater), nextRefresh_(part.tREFI) {}
 
@@ -80,7 +80,7 @@ public:
         b.open = false;
         b.mayActivate = std::max(b.mayActivate, precharge(b, 0) + part_.tRP);
     }
-    // Refreshes at clock `at` or later, even if a refresh is not due yet. Returns the clock in
+    // Executes a refresh at clock `at` or later, also before a refresh is due. Returns the clock in
     // which the refresh ends.
     uint64_t refreshNow(uint64_t at) {
         uint64_t start = at;

@@ -54,8 +54,8 @@ private:
     size_t head_ = 0, tail_ = 0;
 };
 
-// Bytes that are 0 at first. The system provides their pages when they are first used, so that a
-// large memory costs a flight no time at its start.
+// Bytes that are 0 at first. The system provides each page when it is first used, so that a flight
+// starts quickly even with a large memory.
 class ZeroedBytes {
 public:
     explicit ZeroedBytes(size_t size)
@@ -122,8 +122,8 @@ public:
             work();
     }
 
-    // untilEvent returns the number of clocks before the next event, so that the event is in the
-    // clock after them. pass skips clocks in which the design is idle.
+    // untilEvent returns the number of clocks before the next event; the event happens in the clock
+    // that follows these clocks. pass skips clocks in which the design is idle.
     uint64_t untilEvent() const {
         return hung_ ? ~0ull : nextEvent_ > now_ + 1 ? nextEvent_ - now_ - 1 : 0;
     }
@@ -214,8 +214,9 @@ private:
     static constexpr unsigned refreshLater = 2, readToWrite = 3;
     uint64_t readEnd_ = 0; // memory clock in which the data of the last read ends
     bool lastWasRead_ = false;
-    uint64_t free_ = 0;       // earliest memory clock for the next command
-    unsigned promised_ = 0;   // number of words in the write FIFO that belong to accepted commands
+    uint64_t free_ = 0; // earliest memory clock for the next command
+    // number of words in the write FIFO that belong to commands that were accepted
+    unsigned promised_ = 0;
     unsigned writeCount_ = 0; // number of words in the write FIFO, as the user port reports it
     Ring<Command, commandDepth> commands_;
     Ring<Write, dataDepth> write_; // writes not yet carried out

@@ -54,8 +54,8 @@ struct NpiTraffic {
     double pop = 1.0;    // probability, per cycle, of popping a word that has arrived
     double writes = 0.5; // fraction of the requests that are writes
     unsigned minSize = 0, maxSize = 5;
-    // largest number of words that may be requested and not popped yet; it may exceed the read FIFO
-    // only if pop is 1 (rule 3)
+    // largest number of words that may be requested and not popped yet; must not exceed the size of
+    // the read FIFO, unless pop is 1 (rule 3)
     unsigned outstanding = 32;
     bool byteEnables = true; // true: byte enables are random; false: all bytes are written
     bool anyLineWord = true; // true: a read of a cache line may start at any of its words
@@ -138,8 +138,8 @@ public:
         }
     }
 
-    // Sets the pop inputs. Called when the outputs have settled, because whether a word can be
-    // popped depends on the port's outputs in the same cycle.
+    // Sets the pop inputs. They depend on the port's outputs in the same cycle, so this is called
+    // when the outputs have settled.
     void pops() {
         for (Port& port : ports_) {
             port.popping =

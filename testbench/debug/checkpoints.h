@@ -25,7 +25,7 @@
 
 class Checkpoints {
 public:
-    // The order given to a woken copy. A place is a number of executed instructions.
+    // Order for a copy that is woken. A place is a number of executed instructions.
     struct Order {
         enum Goal {
             Stop, // run to `place`, and stop there
@@ -44,8 +44,8 @@ public:
             throw std::system_error(errno, std::generic_category(), "checkpoints");
         shared_->first = shared_->active = getpid();
     }
-    // The destructor must not end other processes when it runs in a woken process. Only the first
-    // process ends them, after it has waited for the exit status.
+    // In a woken process, the destructor must not end other processes. The first process ends them,
+    // after it has waited for the exit status.
     ~Checkpoints() {
         if (getpid() != shared_->first)
             return;
@@ -55,9 +55,9 @@ public:
     Checkpoints(const Checkpoints&) = delete;
     Checkpoints& operator=(const Checkpoints&) = delete;
 
-    // Forks a frozen copy, unless there is already a copy at or after this place or the maximum
-    // number of copies exists. Returns an order in a process that was woken later; returns nothing
-    // in the process that continues.
+    // Forks a frozen copy, unless a copy at or after this place exists or the maximum number of
+    // copies is reached. In the process that continues, returns nothing. In a copy that is woken
+    // later, returns the order for it.
     std::optional<Order> freeze(uint64_t place) {
         Shared& s = *shared_;
         if (s.count == mostCopies || (s.count && s.copies[s.count - 1].place >= place))
@@ -87,12 +87,12 @@ public:
         kill(s.copies[last].process, SIGUSR1);
         if (getpid() == s.first)
             waitForTheEnd();
-        // a process ends together with its parent, so this process waits as long as it has copies
+        // a copy ends together with its parent, so this process waits as long as it has copies
         while (hasCopies_)
             pause();
         _exit(0);
     }
-    // Ends the copies after this place, because the run will be different from here on.
+    // Ends the copies after this place, because the run may be different after it.
     void forgetBehind(uint64_t place) {
         for (Shared& s = *shared_; s.count && s.copies[s.count - 1].place > place; --s.count)
             kill(s.copies[s.count - 1].process, SIGKILL);

@@ -168,8 +168,8 @@ bool GdbStub::wantsStop() {
         pollfd waiting{listener_, POLLIN, 0};
         return poll(&waiting, 1, 0) > 0;
     }
-    // Reads all bytes that have arrived, so that a Ctrl-C or the end of the connection is not
-    // hidden behind other bytes.
+    // Reads all bytes that have arrived, because other bytes may precede a Ctrl-C or the end of the
+    // connection.
     char bytes[4096];
     const ssize_t n = recv(connection_, bytes, sizeof bytes, MSG_DONTWAIT);
     return n > 0 ? std::memchr(bytes, interrupt, static_cast<size_t>(n)) != nullptr

@@ -22,12 +22,12 @@ public:
         std::function<void()> reset;
         std::function<bool()> isOver;
         std::function<std::string()> describe;
-        // Goes back by one instruction (if `singleStep` is true) or to the last breakpoint; empty
-        // if going back is not supported. Returns only if there is no earlier place. Otherwise
-        // another process continues, and `run` returns in that process.
+        // Goes back by one instruction (if `singleStep` is true) or to the last breakpoint. The
+        // function is empty if going back is not supported. It returns only if there is no earlier
+        // place. Otherwise another process continues, and `run` returns in that process.
         std::function<void(bool singleStep)> back = nullptr;
-        // Returns "begin" or "end" if a reversible run has reached that end of its recording,
-        // otherwise "".
+        // Returns "begin" or "end" if a reversible run has reached the begin or the end of its
+        // recording; otherwise returns "".
         std::function<std::string()> edge = [] { return ""; };
         // called after the debugger has written a register or memory
         std::function<void()> changed = [] {};

@@ -53,7 +53,7 @@ private:
     // number of the exception PendSV, in which both kernels switch tasks
     static constexpr unsigned pendSv = 14;
     static constexpr uint64_t tenthOfASecond = 10'000'000; // clocks
-    // longest time until another exception, clocks; the kernel's tick comes every 100,000 clocks
+    // longest time between two exceptions, clocks; the kernel's tick occurs every 100,000 clocks
     static constexpr uint64_t soon = 200'000;
 
     // Returns the address of the variable that points to the running task (in uC/OS-II or in our

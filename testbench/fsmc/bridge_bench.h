@@ -17,7 +17,7 @@ extern "C" {
 }
 
 // A bus slave with 1024 words (docs/bus.md) and random stalls. It can report errors, and it can
-// hang. It checks that the master obeys the rules of the bus, and throws an exception if not.
+// hang. It throws an exception if the master breaks a rule of the bus.
 template <class Module> class BusSlave {
 public:
     BusSlave(Bench<Module>& bench, double stall, uint64_t seed)
@@ -27,8 +27,9 @@ public:
     }
 
     std::array<uint32_t, 1024> words{};
-    unsigned firstError = 1024; // first word that reports an error; all later words also do
-    bool hung = false;          // never answers
+    // first word whose accesses end with an error; all later words also report errors
+    unsigned firstError = 1024;
+    bool hung = false; // never answers
     // address of a word whose bits are cleared by writing 1 (default: no such word)
     unsigned clearWord = 1024;
 
@@ -68,7 +69,8 @@ private:
     }
 
 public:
-    // Sets read data and error from the current address, without a clock, as a decoder does.
+    // Sets read data and error according to the current address, combinationally, as a decoder
+    // does.
     void answer() {
         if (!top_.bus_ready_i)
             return;
@@ -112,8 +114,8 @@ public:
     bool errorWrite = false;
     std::function<void()> onTick; // called once per clock; for observers
 
-    // Configure the FSMC by its driver: with the driver's own timings, or with `bank` for both
-    // banks.
+    // Configure the FSMC by its driver: with the driver's timings, or with the settings `bank` for
+    // both banks.
     FSMC_Status init() { return FSMC_init(&driverPort, &master); }
     FSMC_Status init(const FSMC_Bank& bank) {
         const FSMC_Bank banks[2] = {bank, bank};

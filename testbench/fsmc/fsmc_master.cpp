@@ -87,7 +87,7 @@ unsigned FsmcMaster::idleQuiet(unsigned hclk, uint64_t ns) {
         design_.passQuiet((phase_ + uint64_t(hclk) * clkPerUnit_) / hclkPerUnit_, ns);
     if (clocks == 0)
         return 0;
-    // Advances to the last of these clocks. The result is the same as after single steps.
+    // Advances by all these clocks at once. The result is the same as after single steps.
     const uint64_t cycles = (clocks * hclkPerUnit_ - phase_ + clkPerUnit_ - 1) / clkPerUnit_;
     phase_ += static_cast<unsigned>(cycles * clkPerUnit_ - clocks * hclkPerUnit_);
     hclks_ += cycles;
@@ -200,9 +200,9 @@ void FsmcMaster::addressPhase(const Access& access, uint16_t value, uint8_t lane
         complain(access.name + ": NWAIT went active after the strobe");
 }
 
-// Advances the data phase until at most two HCLK cycles of the phase remain, and returns this
-// number. With NWAIT enabled, the pin is sampled four HCLK cycles before the end of the phase, and
-// the phase ends four HCLK cycles after NWAIT is released.
+// Advances the data phase until at most two HCLK cycles of it remain, and returns the number of
+// remaining cycles. With NWAIT enabled, the pin is sampled four HCLK cycles before the end of the
+// phase, and the phase ends four HCLK cycles after NWAIT is released.
 unsigned FsmcMaster::waitPhase(const Access& access) {
     if (!(access.bank->bcr & bcrAsyncWait)) {
         unsigned left = access.timing.datast < 2 ? access.timing.datast : 2;
@@ -253,7 +253,7 @@ uint16_t FsmcMaster::readPins(uint32_t address) {
         value = static_cast<uint16_t>(~pins_.dFromDesign); // the processor gets an undefined value
     }
     if (ours && !pins_.dDriven)
-        value = static_cast<uint16_t>(~value); // value of a data bus that nobody drives
+        value = static_cast<uint16_t>(~value); // value of a data bus without a driver
     if (ours && shiftsReads_)
         std::swap(value, lastRead_);
     endOfAccess(access);

@@ -56,11 +56,11 @@ public:
     // Adds delays to the pins (pin_delays.h): `far` are the pins at the design, `pins` are those at
     // the processor. `looksTwice` selects one of two interpretations of RM0033's rule about NWAIT.
     // false: the FSMC samples NWAIT only once, four HCLK cycles before the end of the data phase.
-    // true: it also samples NWAIT after that.
+    // true: the FSMC also samples NWAIT later.
     void delay(const FsmcCorner& corner, FsmcPins& far, uint64_t seed, bool looksTwice);
 
-    // Delays the changes of a pin by `ps`, in addition to the delays of delay(), which must have
-    // been called before. After this call, a signal that changes at the wrong time gives the
+    // Delays the changes of a pin by `ps`, in addition to the delays that delay() has set; delay()
+    // must be called first. After this call, a signal that changes at the wrong time gives the
     // processor wrong data instead of an FsmcError.
     void makeLate(const std::string& pin, int ps);
     // Gives the processor wrong data instead of an FsmcError, as makeLate() does, but delays no
@@ -73,8 +73,8 @@ public:
     void setClocks(unsigned hclkPerUnit, unsigned clkPerUnit);
 
     // Sets whether the pause BUSTURN also applies between two writes to the same bank. According to
-    // RM0033 it does not. On an STM32F407 it applies between the two halves of a word, with the
-    // value in BWTR if the bank uses BWTR (community.st.com, thread 309858).
+    // RM0033 the pause does not apply there. On an STM32F407 it applies between the two halves of a
+    // word, with the value in BWTR if the bank uses BWTR (community.st.com, thread 309858).
     void pauseWrites(bool pauses) { pausesWrites_ = pauses; }
 
     // Loads and stores of the processor. A 32-bit load or store to a window makes two accesses, low
@@ -89,8 +89,9 @@ public:
     // called after each 32-bit access to a window; for observers
     std::function<void(uint32_t address, uint32_t value, bool isWrite)> onWord;
 
-    // Begin an access, which a reset of the processor then aborts: after `hclk` cycles of the data
-    // phase, NE rises, then the strobe, independent of NWAIT. For asynchronous modes only.
+    // Begin an access that a reset of the processor aborts: after `hclk` cycles of the data phase,
+    // first NE rises and then the strobe, whatever the level of NWAIT is. For asynchronous modes
+    // only.
     void abortRead(uint32_t address, unsigned hclk);
     void abortWrite(uint32_t address, uint16_t value, unsigned hclk);
     // Lets HCLK cycles pass without an access.

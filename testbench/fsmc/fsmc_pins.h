@@ -22,9 +22,10 @@ struct FsmcPins {
 };
 
 // Connection to the design. `tick` runs one clock with the current pins. `settle` updates the
-// design after pins have changed between two clock edges. Both update the pins that the design
-// drives. `passQuiet` skips clocks while the design is idle, at most the given numbers of clocks
-// and ns, and returns the number of skipped clocks. If `passQuiet` is empty, no clocks are skipped.
+// design after pins have changed between two clock edges. Both functions also update the pins that
+// the design drives. `passQuiet` skips clocks while the design is idle, at most the given numbers
+// of clocks and ns, and returns the number of skipped clocks. If `passQuiet` is empty, no clocks
+// are skipped.
 struct FsmcDesign {
     std::function<void()> tick, settle;
     std::function<uint64_t(uint64_t clocks, uint64_t ns)> passQuiet = nullptr;

@@ -23,8 +23,8 @@ struct PinDelay {
 };
 
 // A corner: one set of delays for the STM32F2's pads (from HCLK's edge to the pin), the board, and
-// the FPGA. The delays of the FPGA are those of its pads, and of its routing up to the first or
-// from the last flip-flop or LUT; synth/ise/chip.ucf limits them.
+// the FPGA. The delays of the FPGA include its pads and the routing between a pad and the first or
+// last flip-flop or LUT; synth/ise/chip.ucf limits these delays.
 struct FsmcCorner {
     const char* name;
     PinDelay address, data, lanes, select, strobe; // processor
@@ -35,15 +35,15 @@ struct FsmcCorner {
     PinDelay padOut; // delay of the last LUT, routing and output pad
     // set-up and hold time of the flip-flops that capture at NWE's edge
     int setup, hold;
-    // set-up time of the FSMC for read data, ps, in addition to one HCLK cycle
+    // set-up time that the FSMC needs for read data in addition to one HCLK cycle, ps
     int readSetup = 4000;
 };
 
 // The tables of the two data sheets (STM32F2, "FSMC characteristics"; Spartan-6, DS162, IOB and CLB
 // switching) were not available. Therefore the delays of the pads are values from memory, rounded
-// to the safe side. The routing delays in the chip are the limits in synth/ise/chip.ucf, and the
-// tracks on the board are 2 cm to 8 cm long. From address to read data, and from NE to NWAIT, a
-// signal needs at most 10 ns through the chip, and 15 ns including the other delays.
+// to the safe side. The routing delays in the FPGA are the limits in synth/ise/chip.ucf. The tracks
+// on the board are assumed to be 2 cm to 8 cm long. From address to read data, and from NE to
+// NWAIT, a signal needs at most 10 ns through the chip, and 15 ns including the other delays.
 inline const FsmcCorner fsmcCorners[] = {
     {"no delay", 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0},
     {"fast", 0, 0, 0, 0, 500, 100, 1000, 1500, 2500, 1000, 500},
@@ -64,10 +64,11 @@ inline const FsmcCorner fsmcCorners[] = {
      500},
 };
 
-// Returns a corner of delays. In the tests cdc.*, each synchroniser may be late by a whole clock;
-// this already covers all delays (docs/fsmc.md), so the corner is simplified. The address then
-// comes no later than NOE, its bits arrive together, and NWE's delay into the chip is equal at both
-// edges. At 60 MHz the bits of the address may still arrive at different times before NOE.
+// Returns a corner of delays. In the tests cdc.*, each synchroniser may be late by a whole clock.
+// This already covers the effect of the delays (docs/fsmc.md), so a simplified corner is returned:
+// the address arrives no later than NOE, the bits of the address arrive together, and NWE's delay
+// into the chip is equal at both edges. At 60 MHz the bits of the address may still arrive at
+// different times before NOE.
 inline FsmcCorner cornerOf(unsigned index, unsigned hclk = 100) {
     FsmcCorner corner = fsmcCorners[index];
     if (std::getenv("CDC_SEED")) {
@@ -91,7 +92,7 @@ public:
         nextEdge_ = 1 + static_cast<int64_t>(random_() % static_cast<uint64_t>(clk)); // any phase
     }
 
-    // Starts the delays for those of the processor's pins that have changed.
+    // Starts a delay for each of the processor's pins that has changed.
     void show() {
         uint64_t levels = driven(near_);
         for (unsigned pin = 0; pin <= drives; ++pin)
@@ -204,7 +205,7 @@ private:
         design_.settle();
         settled();
     }
-    // Starts the delays for those of the design's outputs that have changed.
+    // Starts a delay for each of the design's outputs that has changed.
     void settled() {
         uint32_t out = far_.dFromDesign | uint32_t(far_.dDriven) << drivenOut |
                        uint32_t(far_.nwaitN) << nwaitOut;

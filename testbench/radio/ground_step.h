@@ -22,9 +22,10 @@
 
 class GroundStep {
 public:
-    // `goOn` is called about every 10 ms while time stands still; if it returns false, the wait
-    // ends. If a program holds time for `patience` seconds of the wall clock, and a debugger has
-    // not stopped it, time no longer waits for this program, and a message on stderr names it.
+    // `goOn` is called about every 10 ms while simulated time stands still; if it returns false,
+    // the wait ends. If a program stops simulated time for `patience` seconds of the wall clock,
+    // although no debugger has stopped the program, simulated time no longer waits for it, and a
+    // message on stderr names it.
     GroundStep(SimStatus& status, PtyLine& pty, std::function<bool()> goOn, double patience = 60)
         : status_(status), pty_(pty), goOn_(std::move(goOn)), patience_(patience) {
         std::strncpy(status_.device, pty.path().c_str(), sizeof status_.device - 1);
@@ -35,8 +36,8 @@ public:
     GroundStep(const GroundStep&) = delete;
     GroundStep& operator=(const GroundStep&) = delete;
 
-    // Returns when the program allows time to pass beyond `now`; returns at once if no program
-    // keeps step.
+    // Returns when the program allows simulated time to pass beyond `now`. Returns at once if
+    // simulated time does not wait for a program.
     void wait(uint64_t now) {
         __atomic_store_n(&status_.carried, pty_.carried(), __ATOMIC_RELEASE);
         if (!holds(now))
@@ -85,7 +86,8 @@ private:
         const size_t name = text.rfind(") ");
         return name != std::string::npos && (text[name + 2] == 'T' || text[name + 2] == 't');
     }
-    // Adds to the number of bytes given to the program, unless another program has replaced it.
+    // Adds `bytes` to the number of bytes given to the program, unless another program has replaced
+    // this one.
     void given(uint64_t keeper, size_t bytes) {
         uint64_t is = load(status_.toGround);
         while (is - simCount(is) == simSession(keeper) &&

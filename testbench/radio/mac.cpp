@@ -13,7 +13,7 @@ constexpr uint64_t ackWaitNs = 864'000; // macAckWaitDuration: 54 symbols after 
 constexpr unsigned longestBackoff = 5, mostBackoffs = 4; // macMaxBE, macMaxCSMABackoffs
 // wait for an acknowledgement before the next round (RR), ns
 constexpr uint64_t roundNs = 200'000'000;
-constexpr uint32_t roundSpreadUs = 48'000; // longest random addition to this wait, us
+constexpr uint32_t roundSpreadUs = 48'000; // longest random time added to roundNs, us
 
 } // namespace
 
@@ -95,11 +95,11 @@ void Mac::failed(uint64_t now, uint64_t ready, Fate fate) {
 
 void Mac::ended(uint64_t now, const RfPacket& arrived, RfOutcome outcome, bool isAnswered) {
     const bool isLost = outcome == RfOutcome::Lost || outcome == RfOutcome::Nobody;
-    // the outcome Lost, drawn for the whole packet, includes the failure of all tries
+    // if Lost was drawn for the whole packet, it means that all tries have failed
     const bool isDrawnLost = drawn_ == RfOutcome::Lost;
     if (packet_.acknowledged && !isAnswered && !isDrawnLost && (triesLeft_ || roundsLeft_)) {
         if (!isLost)
-            // damage affects only one try of the packet, so the next tries are undamaged
+            // only one try of the packet is damaged; the next tries are undamaged
             drawn_ = RfOutcome::Delivered;
         return failed(now, now + ackWaitNs, Fate::NoAck);
     }

@@ -16,7 +16,7 @@ public:
     // Interface of the modem to which a MAC belongs.
     class Modem : public RfReceiver {
     public:
-        // Returns the time until which the modem processes packets and sends no other packet.
+        // Returns the time until which the modem is busy with other packets and cannot send one.
         virtual uint64_t busyUntil() const = 0;
         // Called when the current packet has been sent or has failed.
         virtual void transmitted(uint64_t now, Fate fate) = 0;
@@ -52,7 +52,8 @@ private:
     RfPacket packet_;
     // outcome that the model of the weather has drawn for this packet
     RfOutcome drawn_ = RfOutcome::Delivered;
-    // Number of tries left in this round, of rounds left (RR), and of copies left of a broadcast.
+    // Number of tries left in this round, number of rounds left (RR), and number of copies of a
+    // broadcast left.
     unsigned triesLeft_ = 0, roundsLeft_ = 0, copiesLeft_ = 0;
     unsigned busySenses_ = 0; // number of carrier senses of this try that found the channel busy
     Fate fate_ = Fate::Sent;

@@ -1,11 +1,10 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""make_trace: prints the trace of a flight: 300 m out at 10 m/s, most of a minute at that distance,
-and back.
+"""make_trace: prints the trace of a flight: 300 m out at 10 m/s, 50 s at that distance, and back.
 
 The trace is computed, not recorded. It contains free-space loss, Rayleigh fading of each of the
 four tries of a packet (as in rf_channel.h), and bursts of losses that are as frequent as in
-"bursts, long" (docs/simulation.md). Bursts are drawn once per second."""
+"bursts, long" (docs/simulation.md). The begin and the end of a burst are drawn once per second."""
 import math
 import random
 import sys

@@ -18,10 +18,11 @@
 namespace {
 
 constexpr uint64_t pollNs = 500'000; // interval between two reads of the pty, ns
-// interval between two reads if the program counts its bytes, ns; short, so that no byte is late
+// shorter interval between two reads, ns, for a program that counts its bytes, so that no byte is
+// late
 constexpr uint64_t countedPollNs = 100'000;
-// maximum number of reads without a result; after that, counted bytes that the kernel has not moved
-// are considered read
+// maximum number of reads without a result; after that, counted bytes that have not arrived are
+// considered read
 constexpr int patience = 20'000;
 
 void makeRaw(int fd) {
@@ -75,7 +76,7 @@ void PtyLine::readAhead(uint64_t now) {
     for (; counter && looks < patience; ++looks) {
         uint8_t bytes[512];
         ssize_t count = read(master_, bytes, sizeof bytes);
-        if (count > 0) {        // includes the bytes of a program that no longer counts
+        if (count > 0) {        // also bytes of a program that no longer counts them
             if (ahead_.empty()) // the wire was idle until now
                 rxFree_ = std::max(rxFree_, static_cast<double>(now));
             ahead_.insert(ahead_.end(), bytes, bytes + count);
@@ -86,7 +87,7 @@ void PtyLine::readAhead(uint64_t now) {
             sched_yield();
         }
     }
-    if (looks == patience) // the missing bytes were already read in the previous session
+    if (looks == patience) // the missing bytes were read during the previous program's session
         fetched_ = std::max(fetched_, count_.fromProgram());
 }
 

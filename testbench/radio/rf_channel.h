@@ -22,8 +22,8 @@
 #include <string>
 #include <vector>
 
-// The recording of a link: a CSV file with the heading `time_s,loss,rssi_dbm,delay_ms`. Each row is
-// valid until the time of the next row; the last row stays valid.
+// The recording of a radio link: a CSV file with the heading `time_s,loss,rssi_dbm,delay_ms`. A row
+// is valid until the time of the next row; the last row is valid for ever.
 class RfTrace {
 public:
     struct Row {
@@ -86,8 +86,8 @@ struct RfWeather {
         burstLoss = 0.9;
     double duplication = 0, corruption = 0;
     uint64_t delayNs = 0; // delay in addition to the time on the air, ns
-    // Probabilities that one try of the MAC, or the acknowledgement of a try, is lost. The MAC then
-    // retries.
+    // Probabilities that one try of the MAC is lost, and that the acknowledgement of a try is lost.
+    // The MAC then retries.
     double tryLoss = 0, ackLoss = 0;
     // Distance between the modems, m, in free space with Rayleigh fading for each try; 0 disables
     // this model.
@@ -222,14 +222,14 @@ public:
              uint64_t now);
     // Calls the sender's wake() at the time `at`.
     void wakeAt(uint64_t at, RfSender* sender) { events_.emplace(at, Event{sender, nullptr}); }
-    // Forgets a sender, which is then no longer called.
+    // Removes a sender; its functions are then no longer called.
     void forget(const RfSender* sender);
     void report(uint64_t now, const RfPacket& packet, Outcome outcome);
     void countRetry() { ++counters_.retries; }
     uint32_t below(uint32_t limit) { return random_.below(limit); }
 
 private:
-    struct Frame { // A try of a packet on the air.
+    struct Frame { // A try of a packet that is on the air.
         RfPacket packet;
         Outcome drawn; // outcome drawn for the packet
         const RfReceiver* from;
@@ -241,7 +241,8 @@ private:
         uint64_t over() const { return collided ? frameEnd : end; }
     };
     struct Event {
-        // sender of the frame; null for a duplicate, or if the sender has been reset or removed
+        // sender of the frame; null if the frame is a duplicate, or if the sender was reset or
+        // removed
         RfSender* sender;
         // frame that ends at this time; null if this event calls the sender's wake()
         std::shared_ptr<Frame> frame;

@@ -28,7 +28,8 @@ struct RfPacket {
     // serial number of the sender, with which the receiver decrypts the packet
     uint64_t serial = 0;
     bool encrypted = false; // EE
-    bool from64 = false;    // the sender has no 16-bit address and sends its serial number instead
+    // the sender has no 16-bit address, so the packet contains its serial number
+    bool from64 = false;
     // maximum number of transmissions by the MAC in one round, including the first one
     unsigned tries = 4;
     unsigned rounds = 0;  // maximum number of further rounds (RR)

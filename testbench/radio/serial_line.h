@@ -33,7 +33,8 @@ public:
     // Sets the bit time, ns. The change takes effect when no byte is being transferred.
     virtual void setBitTime(double ns) { bitNs_ = ns; }
     virtual void setCts(bool accepts) { cts_ = accepts; }
-    // Sets whether the host can stop the modem by RTS (D6). A line without RTS ignores this.
+    // Sets whether the host can stop the modem by RTS (D6). A line without RTS ignores this
+    // setting.
     void setHeedRts(bool heeds) { heedsRts_ = heeds; }
     virtual void advance(uint64_t now) = 0;
     virtual uint64_t nextEvent() const = 0;
@@ -88,7 +89,8 @@ public:
             bitNs_ = wantedBitNs_;
     }
     // Returns the time of the next event: the next stop bit of a byte from the design, or the next
-    // edge of RXD. Between these times only an edge of TXD needs attention, which setTxd reports.
+    // edge of RXD. Between two events, only an edge of TXD needs attention, and setTxd reports such
+    // edges.
     uint64_t nextEvent() const override {
         double at = 1e300;
         if (rxBit_)
@@ -107,7 +109,7 @@ private:
     static constexpr unsigned stopBit = 10;
 
     bool mayTalk() const { return rts_ || !heedsRts_; }
-    // Samples TXD up to `now`. The level of TXD has not changed since the last call.
+    // Samples TXD up to `now`. TXD must not have changed since the last call.
     void receive(uint64_t now) {
         while (rxBit_ && rxAt_ <= static_cast<double>(now))
             sample(now);
@@ -188,9 +190,9 @@ public:
 };
 
 // A line to a program: a pseudo-terminal that the program opens like a serial port. Bytes move at
-// the modem's baud rate. While CTS is off, no bytes are read, which is the flow control. If the
-// program sets a speed that differs from the modem's by more than 4.5 %, bytes are damaged, as on a
-// wire.
+// the modem's baud rate. While CTS is off, no bytes are read from the program; this is the flow
+// control. If the program sets a speed that differs from the modem's by more than 4.5 %, bytes are
+// damaged, as on a wire.
 class PtyLine : public SerialLine {
 public:
     PtyLine(); // throws std::system_error
@@ -199,8 +201,8 @@ public:
     PtyLine& operator=(const PtyLine&) = delete;
     const std::string& path() const { return path_; }
 
-    // Byte counts that a program may report: the bytes it has written and read. With them, no byte
-    // is late only because the machine is busy (testbench/radio/ground_step.h).
+    // Numbers of bytes that a program may report: written bytes and read bytes. With these numbers,
+    // no byte is late only because the machine is busy (testbench/radio/ground_step.h).
     struct Count {
         // returns the number of the program's session, or 0 if no program counts; counts start at 0
         // in each session
@@ -218,8 +220,8 @@ public:
 
 private:
     bool speedFits() const;
-    // Returns a time, ns: bytes that are read now from an idle wire may have been sent this long
-    // ago (one poll period and one byte).
+    // Returns the greatest age of bytes that are read now from an idle wire, ns: two poll periods
+    // plus the time of one byte.
     double lookBack() const { return 1e6 + 10 * bitNs_; }
     void readAhead(uint64_t now);
     size_t fetch(uint8_t* bytes, size_t room);
@@ -235,7 +237,7 @@ private:
     std::vector<uint8_t> unwritten_;
     Count count_;
     bool txIdle_ = true;
-    uint64_t counter_ = 0;      // session of the program that the counts belong to
+    uint64_t counter_ = 0;      // session of the program to which the counts belong
     uint64_t fetched_ = 0;      // number of counted bytes that were read from the pty
     std::deque<uint8_t> ahead_; // bytes that were read but that the wire has not carried yet
 };

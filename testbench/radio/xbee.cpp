@@ -11,7 +11,7 @@
 namespace {
 
 constexpr size_t outputBytes = 202;
-// payload of a packet in the legacy mode selected by C8, bytes
+// payload of a packet in the legacy mode (C8), bytes
 constexpr size_t legacyBytes = 100, legacyBytesEncrypted = 95;
 constexpr uint64_t msNs = 1'000'000, resetNs = 200;
 // Time that the modem's processor needs for each packet: before carrier sense for a packet that it
@@ -163,7 +163,7 @@ void XBee::dataByte(uint8_t byte, uint64_t now) {
         return;
     }
     for (; pluses_; --pluses_)
-        // the characters that were held back are data, not the command sequence
+        // the characters that were held back are data instead of the command sequence
         store(static_cast<uint8_t>(active_.at("CC")));
     store(byte);
     sendPackets(now);

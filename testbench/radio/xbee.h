@@ -33,8 +33,8 @@ public:
     struct Counters {
         uint64_t bytesFromHost = 0, bytesToHost = 0;
         uint64_t overflow = 0; // bytes lost because the serial input buffer was full
-        // number of bytes that had a wrong stop bit or a baud rate that differed too much from the
-        // modem's
+        // number of bytes with a wrong stop bit, or with a baud rate too different from the modem's
+        // baud rate
         uint64_t framingErrors = 0;
         uint64_t commands = 0, refused = 0;
         uint64_t packetsSent = 0, packetsReceived = 0;
@@ -142,12 +142,12 @@ private:
     uint64_t firstPlus_ = 0;
     std::string commandLine_;
     std::deque<uint8_t> input_; // bytes from the host that have not been sent on the air yet
-    // number of bytes in input_ that must be sent without waiting for more
+    // number of bytes in input_ that must be sent without waiting for more bytes
     size_t flushCount_ = 0;
     std::deque<uint8_t> output_; // bytes that wait to be sent to the host
-    double nextBaud_ = 0;        // baud rate of the line after the bytes that atOldRate_ counts
-    // number of bytes that must still be sent to the host at the old rate; they end with the OK of
-    // the command that changed the rate
+    double nextBaud_ = 0;        // baud rate after the change, see atOldRate_
+    // number of bytes that must still be sent to the host at the old rate; the last of them belong
+    // to the OK for the command that changed the rate
     size_t atOldRate_ = 0;
     bool inFlight_ = false, cts_ = true;
     Mac mac_;

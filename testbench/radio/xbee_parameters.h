@@ -19,7 +19,7 @@ struct XBeeParameter {
 // Parameters of the XBee series 1; xbeeParameters changes them for the other modems.
 inline const std::map<std::string, XBeeParameter>& xbeeParametersOfS1() {
     static const std::map<std::string, XBeeParameter> table = {
-        // 16-bit address of this modem; with FFFE or FFFF it has no 16-bit address
+        // 16-bit address of this modem; FFFE and FFFF mean that the modem has no 16-bit address
         {"MY", {0, 0, 0xFFFF, true}},
         // destination, high word; if it is 0 and DL is at most FFFF, DL is a 16-bit address
         {"DH", {0, 0, 0xFFFFFFFF, true}},
@@ -28,19 +28,20 @@ inline const std::map<std::string, XBeeParameter>& xbeeParametersOfS1() {
         {"SL", {0x40000000, 0, 0xFFFFFFFF, false}},
         {"ID", {0x3332, 0, 0xFFFF, true}}, // network; FFFF means all networks
         {"CH", {0x0C, 0x0B, 0x1A, true}},  // channel
-        // baud rate: codes up to 7; a higher value is the rate itself
+        // baud rate: values up to 7 are codes; a higher value is the rate itself
         {"BD", {3, 0, 0x3D090, true}},
-        // time without a byte from the host after which a packet is sent, in character times
+        // silence of the host after which the modem sends a packet, in character times
         {"RO", {3, 0, 0xFF, true}},
         {"RN", {0, 0, 3, true}}, // smallest exponent of the random wait before a transmission
-        // 0: header and acknowledgements, 1: neither, 2: acknowledgements only, 3: header only
+        // 0: header and acknowledgements, 1: neither of them, 2: acknowledgements only, 3: header
+        // only
         {"MM", {0, 0, 3, true}},
         // number of additional rounds, each with the MAC's four tries
         {"RR", {0, 0, 6, true}},
         {"EE", {0, 0, 1, true}}, // encryption
         // guard time of silence before and after the command sequence, ms
         {"GT", {1000, 2, 3300, true}},
-        // time without a command after which the modem leaves command mode, in 100 ms
+        // time without a command after which the modem leaves command mode, in units of 100 ms
         {"CT", {100, 2, 0xFFFF, true}},
         {"CC", {'+', 0, 0xFF, true}},   // character that forms the command sequence, three times
         {"D6", {0, 0, 5, true}},        // 1: the modem obeys RTS

@@ -15,7 +15,7 @@ struct XBeeProfile {
     const char* name;     // name of the modem, as in the option --modem
     uint32_t highestCode; // highest value of BD that is a code for a rate
     uint32_t lowestRate;  // lowest value of BD that is itself a rate, baud
-    uint32_t highestRate; // highest one
+    uint32_t highestRate; // highest value of BD that is itself a rate, baud
     // true if rates are 1 MHz divided by an integer, so that 115,200 baud becomes 111,111
     bool dividesMegahertz;
     uint32_t highestRn;  // highest value of RN
@@ -23,7 +23,7 @@ struct XBeeProfile {
     uint32_t threshold;  // factory setting of the buffer level at which CTS is deasserted, bytes
     // number of bytes by which the buffer must fall below that level before CTS is asserted again
     uint32_t release;
-    // true if C8 can limit packets to the size of series 1 and the command FT exists
+    // true if C8 can limit packets to the size of series 1, and if the command FT exists
     bool hasLegacyMode;
     // largest payload of a packet with Digi's header and 16-bit addresses, bytes
     size_t packetBytes;

@@ -53,7 +53,8 @@ bool bitOf(const FsmcPins& pins, unsigned line) {
                                       : true;
 }
 
-// Returns the line of the net that a fault names, such as NE1; Lines if it is not a wire here.
+// Returns the line of the net that a fault names, such as NE1; returns Lines if the net is not
+// modelled here.
 unsigned lineOfFault(const std::string& wire) {
     struct Net {
         const char* name;
@@ -117,7 +118,7 @@ BoardWires::BoardWires(const std::string& wires, const std::string& ucf) {
         if (found == balls_.end())
             continue;
         bank_[port] = found->second.bank;
-        if (found->second.isPowered) // a bank without supply neither drives nor sees its balls
+        if (found->second.isPowered) // a bank without supply neither drives nor reads its balls
             from_[port] = found->second.signal;
     }
     updateStraight();
@@ -352,7 +353,7 @@ void BoardWires::toProcessor(const FsmcPins& chip, FsmcPins& near) {
         chip_.set(from_[D + bit], chip.dDriven, chip.dFromDesign >> bit & 1);
     chip_.set(from_[Nwait], true, chip.nwaitN);
     const bool reads = !near.noeN && !near.dOut;
-    // The second memory has other contents than the chip's.
+    // The contents of the second memory differ from those of the memory behind the chip.
     const bool isOtherDriving = hasSecondDriver_ && reads && !(near.neN & 1);
     const auto other = static_cast<uint16_t>(near.a * 0x9E37u >> 3 ^ 0x5AA5u);
     near.dFromDesign = 0;
@@ -374,8 +375,9 @@ void BoardWires::drive(Line line, bool high) {
         chip_.set(from_[line], true, high);
 }
 
-// An input of the chip without a driver has the level of its pull in the chip. Inputs of the modem
-// are then high, because the modem pulls them up; IRQ is low, because nothing pulls it.
+// An input of the chip without a driver has the level of its pull resistor in the chip. An input of
+// the modem without a driver is high, because the modem pulls it up. IRQ without a driver is low,
+// because nothing pulls it.
 bool BoardWires::arrives(Line line) const {
     if (!isOfModem(line))
         return line == Irq ? level(int(line)) == 1 : level(int(line)) != 0;

@@ -41,8 +41,8 @@ public:
 
     // The board that the simulator was built for.
     BoardWires();
-    // Another board: the texts of its board.wires and board.ucf. Throws std::runtime_error with the
-    // line that is not understood.
+    // Another board, described by the contents of its files board.wires and board.ucf. Throws
+    // std::runtime_error with the first line that is wrong.
     BoardWires(const std::string& wires, const std::string& ucf);
     // Reads board.wires and board.ucf from a folder that ./icesoc board make has written.
     static BoardWires fromFolder(const std::string& folder);
@@ -52,7 +52,7 @@ public:
     // Returns the kind of the board's modem (xbee_profile.h); empty if unknown.
     const std::string& modem() const { return modem_; }
     // Sets the function that returns the setting of a pin. Without this function, every pin counts
-    // as switched to its signal, which suits programs that do not model pins.
+    // as switched to its signal; programs that do not model pins need this.
     void follow(std::function<PinSetting(unsigned port, unsigned pin)> setting);
     // Plants a fault of a wire or of a bank's supply. Returns false for other kinds of faults.
     bool plant(const WireFault& fault);
@@ -101,7 +101,7 @@ private:
     // index of the signal that arrives at each port; -1 if no signal arrives
     std::array<int, Lines> from_;
     std::array<int, Lines> bank_;      // bank of each port; -1 if unknown
-    std::array<bool, Lines> isHigh_{}; // level of each port at which no signal arrives
+    std::array<bool, Lines> isHigh_{}; // level of each port that no signal reaches
     std::array<bool, Lines> isSwitched_;
     std::map<Line, Pin> pins_; // pins of the FSMC
     std::function<PinSetting(unsigned, unsigned)> setting_;
@@ -109,6 +109,7 @@ private:
     Drivers processor_, chip_, modemsOutputs_;
     // faults, a bit for each signal
     uint64_t faulty_ = 0, stuck_ = 0, stuckHigh_ = 0, pulled_ = 0, pulledHigh_ = 0, inverted_ = 0;
-    std::array<uint64_t, Lines> joined_; // signals that are shorted to each signal, and itself
+    // for each signal: bits of this signal and of all signals shorted to it
+    std::array<uint64_t, Lines> joined_;
     bool rings_ = false, hasSecondDriver_ = false;
 };

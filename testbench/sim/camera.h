@@ -18,7 +18,6 @@ struct Frame {
 // first reduced by an integer factor. The width is rounded to a multiple of 8. Throws
 // std::runtime_error with the reason if this fails.
 Frame loadFrame(const std::string& path, int width, int height);
-// Returns the picture as a camera would see it from another position: the columns are rotated to
-// the left.
+// Returns the picture as seen by a camera that has moved: the columns are rotated to the left.
 Frame movedBy(Frame frame, int columns);
 void savePng(const std::string& path, const Frame& frame);

@@ -46,7 +46,7 @@ public:
         if (pid_ > 0)
             return;
         prctl(PR_SET_PDEATHSIG, SIGTERM);
-        if (getppid() != parent) // the parent ended before this process asked for the signal
+        if (getppid() != parent) // the parent ended before this process had requested the signal
             _exit(143);
         execvp(argv[0], argv.data());
         std::fprintf(stderr, "icesoc-sim: cannot start '%s': %s\n", argv[0], std::strerror(errno));

@@ -30,8 +30,8 @@ uint32_t maskOf(const CorePin& pin) {
     return static_cast<uint32_t>((uint64_t(1) << pin.width) - 1) << pin.lsb;
 }
 
-// Log of the output pins. After each line the file is cut, because a debugger may go back in time;
-// the process that then continues overwrites the later lines.
+// Log of the output pins. The file is truncated after each line, because a debugger may go back in
+// time. The process that continues then overwrites the later lines.
 class PinLog {
 public:
     explicit PinLog(const std::string& file)

@@ -30,7 +30,7 @@ volatile sig_atomic_t Flight::stopSignal = 0;
 
 namespace {
 
-// interval at which the time that other programs read advances, ns
+// interval between two updates of the time that other programs read, ns
 constexpr uint64_t clockStepNs = 100'000;
 constexpr uint64_t digestNs = 100'000'000;
 
@@ -245,7 +245,7 @@ void Flight::bringTrouble() {
     trouble_->begin(air_, modem);
 }
 
-// Counts how often a vehicle's vision core was started. Each call of the core is one start.
+// Counts how often a vehicle's vision core was started; each access that sets START is one start.
 void Flight::countStarts(SocModel& soc, uint32_t address, uint32_t value, bool isWrite) {
 #ifdef MAP_SLOT_VISION
     constexpr uint32_t control = MAP_CONTROL_WINDOW + 4 * (16 * MAP_SLOT_VISION + VISION_CONTROL);
@@ -292,8 +292,8 @@ double Flight::millionsPerSecond() const {
            static_cast<double>(pace_.workedNs() - ground_.step.waitedNs());
 }
 
-// Prints one warning if the clock of the chip can hardly ever be stopped, with the name of the core
-// that prevents this and the speed of the flight.
+// Prints a warning, once, if the clock of the chip can hardly ever be stopped. The warning names
+// the core that prevents this, and the speed of the flight.
 void Flight::adviseOnClock() {
     constexpr uint64_t enough = 2'000'000, slow = 2'000'000;
     if (o_.quiet || o_.every_clock || advised_ || soc_.evaluated() < enough ||

@@ -40,8 +40,8 @@ public:
         int mode = 0;                         // operation mode: 0 normal, 2 idempotent
         std::vector<uint8_t> parameters = {}; // encoded
     };
-    // guard time of the modems in tests, ms; short, because the default of one second would be idle
-    // time
+    // guard time of the modems in tests, ms; short, because tests would only wait during the
+    // default of one second
     static constexpr uint16_t guardMs = 20;
     static XBee::Options uavModem(const std::string& profile = "s1") {
         XBee::Options options;
@@ -98,7 +98,7 @@ public:
     }
     bool isUp() const { return Link_state(link_.get()) == LINK_STATE_UP; }
     // Returns a request for an operation of an object; `parameters` are already encoded. `mode` is
-    // 0 (normal) or 2 (idempotent); id 0 makes it a one-way request.
+    // 0 (normal) or 2 (idempotent); with id 0, the request is one-way.
     static std::vector<uint8_t> request(int id, const std::string& object,
                                         const std::string& operation, int mode = 0,
                                         const std::vector<uint8_t>& parameters = {}) {
@@ -114,7 +114,7 @@ public:
             backlog_ += size;
     }
     void ping(int id, const std::string& object) { call(id, object, "ice_ping", 2); }
-    // Returns a script that makes calls; each call begins after the reply to the previous one.
+    // Returns a script that makes calls; each call begins after the reply to the previous call.
     // Request ids start at 1.
     Script calling(std::vector<Call> calls) {
         return [this, calls = std::move(calls), sent = size_t(0)]() mutable {
@@ -141,7 +141,8 @@ public:
     std::vector<uint8_t> key;
     const Link_Statistics& statistics() const { return *Link_statistics(link_.get()); }
     bool validated = false, running = true;
-    unsigned hurry = 1; // factor by which the clock of the link is faster (UavMachine::hurry)
+    // factor by which the link's clock is faster than simulated time (UavMachine::hurry)
+    unsigned hurry = 1;
 
 private:
     U32 us() const { return static_cast<U32>(clock_ / 1000); }

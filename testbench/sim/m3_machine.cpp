@@ -158,7 +158,7 @@ GdbStub::Target M3Machine::target() {
 void M3Machine::debug(GdbStub& stub, bool canGoBack) {
     powerOn();
     stub_ = &stub;
-    // After one debugger has disconnected, the program runs without stopping until the next one
+    // When a debugger has disconnected, the program runs without stopping until another debugger
     // connects.
     auto mayWait = [&] { return poll_() && (!stub.hasServed() || stub.wantsStop()); };
     do {
@@ -174,8 +174,8 @@ void M3Machine::debug(GdbStub& stub, bool canGoBack) {
     stub_ = nullptr;
 }
 
-// Runs as the debugger commands. Meanwhile makes frozen copies of the process, at first every 50 ms
-// of simulated time, later at intervals of one sixteenth of the elapsed time.
+// Runs as the debugger commands. During the run, makes frozen copies of the process: at first every
+// 50 ms of simulated time, later at intervals of a sixteenth of the elapsed time.
 CortexM3::Stop M3Machine::resume(bool singleStep) {
     constexpr uint64_t copyNs = 50'000'000;
     isAtBegin_ = isAsked_ = false;
@@ -193,8 +193,8 @@ CortexM3::Stop M3Machine::resume(bool singleStep) {
 }
 
 // Goes back to the last earlier place at which the processor can stop, or to the last breakpoint.
-// One woken copy searches this place; a second copy then runs to it. Returns only if there is no
-// such place.
+// One woken copy searches for this place; a second copy then runs to it. Returns only if there is
+// no such place.
 void M3Machine::goBack(bool singleStep) {
     const uint64_t here = cpu().instructions();
     if (checkpoints_->isFirst(here))

@@ -19,12 +19,12 @@ public:
         std::string firmware; // ELF file
         // Processor clock (HCLK) in simulated time, Hz. With 120 MHz, the processor's work takes as
         // long as on the board, even if the FPGA's clock is slower. With 0, HCLK is 6/5 of the
-        // FPGA's clock, as it always is for FSMC accesses. Cycle counts are then the same as on the
-        // board, and the processor is slower by the same factor as the FPGA.
+        // FPGA's clock, which is always so for FSMC accesses. Cycle counts are then the same as on
+        // the board, and the processor is slower by the same factor as the FPGA.
         uint32_t hclkHz = 120'000'000;
-        // Guard time, ms; 0 leaves the program's value. The machine writes it to the variable
-        // uav_guardMs (uav.h) after each start, as a debugger would do. A program without this
-        // variable is not changed.
+        // Guard time, ms; 0 keeps the program's value. The machine writes the guard time to the
+        // variable uav_guardMs (uav.h) after each start, as a debugger would do. A program without
+        // this variable is not changed.
         uint16_t guardMs = 0;
         // Contents of the flash. If it is empty, the flash contains the program. Otherwise the
         // program file is only used for its symbols.
@@ -65,8 +65,7 @@ public:
     Stm32F2& stm32() { return stm32_; }
     const std::vector<uint8_t>& fpgaFlash() const { return fpgaFlash_.memory; }
     CortexM3& cpu() { return stm32_.cpu(); }
-    // trace of the program's tasks; empty if `flash` was given, because the program in it is
-    // unknown
+    // trace of the program's tasks; empty if `flash` was given, because its program is unknown
     std::optional<ProgramTrace> program;
 
 private:

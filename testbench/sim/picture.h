@@ -15,6 +15,6 @@ struct Picture {
     uint8_t at(int x, int y) const { return grey[static_cast<size_t>(y) * width + x]; }
 };
 
-// Reads a picture. Throws std::runtime_error with the reason if the file cannot be read or is not a
-// picture.
+// Reads a picture. If the file cannot be read or is not a picture, throws std::runtime_error with
+// the reason.
 Picture readPicture(const std::string& path);

@@ -24,17 +24,17 @@ constexpr uint32_t timerLast = (1u << 17) - 1; // count at which the timer of mo
 constexpr unsigned everyCarryTicks = 5;
 // number of a bit's last tick in modem_uart_rx.v and modem_uart_tx.v
 constexpr uint8_t lastTick = 7;
-// smallest number of clocks that is skipped; a smaller number is evaluated, because skipping would
-// take longer
+// smallest number of clocks that is skipped; fewer clocks are evaluated, because skipping them
+// would take longer
 constexpr uint64_t worth = 4;
 constexpr uint64_t margin = 2; // number of clocks before an event that are always evaluated
-// number of clocks after a carry of the phase in which its tick may still have effects
+// number of clocks after a carry of the phase in which the tick of this carry may still have
+// effects
 constexpr uint64_t settling = 8;
-// smallest number of clocks for which only the platform is skipped, used at first
+// number of clocks for which only the platform is skipped, at first; it grows later
 constexpr uint64_t least = 8;
 constexpr unsigned longest = 32; // largest number of clocks between two comparisons of a busy chip
-// number of comparisons of a busy chip after which the names of the changed cores are recorded
-// again
+// number of comparisons of a busy chip between two records of the cores that have changed
 constexpr uint64_t blameEvery = 256;
 // blocks of soc.v that are not cores
 const std::set<std::string> platform = {"u_platform", "u_modem", "u_system_slot"};
@@ -59,8 +59,8 @@ const struct Member {
 #include "soc_members.inc"
 };
 
-// Copies one member of the current state `from` to its place in the image, which was taken at an
-// earlier time.
+// Copies one member of the current state `from` into the image of an earlier state, at the same
+// offset.
 template <class T>
 void copyInto(std::vector<unsigned char>& image, const VSoc___024root& from, const T& member) {
     auto at = reinterpret_cast<const unsigned char*>(&member) -
@@ -184,11 +184,11 @@ uint64_t QuietSpan::untilEvent(const Counters& now, uint64_t most, bool passesTi
     return clocks > margin ? clocks - margin : 0;
 }
 
-// Determines the steps of the counters from their values at the last comparison and now. Returns
-// false if a counter has changed by another step than before.
+// Determines the steps of the counters from their values at the last comparison and their current
+// values. Returns false if the step of a counter differs from its step before.
 bool QuietSpan::learn(const Counters& now) {
     const uint8_t rx = (now.rx - before_.rx) & lastTick, tx = (now.tx - before_.tx) & lastTick;
-    if (!isFixed_) { // this is the first clock after the image was taken
+    if (!isFixed_) { // first call after the image was taken
         uint32_t timerStep = now.timer - before_.timer;
         step_ = (now.phase - before_.phase) & phaseMask;
         timerRuns_ = timerStep == 1;
@@ -248,7 +248,7 @@ QuietSpan::Clocks QuietSpan::look(Clocks most) {
     since_ = 0;
     if (isLike) {
         rest_ = least;
-        // if more than the counters changed, the next clock is compared again
+        // if other state than counters has changed, the next clock is compared again
         return isAllFixed_ ? clocks : Clocks{};
     }
     blame();

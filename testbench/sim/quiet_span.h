@@ -31,7 +31,8 @@
 class VSoc;
 class VSoc___024root;
 
-// Names the bytes in the state of the Verilated chip, to describe differences between two times.
+// Names the bytes in the state of the Verilated chip, to describe how the state has changed between
+// two times.
 struct SocState {
     using Image = std::vector<unsigned char>;
 
@@ -48,13 +49,13 @@ public:
     // Records the chip's state. Call this after each evaluated clock.
     void sample();
 
-    // Number of clocks, starting now, in which the whole chip or only the platform is quiet; 0 if
-    // it is busy or if this is unknown.
+    // Number of clocks, starting now, in which the whole chip is quiet, and in which the platform
+    // is quiet; 0 if the chip or the platform is busy, or if its state is unknown.
     struct Clocks {
         uint64_t chip, platform;
     };
     // Returns the number of clocks that can be skipped. `most` is the number of clocks until an
-    // input of the chip, or of the platform, may change; the result is at most this.
+    // input of the chip, or of the platform, may change; the result does not exceed `most`.
     Clocks look(Clocks most);
 
     // Returns true if cores or memory may change the platform, so that it must be evaluated in the
@@ -62,9 +63,9 @@ public:
     bool stirs() const;
     void rest(bool rests);
 
-    // Adds `clocks` to the counters; this must be at most the result of look(). Returns the number
-    // of clocks that were not added and must be evaluated, because a tick of the baud rate is in
-    // progress.
+    // Adds `clocks` to the counters; `clocks` must not exceed the result of look(). Returns the
+    // number of clocks that were not added and must be evaluated, because a tick of the baud rate
+    // is in progress.
     uint64_t pass(uint64_t clocks);
 
     // Returns the name of the core that prevents skipping, because it changed in most of the
@@ -94,9 +95,10 @@ private:
     std::vector<unsigned char> image_; // state of the chip at the last full comparison
     bool hasImage_ = false;
     Counters before_{};       // counters at the last comparison
-    bool isFixed_ = false;    // true if only counters change in the state of the platform
+    bool isFixed_ = false;    // true if, of the platform's state, only counters change
     bool isAllFixed_ = false; // true if, of the whole chip's state, only counters change
-    // true if, in a clock with a low stirs_o, only counters of the platform have changed
+    // true if there was a clock with a low stirs_o in which, of the platform's state, only counters
+    // changed
     bool isCalm_ = false;
     bool stirs_ = true;   // value of stirs_o before the next clock
     bool stirred_ = true; // value of stirs_o before the last clock
@@ -110,8 +112,8 @@ private:
     bool timerRuns_ = false;
     // number of ticks of the baud rate since the last comparison with the whole image
     unsigned ticks_ = 0;
-    // number of clocks after a carry until the chip is in the state of the image again; 0 if
-    // unknown
+    // number of clocks from a carry until the chip's state, except counters, equals the image
+    // again; 0 if unknown
     uint64_t nullAge_ = 0;
     uint8_t rxStep_ = 0, txStep_ = 0; // steps of the UART's tick counters at each tick
     // patience_: number of clocks between two comparisons of a busy chip; pause_: number of clocks
@@ -120,6 +122,6 @@ private:
     uint64_t busyLooks_ = 0; // number of comparisons that found the chip busy
     // number of comparisons in which the names of the changed cores were recorded
     unsigned blamed_ = 0;
-    // number of these comparisons in which a core had changed; the key is the name of the core
+    // number of these comparisons in which each core had changed; the key is the name of the core
     std::map<std::string, unsigned> movers_;
 };

@@ -93,8 +93,9 @@ private:
     uint64_t hash_ = 0xCBF29CE484222325;
 };
 
-// Stands between a modem and its line: passes on all bytes and records them. A line of the file is
-// written when the next line begins, so the recording is usable even if the simulator is killed.
+// A line between a modem and its real line: passes on all bytes and records them. A line of the
+// file is written when the next line begins, so the recording is usable even if the simulator is
+// killed.
 class RecordedLine : public SerialLine, SerialClient {
     using json = nlohmann::json;
 
@@ -181,7 +182,7 @@ private:
     unsigned count_ = 0;
 };
 
-// Replays a recording: it takes the place of the program at a modem's line.
+// Replays a recording in place of the program at a modem's line.
 class ReplayedLine : public SerialLine {
     using json = nlohmann::json;
 

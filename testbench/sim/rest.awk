@@ -5,7 +5,7 @@
 #
 #   awk -v clocks="u_modem=sim_soc.platform_clk ..." -f rest.awk hdl/soc.v
 #
-# The copy names the lines of the original in messages and coverage.
+# The copy contains markers, so that messages and coverage refer to the lines of the original file.
 BEGIN {
     count = split(clocks, pairs, " ")
     for (i = 1; i <= count; i++) {

@@ -4,11 +4,11 @@
 // modem, system slot) while stirs_o is low, because the platform would not change its state
 // (sim_soc.v, quiet_span.h). Used only by the prover.
 //
-// The proof begins in any state of the platform in which one clock changes only its counters. It
-// shows that all later clocks also change only the counters, and always by the same steps, whatever
-// cores and memory do. It assumes that stirs_o is low, that the pins of the platform are stable,
-// and that no counter reaches its end. The outputs of the platform to cores, memory and pins do not
-// depend on the counters (tests/hdl/formal/platform_rests.ys).
+// The proof begins in any state of the platform in which one clock changes only the platform's
+// counters. It shows that all later clocks also change only the counters, and always by the same
+// steps, whatever cores and memory do. It assumes that stirs_o is low, that the pins of the
+// platform are stable, and that no counter reaches its end. The outputs of the platform to cores,
+// memory and pins do not depend on the counters (tests/hdl/formal/platform_rests.ys).
 //
 // The signal `later` counts as the chip's clock here: idle_registers.v turns each flip-flop with
 // this clock into one assumption and one assertion.
@@ -43,7 +43,7 @@ module rest_proof (
     wire stirs = `PLATFORM_STIRS(u_soc.u_platform);
     always @* assume (!stirs);
 
-    // All three counters; only `phase` and `clocks` trigger an action when they reach their end.
+    // The three counters. Only `phase` and `clocks` trigger an action when they reach their end.
     (* hierconn *) wire [63:0] \u_soc.u_system_slot.cycles ;
     (* hierconn *) wire [18:0] \u_soc.u_modem.u_baud.phase ;
     (* hierconn *) wire [16:0] \u_soc.u_modem.u_timer.clocks ;
@@ -59,7 +59,7 @@ module rest_proof (
         {older, before} <= {before, now};
         last            <= later;
     end
-    // in the first clock the timer's count increases by one or does not change
+    // in the first clock, the timer's count (`clocks`) increases by one or does not change
     always @* assume (!later || last || now[16:0] - before[16:0] <= 17'd1);
     always @* if (last) begin
         assert (now[98:35] - before[98:35] == before[98:35] - older[98:35]);

@@ -5,9 +5,10 @@
 //
 // Each change of tick_i is one clock: clk_i rises with the change and falls as soon as its edge has
 // been processed, so one evaluation of the model is enough for both edges. The inputs from the
-// memory pass through flip-flops here: before an edge, the simulator sets them to the values that
-// they have after the edge. Therefore no combinational path leads from these inputs through the
-// chip's logic; the model would have to evaluate such a path each time.
+// memory pass through flip-flops here: before an edge, the simulator sets these inputs to the
+// values that they have after the edge. Therefore no combinational path leads from these inputs
+// through the chip's logic. The model would have to evaluate such a path at each change of the
+// inputs.
 
 `default_nettype none
 `ifdef RESTS
@@ -87,8 +88,8 @@ module sim_soc #(
     core_gate #(.GATED(1)) u_gate_memory (
         .clk_i(clk_i), .rst_i(soc.rst), .access_i(1'b0),
         .idle_i(`MEMORY_RESTS(soc.u_platform.u_memory)), .clk_o(memory_clk));
-    // A probe may record the platform's counters, which would stand still; with a probe the clock
-    // is therefore never stopped.
+    // A probe may record the platform's counters. These would stand still while the clock is
+    // stopped, so with a probe the clock is never stopped.
     assign stirs_o = MAP_PROBES != 0 || `PLATFORM_STIRS(soc.u_platform);
 
     soc #(.CLK_HZ(CLK_HZ), .GATES(1))

@@ -19,7 +19,8 @@ public:
     using Words = std::array<uint32_t, BACKUP_WORDS>;
 
     explicit SimulatedBoard(uint64_t seed = 1) : random_(seed) {
-        (void)RandomBlock::next(random_); // discards the first random number, as secrets.c does
+        // discards the first random number, in the same way as secrets.c
+        (void)RandomBlock::next(random_);
         provide({});
     }
     // Makes the firmware use this board.

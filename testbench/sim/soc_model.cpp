@@ -56,7 +56,7 @@ void SocModel::reset(bool memoryStarts) {
     for (int i = 0; i < 8; ++i)
         tick();
     top_->rst_i = 0;
-    // The chip leaves its reset some clocks after the reset pin, because of the synchroniser.
+    // The chip leaves its reset some clocks after the reset pin falls, because of the synchroniser.
     const bool waits = !memoryStarts && hasClock_ && !memory_.neverStarts();
     for (int i = 0; i < 8 || (waits && !memory_.pins.calibDone); ++i)
         tick();
@@ -92,7 +92,8 @@ void SocModel::fromModem() {
     top_->modem_cts_n_i = ctsN;
 }
 
-// Puts the chip's outputs, except those of the FSMC, on wires with a fault.
+// Puts the chip's outputs, except the outputs of the FSMC, on the wires of the board, which may
+// have faults.
 void SocModel::throughWires() {
     wires_.drive(BoardWires::ModemTxd, top_->modem_txd_o);
     wires_.drive(BoardWires::ModemRts, top_->modem_rts_n_o);
@@ -110,7 +111,7 @@ void SocModel::changeClock(double percent) {
     line_.drift(rate);
 }
 
-// Passes time of a chip without a clock.
+// Lets one clock period pass for a chip without a clock.
 void SocModel::standStill() {
     ++cycles_;
     if (now() >= nextEvent_)
@@ -118,8 +119,8 @@ void SocModel::standStill() {
     quiet_ = now() < nextEvent_ ? (nextEvent_ - now() - 1) / clkNs : 0;
 }
 
-// Returns the number of clocks until a model outside the chip, and until a model at the platform's
-// pins, must be called.
+// Returns two numbers of clocks: until a model outside the chip must be called, and until a model
+// at the platform's pins must be called.
 QuietSpan::Clocks SocModel::mayBeQuiet() const {
     if (!skips_ || now() >= nextEvent_)
         return {};
@@ -244,7 +245,7 @@ void SocModel::passOutputs() {
 }
 
 void SocModel::evaluate(bool rests) {
-    // The design has settled; the memory pins now get their values for after this clock.
+    // The design has settled; now the memory pins get the values that they have after this clock.
     VSoc& top = *top_;
     sampleMcb(top, memory_);
     driveMcb(top, memory_);

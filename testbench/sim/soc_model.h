@@ -75,8 +75,8 @@ public:
     bool irq() const { return wires_.areOthersStraight() ? top_->irq_o : irq_; }
 
     // Sets the input pins of cores (MAP_PIN_...); they take effect with the next evaluation.
-    // `sampled` means that the pins only lead to flip-flops, like the pins of a sensor; a platform
-    // that is being skipped then need not be evaluated.
+    // `sampled` means that the pins only lead to flip-flops, like the pins of a sensor; the
+    // platform can then still be skipped.
     void setCorePins(uint32_t value, bool sampled = false) {
         if (!sampled) {
             wake();
@@ -88,8 +88,9 @@ public:
     }
     uint32_t corePins() const { return top_->core_pins_o; }
 
-    // Sets the function that drives the input pins of the cores. It is called before a clock, and
-    // returns the number of the clock (cycles()) before which it must be called next.
+    // Sets the function that drives the input pins of the cores. The function is called before a
+    // clock; it returns the number of the clock (cycles()) before which it must be called the next
+    // time.
     void onClock(std::function<uint64_t()> drive) { drive_ = std::move(drive); }
     // Sets a function that is called at each change of the cores' output pins.
     void onCorePins(std::function<void(uint32_t)> changed) {
@@ -100,7 +101,7 @@ public:
     // The wires of the board between processor, modem and chip.
     BoardWires& wires() { return wires_; }
     // Changes the rate of the chip's clock, in percent; -100 stops it. Call it before the reset.
-    // The processor and the modem keep their rates; time (now()) is that of the chip.
+    // The processor and the modem keep their rates; now() returns the time of the chip.
     void changeClock(double percent);
     // Adds delays to the FSMC's wires; only with a clock of 100 MHz.
     void delay(const FsmcCorner& corner, uint64_t seed, bool looksTwice) {
@@ -147,11 +148,10 @@ private:
     QuietSpan span_;
     bool skips_ = true;
     uint64_t quiet_ = 0; // number of future clocks that need not be evaluated
-    // number of clocks that have passed without evaluation and are not yet added to the chip's
-    // counters
+    // number of skipped clocks that are not yet added to the chip's counters
     uint64_t owed_ = 0;
     uint64_t resting_ = 0; // number of future clocks in which the platform need not be evaluated
-    // number of clocks in which the platform was not evaluated and that are not yet added to its
+    // number of clocks in which the platform was skipped, and that are not yet added to its
     // counters
     uint64_t rested_ = 0;
     uint64_t evaluated_ = 0;

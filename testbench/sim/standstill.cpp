@@ -47,8 +47,8 @@ std::vector<void*> interruptedCode(const void* context) {
     void** at = std::find(frames, end, interruptedAt(context));
     std::vector<void*> code(at, end);
     if (!code.empty())
-        // adds 1, because functionsAt() subtracts 1 from every address; the other addresses are
-        // return addresses
+        // functionsAt() expects return addresses and subtracts 1 from each; the program counter is
+        // not one, so 1 is added
         code[0] = static_cast<char*>(code[0]) + 1;
     return code;
 }

@@ -14,7 +14,7 @@
 class Standstill {
 public:
     // `now` returns simulated time, ns. `seconds` is a CPU time of this process (default 10): if
-    // simulated time does not change for that long, this is reported on stderr. After a report,
+    // simulated time does not change for that long, a report is printed on stderr. After a report,
     // Ctrl-C ends the process at once.
     explicit Standstill(std::function<uint64_t()> now, double seconds = 10);
     ~Standstill();
@@ -32,7 +32,7 @@ private:
 
     const std::function<uint64_t()> now_;
     uint64_t last_ = 0;
-    // same_: number of samples in which simulated time had not changed
+    // same_: number of successive samples in which simulated time had not changed
     volatile unsigned same_ = 0, reports_ = 0;
 };
 

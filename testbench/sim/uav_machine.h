@@ -44,8 +44,8 @@ public:
     SimulatedBoard board; // board of the UAV's application
 
     // Makes the firmware's clock `times` as fast as the fabric's clock. This shortens periods in
-    // which the firmware only waits for time-outs. During this time the modem is too slow for the
-    // firmware.
+    // which the firmware only waits for time-outs. The modem keeps its speed, so it is too slow for
+    // the firmware during this time.
     void hurry(unsigned times);
 
 private:
@@ -76,5 +76,5 @@ inline bool flies(
 
 // Returns the firmware that the simulator runs on the host; each program that links sim_main
 // defines this function. `modemKey` is the modem's AES key of 16 bytes, or empty. `isSecure` is
-// true if the link has a key. Throws an exception if the firmware cannot encrypt.
+// true if the link has a key; the function throws an exception if the firmware then cannot encrypt.
 UavMachine::Firmware simulatedFirmware(const std::vector<uint8_t>& modemKey, bool isSecure);

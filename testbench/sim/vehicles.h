@@ -16,8 +16,8 @@
 #include <sstream>
 
 // An additional vehicle in a flight: a separate chip that runs the firmware's ARM binary. It must
-// be advanced after the first vehicle, which also advances the air; otherwise its pins would change
-// too early.
+// be advanced after the first vehicle, because the first vehicle also advances the air; otherwise
+// the pins of this vehicle would change too early.
 class Follower {
 public:
     Follower(RfChannel& air, const XBee::Options& modem, const M3Machine::Config& config)
@@ -55,8 +55,8 @@ struct Station {
                                   pty, out + "/flight" + number + ".jsonl", head)),
           modem(line(), air, options), step(*status, pty, std::move(goOn)) {}
     SerialLine& line() { return replayed ? static_cast<SerialLine&>(*replayed) : *recorded; }
-    // Advances the station. Returns the time at which this must be called next. If `isWired` is
-    // true, a cable replaces the modem.
+    // Advances the station. Returns the time at which this function must be called next. If
+    // `isWired` is true, a cable replaces the modem.
     uint64_t advance(uint64_t now, bool isWired = false) {
         if (!isWired)
             modem.advance(now);
@@ -82,9 +82,9 @@ inline std::vector<uint8_t> keyOf(const std::string& file, int address) {
     return {key.begin(), key.end()};
 }
 
-// Gives a vehicle its keys from the ground's file. If there are several vehicles, it also gets the
-// keys of the observer, a second ground station. If there are at least four, the first two vehicles
-// get each other's key.
+// Gives a vehicle its keys from the ground's file. If there are several vehicles, each vehicle also
+// gets the keys of the observer, a second ground station. If there are at least four vehicles, the
+// first two get each other's key.
 inline void giveKeys(M3Machine::Config& config, unsigned vehicles, const std::string& file,
                      const std::string& observer) {
     config.key = keyOf(file, static_cast<int>(config.address));
@@ -117,8 +117,8 @@ public:
         from_ = static_cast<uint64_t>(std::atof(from.c_str()) * 1e9);
         until_ = from_ + static_cast<uint64_t>(std::atof(seconds.c_str()) * 1e9);
     }
-    // Prepares the fault. `modem` is the modem with the fault's address, or the modem of the twin;
-    // null for babble.
+    // Prepares the fault. `modem` is the modem with the fault's address (away), the modem of the
+    // twin, or null (babble).
     void begin(RfChannel& air, const XBee* modem) {
         air_ = &air;
         modem_ = modem;
@@ -126,7 +126,8 @@ public:
         options.set = {{"MY", 0x0BAB}, {"DL", static_cast<uint32_t>(address)}, {"BD", 7}};
         babbler_ = std::make_unique<XBee>(line_, air, options);
     }
-    // Starts or ends the fault if it is time. Returns the time at which this must be called next.
+    // Starts or ends the fault when its time has come. Returns the time at which this function must
+    // be called next.
     uint64_t advance(uint64_t now) {
         const bool isOn = now >= from_ && now < until_;
         if (modem_)

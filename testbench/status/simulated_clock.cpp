@@ -72,8 +72,8 @@ uint32_t SimulatedClock::nowUs() const {
 // again.
 int SimulatedClock::wait(pollfd* fds, nfds_t count, uint32_t us) {
     const uint64_t begin = nowNs() / 1000;
-    // A program that keeps step waits at least shortestUs. If it waited for 0 us, it would stop
-    // simulated time, and might then wait for ever for time to pass.
+    // A program that keeps step waits at least shortestUs. If it waited for 0 us, simulated time
+    // would stop, and the program might wait for ever for this time to pass.
     const uint64_t end =
         us == forever ? endOfTime : begin + (inStep() ? std::max(us, shortestUs) : us);
     const bool reads = std::any_of(fds, fds + count, [this](const pollfd& p) {
@@ -114,8 +114,8 @@ void SimulatedClock::keepStep(int serial, const std::string& device) {
     store(simulation_->keeper, token_);
 }
 
-// Clears the entry only if it belongs to this program, because another program on the same port may
-// keep step now.
+// Clears SimStatus::keeper only if it names this program, because another program on the same port
+// may keep step now.
 void SimulatedClock::leaveStep() {
     uint64_t mine = token_;
     if (mine)

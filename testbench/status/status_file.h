@@ -16,8 +16,8 @@
 
 class StatusFile {
 public:
-    // Creates a file at `path`. Throws std::system_error if this fails, also if the disk is full:
-    // otherwise a write to the mapped file would later end the program with SIGBUS.
+    // Creates a file at `path`. Throws std::system_error if this fails, also if the disk is full; a
+    // full disk would otherwise end the program with SIGBUS at a later write to the mapped file.
     explicit StatusFile(const std::string& path) {
         unlink(path.c_str()); // replaces a symbolic link instead of writing to its target
         const int fd = open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0644);

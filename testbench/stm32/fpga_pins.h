@@ -37,16 +37,16 @@ public:
         }
     }
     bool isDone() const { return isDoneWired && (!flash_ || (boot_.running && now_() >= doneAt_)); }
-    bool isDoneWired = true; // if it is false, DONE always reads as low
+    bool isDoneWired = true; // false: the wire of DONE is missing, so DONE always reads as low
     const Spartan6Boot& boot() const { return boot_; }
     // called when the FPGA has lost its configuration and begins to load a new one
     std::function<void()> onReconfigured;
 
     // Transfers one byte in both directions, with the processor as the master.
     uint8_t transfer(uint8_t byte) { return flash_ ? flash_->transfer(byte) : 0xFF; }
-    // The state while the FPGA is the master: isReading returns true if the FPGA's chip select is
-    // low, bytesSent returns the number of bytes sent since it fell, and byteSent returns one of
-    // these bytes.
+    // The state while the FPGA is the master. isReading returns true if the FPGA's chip select is
+    // low; bytesSent returns the number of bytes sent since chip select fell; byteSent returns one
+    // of these bytes.
     bool isReading() const { return current() != nullptr; }
     uint64_t bytesSent() const {
         const Spartan6Boot::Read* read = current();

@@ -21,10 +21,10 @@ struct Spartan6Boot {
 
     // Address in flash of the bitstream that is running; empty while DONE is low.
     std::optional<uint32_t> running;
-    bool isStuck = false; // true if the FPGA makes no further try
+    bool isStuck = false; // true if the FPGA makes no more tries
     uint64_t clocks = 0;  // number of CCLK clocks that the configuration took
     unsigned strikes = 0; // number of tries that failed
-    // One try's read of the flash: the address, and the clocks at which chip select falls and
+    // The read of the flash in one try: the address, and the clocks at which chip select falls and
     // rises.
     struct Read {
         uint32_t address;

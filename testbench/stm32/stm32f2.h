@@ -24,8 +24,8 @@ class Stm32F2 : private CpuBus {
 public:
     struct Config {
         // Number of the processor's HCLK cycles per HCLK cycle of the FSMC pins. It is more than 1
-        // if the FPGA's clock is scaled down, because the pins then have fewer cycles in simulated
-        // time.
+        // if the FPGA's clock is slower than on the board, because the FSMC pins are then also
+        // slower, but the processor is not.
         unsigned coreCyclesPerHclk = 1;
         uint32_t hclkHz = 120'000'000;     // processor clock, Hz in simulated time
         uint64_t seed = 1;                 // seed of the random number generator
@@ -45,9 +45,9 @@ public:
     CortexM3::Stop run(bool singleStep = false) { return cpu_.run(singleStep); }
     // Sets the level at one of the pins 0 to 4 of port B, which can be inputs of EXTI.
     void setPinB(unsigned pin, bool high) { setPin(1, pin, high); }
-    // Sets a function that is called when time has passed, after each step of the pins. It returns
-    // the time, ns, at which it must be called next; while the processor sleeps, it may be called
-    // only then.
+    // Sets a function that is called when time has passed, after each step of the pins. The
+    // function returns the time, ns, at which it must be called next; while the processor sleeps,
+    // it may be called at this time only.
     void onTime(std::function<uint64_t()> called) { onTime_ = std::move(called); }
 
     // Model of the FPGA's flash, connected to SPI 1 (PA4..7), with PROGRAM_B on PC0 and DONE on

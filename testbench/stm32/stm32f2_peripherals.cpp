@@ -13,7 +13,7 @@ namespace {
 constexpr uint64_t lsiNs = 31'250; // period of the LSI oscillator, 32 kHz
 constexpr uint64_t hsiHz = 16'000'000;
 // highest HCLK frequency without wait states of the flash, at 2.7 to 3.6 V, Hz; each wait state
-// allows the same again
+// allows 30 MHz more
 constexpr uint64_t waitStateHz = 30'000'000;
 // interrupt number of EXTI line 0; each of the lines 0 to 4 has a separate interrupt
 constexpr unsigned extiVector = 6;

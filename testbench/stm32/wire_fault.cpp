@@ -34,8 +34,8 @@ constexpr KindName kinds[] = {{"open", WireFault::Open, ""},
                               {"shifted", WireFault::Shifted, ""},
                               {"unpowered", WireFault::Unpowered, ""}};
 
-// Wires that share their possible faults. Their numbers follow the name: `count` numbers, starting
-// with `first`. A count of 0 means one wire without a number.
+// Wires that share their possible faults. The number of a wire follows the name; there are `count`
+// numbers, starting with `first`. A count of 0 means one wire without a number.
 struct Group {
     const char* name;
     unsigned first, count;
@@ -86,7 +86,7 @@ Names namesOf(const Group& group) {
     return group.count ? names : Names{group.name};
 }
 
-// Returns the edit distance of two words: the letters to change, to insert or to remove.
+// Returns the edit distance of two words: the number of letters to change, insert or remove.
 size_t distance(const std::string& a, const std::string& b) {
     std::vector<size_t> row(b.size() + 1);
     for (size_t j = 0; j <= b.size(); ++j)

@@ -25,7 +25,7 @@ void shorten(Stm32F2& stm32) {
     stm32.cpu().writeMemory(stm32.image()->symbol("bringup_limits"), &limits, sizeof limits);
 }
 
-// Returns whether only the second half of the self-test, with the chip, sees a fault.
+// Returns whether only the second half of the self-test, which uses the chip, detects a fault.
 bool isOfChip(const WireFault& fault) {
     return fault.kind == WireFault::Late || fault.isMemory() || fault.bank() == 3 ||
            (fault.wire == "D" && fault.kind == WireFault::Shifted);

@@ -115,7 +115,7 @@ void LineKit::followModem() {
     wires_.setOther(cts, reset ? Wires::None : Wires::Low, now_);
 }
 
-// Another memory with NE1 and NOE drives the data lines.
+// Models another memory, which drives the data lines while NE1 and NOE are low.
 void LineKit::followSecondMemory() {
     constexpr unsigned contents = 0x5AA5;
     const bool isSelected = !wires_.level(ne1, 0, now_) && !wires_.level(noe, 0, now_);

@@ -38,7 +38,7 @@ public:
 private:
     // period of 25 MHz, the slowest CFGMCLK (DS162: 50 MHz, 50 %)
     static constexpr uint64_t oscNs = 40;
-    // number of clocks of the board that the tester counts as one
+    // number of clocks of the board in one unit of the tester's clock count
     static constexpr unsigned unitClocks = 64;
     static constexpr unsigned lines = 50, pins = 55;
 

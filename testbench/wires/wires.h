@@ -35,7 +35,7 @@ public:
 
     // Sets the driver and the pull of an end, at this time.
     void set(unsigned net, unsigned end, End what, uint64_t now);
-    // Sets an additional driver at end 0, which belongs to another chip on the board.
+    // Sets an additional driver at end 0, which is an output of another chip on the board.
     void setOther(unsigned net, Level driver, uint64_t now);
     // Returns the level that an end sees.
     bool level(unsigned net, unsigned end, uint64_t now) {
@@ -44,8 +44,7 @@ public:
     }
     // Returns the time at which a pull changes the level of a wire; ~0 if none does.
     uint64_t nextChange() const { return due_; }
-    // Returns how many times two drivers have worked against each other. This is caused by faults
-    // only.
+    // Returns how many times two drivers have worked against each other; only faults cause this.
     uint64_t fights() const { return fights_; }
     // Returns whether edges of this net arrive more than once.
     bool isRinging(unsigned net) const { return ringing_[net]; }
@@ -55,8 +54,10 @@ private:
     struct Node {
         bool level = false, pulled = false;
         bool fixed = false, fixedLevel = false; // a short to a supply
-        Level otherPull = None;                 // pull of another part; the chips' pulls lose
-        uint64_t since = 0;                     // time since which a pull works against the level
+        // pull of another part; it is stronger than the pulls of the chips
+        Level otherPull = None;
+        // time at which a pull began to work against the level
+        uint64_t since = 0;
         bool moving = false, fighting = false;
     };
 

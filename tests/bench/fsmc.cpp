@@ -111,8 +111,8 @@ void single(unsigned hclk, uint64_t seed, int count) {
         figures.add(fmt::format("FSMC, HCLK {} MHz, {}", hclk, what), sum / count, "clocks", least);
     };
     // Shortest access: ADDSET 2, DATAST 4 and 1 HCLK of hold or turnaround. A read that waits ends
-    // 4 HCLK after NWAIT is released. Its request passes two flip-flops (1 to 2 clocks, 1.5 on
-    // average), and needs one clock each to be registered, to be requested and to be answered.
+    // 4 HCLK after NWAIT is released. The read first passes two flip-flops (1 to 2 clocks, 1.5 on
+    // average). Three more clocks register the read, request the data, and return the data.
     double access = 7 * hclks, waits = (2 + 4 + 1) * hclks + 1.5;
     show("register word, 32 bits, write", 2 * access,
          [&] { master.write32(control + 4 * SYSTEM_SCRATCH, 1); });

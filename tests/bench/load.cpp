@@ -145,7 +145,7 @@ public:
     }
 
 private:
-    // Makes calls on a connection of its own, and records the duration of each correct reply.
+    // Makes calls on a separate connection, and records the duration of each correct reply.
     void call(unsigned client, unsigned count, std::vector<double>& took) {
         auto echo = echo_->ice_connectionId(std::to_string(client));
         for (unsigned i = 0; i < count; ++i) {

@@ -219,7 +219,8 @@ class Call(unittest.TestCase):
         self.assertEqual((status, out), (3, "calls 0, failures 3\n"))
 
     def test_events(self):
-        """`call` creates a listener, and the server calls it over the connection of the call."""
+        """`call` creates a listener, and the server calls this listener over the connection of the
+        call."""
         status, out, err = self.ask("watch events=2 --watch --events 3", "--json")
         self.assertEqual(status, 0, err)
         self.assertEqual([json.loads(line) for line in out.splitlines()], [

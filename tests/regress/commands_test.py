@@ -98,7 +98,7 @@ class Cases(Project):
 
     def test_commands_radio(self):
         """Runs short parts of commands that normally take hours."""
-        # Both soak and fly would run test_chip_soak, which is a test of its own. Here only `fly`
+        # Both soak and fly would run test_chip_soak, which is also a separate test. Here only `fly`
         # runs it.
         os.environ["GTEST_FILTER"] = "-ChipSoak*"
         self.user("soak MINUTES=0.01 FUZZED=1000")

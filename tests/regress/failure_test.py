@@ -92,8 +92,8 @@ foreach(m around broken) # as written by Yosys: all cells around, and the end of
      echo '${m}: trace: ${t}'; echo '${m}: an assertion fails'; exit 1")
 endforeach()
 """
-# The log of a failed flight. A program that replaces the simulator replays this flight and writes
-# this waveform.
+# The log of a failed flight, and a program in place of the simulator: it replays this flight and
+# writes a waveform.
 ENDED = """  0.1 s  UAV -> ground
 mission: the vision core's result differs from the C++ reference: 141 corners, not 140
 -- 11/23/26 06:27:52.116 XBeeAT: link idle

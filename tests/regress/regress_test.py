@@ -299,8 +299,8 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.has("plan.toml: .*line 6")
 
     def test_company(self):
-        """Tests progress, that there is only one run at a time, messages about mistyped words, and
-        that nothing is built needlessly."""
+        """Tests the display of progress, the rule that there is only one run at a time, messages
+        about mistyped words, and that nothing is built needlessly."""
         self.regress("--name 'a.One|formal'")
         # the number of tests is shown, because their duration is unknown
         self.has("^1 of 2, 0 failed, 1 left",

@@ -37,7 +37,7 @@ class Slices(unittest.TestCase):
         for inputs, sites in (([2, 3, 4, 5], 1), ([2, 3, 4, 5, 6, 7], 2), ([2, 3, 4, 7], 2)):
             n = Netlist([lut([2, 3, 4, 5, 6], 20), lut(inputs, 21)])
             self.assertEqual(slices.slices_of(n)["sites"], sites, inputs)
-        # Each LUT RAM occupies a slice of its own, of the kind that can contain RAM.
+        # Each LUT RAM occupies a separate slice, of the kind that can contain RAM.
         found = slices.slices_of(Netlist([cell("RAM32M", {}, {})] * 3))
         self.assertEqual((found["slicem"], found["low"]), (3, 3))
 

@@ -144,8 +144,8 @@ class Cases(Script):
                            Path("stat").read_text(), re.M)
         sites = 4  # number of LUTs that are used as RAM
         self.assertEqual(whole["lut"], sites + sum(int(row[1] or row[2]) for row in cells))
-        # In the accepted chip, the cost of a core includes its slot in the decoder. This is the
-        # difference between a decoder for three slots and one for two.
+        # In the accepted chip, the cost of a core includes its slot in the decoder. The cost of a
+        # slot is the difference between a decoder for three slots and one for two.
         shutil.copy(TREE / "bus/bus_decoder.v", "project/bus")
         write("gen/map.regs.json", json.dumps({
             "block": "map", "doc": "", "registers": [], "constants": [
@@ -188,7 +188,7 @@ class Cases(Script):
         self.lacks("^wide ")
         self.has("^Designs: 2 measured now, 1 changed since")
         self.has('"whole": "changed since"', '"name": "wide lut"', file="out/report.json")
-        # In a fresh clone nothing has been measured, but no design counts as removed.
+        # In a fresh clone, designs that have not been measured do not count as removed.
         self.run_program("--accept")
         shutil.rmtree("out/cache")
         self.run_program("--design", "store")

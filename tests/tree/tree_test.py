@@ -62,7 +62,7 @@ class Cases(Script):
                  status=None)
 
     def test_tarball(self):
-        """In a copy that is not a clone, the files of the tree can also be listed."""
+        """The tools can also list the files of a copy of the tree that is not a clone."""
         states = set()
         with tempfile.TemporaryDirectory() as copy:
             self.ask("sh", "-c", "git grep --no-index --exclude-standard --no-color -lz '' |"

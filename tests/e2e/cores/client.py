@@ -57,7 +57,7 @@ data.properties.setProperty("Ice.Plugin.XBeeAT", plugin)
 data.properties.setProperty("XBeeAT.Clock", status)
 data.properties.setProperty("XBeeAT.Guard", guard)
 data.properties.setProperty("Ground.Endpoints", "xbee-at -d %s" % device)
-data.properties.setProperty("Ice.ACM.Close", "0")  # with a netlist, a call takes minutes
+data.properties.setProperty("Ice.ACM.Close", "0")  # calls of a chip's netlist take minutes
 with Ice.initialize(data) as ic:
     where = ":xbee-at -d %s -a 0x0001 -t 3000000" % device
     # A probe records the inputs and outputs of the first core; cores.sh compares the recording with

@@ -193,11 +193,11 @@ class Cases(Script):
         self.ask(BUILD / "sw/update/pack_update", "stamp", name)
 
     def test_other_chip(self):
-        """If the firmware was built for other registers of the vision core, it does not offer the
-        core, and reports the reason to the ground."""
+        """If the firmware was built for other registers of the vision core, the firmware does not
+        offer the core, and reports the reason to the ground."""
         lines = (BUILD / "gen/soc_cores.c").read_text().split("hw_contracts[")[1].split("\n")[1:]
         row = 1 + next(n for n, line in enumerate(lines) if '"vision"' in line)
-        # last word of the row of this core
+        # last word of the vision core's entry
         self.patched("other.elf", "hw_contracts", 20 * row - 4, b"\xff" * 4)
         self.refused("no object 'hwengine1'; vision: expected registers with hash 0xFFFFFFFF, as "
                      "the firmware was built for, got 0x.* in the chip: rebuild both from the same "

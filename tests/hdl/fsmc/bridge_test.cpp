@@ -158,7 +158,7 @@ TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     b_.memory.hold(true);
     unsigned done = 0;
     for (; b_.errors == 0 && done < 32; ++done)
-        fsmc_.write16(ddr + 8 * done, value(done)); // each write has an address of its own
+        fsmc_.write16(ddr + 8 * done, value(done)); // each write has another address
     const unsigned before = done - 1;
     EXPECT_EQ(before, 14u) << "two of the 16 places are reserved";
     EXPECT_EQ(b_.errorAddr, 0x3FFu);

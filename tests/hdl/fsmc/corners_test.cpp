@@ -10,7 +10,7 @@
 
 namespace {
 
-// Runs each case in a bench of its own; each message contains the name of the case.
+// Runs each case in a separate bench; each message contains the name of the case.
 template <class Case> void inEveryCorner(double stall, Case&& run) {
     for (unsigned corner = 0; corner < std::size(fsmcCorners); ++corner)
         for (unsigned hclk : {60u, 100u, 120u})

@@ -63,8 +63,8 @@ module wb_words (
     end
 endmodule
 
-// axis_scale: multiplies samples of 16 bits; a core with AXI-Streams without tlast, a setting and a
-// pin.
+// axis_scale: multiplies samples of 16 bits. The core has AXI-Streams without tlast, and also a
+// setting and a pin.
 module axis_scale (
     input  wire        aclk,
     input  wire        aresetn,

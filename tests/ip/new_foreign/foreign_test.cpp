@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// foreign_test: tests third-party cores that make new-foreign has connected: registers, pins,
+// foreign_test: tests third-party cores that `make new-foreign` has connected: registers, pins,
 // interrupt, a separate clock, and cores that answer at any time that their bus allows. Checkers of
 // the bus rules (bus/*_rules.v) end the test if a wrapper or a core breaks a rule.
 
@@ -275,8 +275,8 @@ TEST(OwnClock, AnyRatioOfTheTwoClocksWillDo) {
     }
 }
 
-// A time-out of the core causes an event. The core's interrupt crosses the clock domains; it is
-// inactive when the write that clears it has ended.
+// A time-out of the core causes an event. The core's interrupt crosses the clock domains; when the
+// write that clears the interrupt ends, the interrupt is inactive.
 TEST(OwnClock, TheInterruptComesAndGoes) {
     CoreSlot<Vmy_requests_slot> slot;
     slot.interrupt_ = [] {};

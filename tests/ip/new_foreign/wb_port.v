@@ -13,8 +13,8 @@ module wb_port (
     input      [7:0] port_in,
     output reg [7:0] port_out
 );
-    localparam [1:0] PORT_LEVELS = 2'd0, // constants that make new-foreign uses as names of
-                                         // registers
+    localparam [1:0] PORT_LEVELS = 2'd0, // `make new-foreign` makes the names of
+                                         // registers from these names
                      PORT_DRIVEN = 2'b01;
     assign wb_inta_o = port_in[7];
     always @(posedge wb_clk_i) begin

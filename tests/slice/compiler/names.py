@@ -5,8 +5,8 @@
     names.py SLICE2C SW WORK
 
 The identifiers come from the C code that TEMPLATES generate. Each identifier replaces X in each
-template, in a module of its own. There is one Slice file per kind of name; its C must compile as
-C90, and its header as C++. slice2c may reject a name with an underscore that already exists at file
+template, in a separate module. There is one Slice file per kind of name; its C must compile as C90,
+and its header as C++. slice2c may reject a name with an underscore that already exists at file
 scope in C. It must accept all names without an underscore; Slice forbids underscores by default.
 """
 import os

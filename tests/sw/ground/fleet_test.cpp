@@ -73,7 +73,7 @@ protected:
         settings_.device = rig_.pty.path();
         settings_.guardMs = Rig::guardMs;
         rig_.with([&] {
-            // this test adds vehicles of its own, so the vehicle of the rig is switched off
+            // the test adds other vehicles, so the vehicle of the rig is switched off
             rig_.uav.modem->power(false, rig_.ns());
             rig_.step = [this] {
                 for (auto& [place, vehicle] : vehicles_)

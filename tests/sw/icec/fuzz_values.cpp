@@ -155,7 +155,7 @@ template <class What> Bytes described(const uint8_t* data, size_t size, Format f
         what.u.Failure.node = pick();
     }
     (void)write(what, format, bytes);
-    // this may also damage the names of types; their slices are then unknown
+    // the damage may include the names of types; their slices are then unknown
     while (at + 2 < size && !bytes.empty()) {
         size_t where = (data[at] << 8 | data[at + 1]) % bytes.size();
         bytes[where] = data[at + 2];

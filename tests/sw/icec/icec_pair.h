@@ -29,7 +29,8 @@ inline Operation returns(Ice_Status status) {
 
 // A servant that calls the function `run` for every operation.
 struct Servant {
-    // must be the first member, because IceC passes its address as that of the servant
+    // must be the first member, because IceC passes the address of this member as the servant's
+    // address
     Ice_Object base;
     Operation run = returns(ICE_OK);
     int calls = 0;

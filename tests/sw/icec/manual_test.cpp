@@ -298,7 +298,7 @@ TEST_F(Calls, WhoWaitsForALongOperationGetsSignsOfLife) {
     servant_.answerLater(later);
     prx_.timeoutMs = 5 * ICE_HEARTBEAT_MS + 100;
     EXPECT_EQ(call(prx_, "op"), ICE_TIMEOUT);
-    EXPECT_EQ(beats, 1 + 5); // one more, because the first call opened the connection
+    EXPECT_EQ(beats, 1 + 5); // five heartbeats, and one message that opened the connection
     (void)Ice_Reply_begin(&later);
     EXPECT_EQ(Ice_Reply_end(&later, ICE_OK), ICE_OK);
     beats = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// results_m3_test: checks on a Cortex-M3 that the task that made a call gets its results, wherever
-// the kernel switches to other tasks that also make calls.
+// results_m3_test: checks on a Cortex-M3 that each task gets the results of its own call, at
+// whatever instruction the kernel switches to another task that also makes calls.
 
 #include "plain_bus.h"
 #include "random.h"

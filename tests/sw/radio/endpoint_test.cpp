@@ -161,8 +161,8 @@ TEST_F(RadioEndpoint, AConnectionThatTheLinkHasNoRoomForTooLongIsClosedOnBothSid
     EXPECT_EQ(events(), Kinds{});
 }
 
-// A message that waits for being sent belongs to the program that had the channel when the message
-// was passed to the endpoint.
+// A message that waits to be sent belongs to the program that used the channel when the message was
+// passed to the endpoint.
 TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnItsChannel) {
     ASSERT_TRUE(pair_.connect());
     const Bytes answer(7930, 7);
@@ -208,7 +208,7 @@ TEST_F(RadioEndpoint, ASecondGroundHasConnectionsOfItsOwn) {
     pair_.run(500'000);
     EXPECT_EQ(other.a.received, (Messages{{3, call}}));
     EXPECT_EQ(pair_.a.received, Messages{});
-    // the same event as at the end of the peer's session
+    // the other ground station closes its channel
     XBeeATEndpoint_onChannel(&endpoint_, 7, 0);
     EXPECT_EQ(events(), (Kinds{{ICE_EVENT_CLOSED, 7}}));
     EXPECT_EQ(send(3, call), ICE_OK);

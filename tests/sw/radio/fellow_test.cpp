@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // fellow_test: tests vehicles that call each other's objects through IceC's radio endpoint, while
-// one of them serves two ground stations. Each vehicle and each ground station has links and a
-// communicator of its own; time is simulated.
+// one of them serves two ground stations. Each vehicle and each ground station has separate links
+// and a separate communicator; time is simulated.
 
 #include "link_program.h"
 #include "random.h"

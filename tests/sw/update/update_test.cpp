@@ -260,7 +260,7 @@ TEST(Update, AListIsSignedByTheOneBeforeAndCountsUpByOne) {
     EXPECT_EQ(vehicle.take(ours.list(4, third, ours)), RECEIVER_NEEDS_OTHER);
     EXPECT_EQ(vehicle.take(foreign), RECEIVER_FOREIGN);
     EXPECT_EQ(vehicle.take(changed), RECEIVER_UNSIGNED);
-    // this list is signed with keys of the list before
+    // list 2 does not contain the key `second`, which signs this list
     EXPECT_EQ(vehicle.take(ours.list(3, second, second)), RECEIVER_UNSIGNED);
     EXPECT_EQ(vehicle.take(others.list(3, others, others)), RECEIVER_UNSIGNED);
     EXPECT_EQ(vehicle.memory, before);
@@ -270,8 +270,7 @@ TEST(Update, AListIsSignedByTheOneBeforeAndCountsUpByOne) {
 TEST(Update, NoListStopsWhatRuns) {
     FlashedVehicle vehicle;
     const Slots_Header list = second.list(2, third, second);
-    // needs another list, because the current firmware is signed with a key that this list does not
-    // contain
+    // refused, because the current firmware is signed with a key that this list does not contain
     EXPECT_EQ(vehicle.take(list), RECEIVER_NEEDS_OTHER);
     vehicle.receive(makeImage(2, 1, imageBytes, second));
     EXPECT_EQ(vehicle.take(list), RECEIVER_BUSY);

@@ -72,8 +72,8 @@ private:
     static constexpr size_t mostBytes = 100; // size of the longest packet, bytes
     static constexpr uint16_t uav = 1, ground = 0;
 
-    // The MAC of one packet. Each packet has a MAC of its own, because the attacker does not wait
-    // for the end of its previous packet.
+    // The MAC of one packet. Each packet has a separate MAC, because the attacker does not wait for
+    // the end of its previous packet.
     struct Voice : Mac::Modem {
         explicit Voice(RfChannel& air) : mac(air, *this) {}
         bool hears(const RfPacket&) const override { return false; }

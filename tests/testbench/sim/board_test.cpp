@@ -36,8 +36,8 @@ struct Board {
     std::string wires = textOf("board.wires"), ucf = textOf("board.ucf");
 };
 
-// Flies on a board with faults until a call has been answered, the firmware has given up, or the
-// time has elapsed. Returns true if the call was answered.
+// Flies on a board with faults until a call has been answered, the firmware has stopped trying, or
+// the time has elapsed. Returns true if the call was answered.
 bool answersACall(const Board& board, double seconds, const std::string& faults = "") {
     GroundAndChip flight;
     flight.soc.wires() = BoardWires(board.wires, board.ucf);
@@ -152,7 +152,7 @@ TEST_P(BoardFlights, AnswerNoCall) {
     EXPECT_FALSE(answersACall(board, enough));
 }
 
-// Faults of the kit, and whether a call is answered nevertheless.
+// Faults of the kit, each with whether a call is still answered.
 struct FaultyBoard {
     const char* fault;
     bool answers;

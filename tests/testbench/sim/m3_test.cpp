@@ -149,7 +149,8 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
             return Boot_Reason();
         }
     };
-    // this access causes an event and an interrupt, after which the flight continues
+    // the read of an address without a slot causes an event and an interrupt; then the flight
+    // continues
     auto readNobodysRegister = [&] {
         EXPECT_EQ(f.variable("busErrors"), 0u);
         (void)f.soc.fsmc().read32(MAP_CONTROL_WINDOW + 64 * 33 + 4 * 5);
@@ -159,7 +160,7 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
     auto hangProcessor = [&] {
         EXPECT_EQ(f.variable("busErrors"), 1u);
         EXPECT_EQ(f.variable("busErrorPlace"), 33u * 16 + 5);
-        // this call is sent, and then interrupts are disabled before it is answered
+        // sends a call, and disables interrupts before the call is answered
         f.ground.ping(100, "hwengine1");
         f.m3->cpu().setReg(CortexM3::Faultmask, 1); // disables interrupts
         return true;
@@ -244,8 +245,8 @@ TEST(CortexM3Firmware, ACorruptImageIsRefusedWithItsReason) {
         Flight f;
         M3Machine machine(f.soc, firmware, [&] { return f.within(0.3); });
         const ElfImage& image = *machine.stm32().image();
-        // Flips one bit behind the code that reports errors. Start-up code, boot code and FSMC
-        // driver are before it in the image.
+        // Flips one bit of the image, after the code that reports errors. Start-up code, boot code
+        // and FSMC driver are before this bit.
         uint32_t begin = image.symbol("telling_end"), end = image.symbol("image_end");
         uint32_t at = begin + random.below(end - begin);
         uint8_t byte = 0;

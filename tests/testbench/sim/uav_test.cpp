@@ -31,8 +31,7 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
     auto script =
         inOrder({ground.pinging(3),
                  [&] {
-                     // this call is sent, and then the UAV's modem loses its settings before it is
-                     // answered
+                     // sends a call; the UAV's modem loses its settings before the call is answered
                      ground.ping(100, "hwengine1");
                      since = soc.now();
                      return true;

@@ -10,7 +10,8 @@
 /* Functions of the test that the tasks of the firmware call. They decide what the firmware sends,
  * and observe the results. */
 typedef struct EchoUav_Port {
-    /* Called when the UAV has executed an operation with an id; `data` contains its bytes. */
+    /* Called when the UAV has executed an operation with an id; `data` contains the operation's
+     * bytes. */
     void (*executed)(void* context, int id, const U8* data, int size);
     /* Chooses the next message to the ground: sets its id, writes its bytes to `data` and returns
      * their number, or returns -1 if no message must be sent now. If `isOneway` is set, the message

@@ -40,9 +40,9 @@ if(servants GREATER 8)
   list(APPEND ARM_DEFINES ICE_SERVANTS=${servants})
 endif()
 
-# Macros that icesoc_core calls, and that use its variables. Each handles one part of a core: C code
-# from a Slice file, in a folder of GEN_DIR; registers, wrapper and servant; a separate clock; the
-# block test.
+# Macros that icesoc_core calls. They use the variables of icesoc_core. Each handles one part of a
+# core: C code from a Slice file, in a folder of GEN_DIR; registers, wrapper and servant; a separate
+# clock; the block test.
 macro(icesoc_core_slice folder file)
   get_filename_component(base ${file} NAME_WE)
   set(slice ${GEN_DIR}/slice/${folder})
@@ -160,8 +160,8 @@ macro(icesoc_core_test)
   endif()
 endmacro()
 
-# icesoc_read_manifests(FILE...): reads the manifests of several cores for icesoc_core(), which
-# otherwise reads the manifest itself. Starting Python takes longer than reading, so all manifests
+# icesoc_read_manifests(FILE...): reads the manifests of several cores for icesoc_core(). Otherwise,
+# each icesoc_core() reads one manifest. Starting Python takes longer than reading, so all manifests
 # of a folder are read in one call.
 function(icesoc_read_manifests)
   execute_process(COMMAND ${PYTHON} -m icesoc.chip.manifest ${ARGN}

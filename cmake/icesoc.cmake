@@ -160,7 +160,7 @@ endfunction()
 # icesoc_regmap(JSON [BLOCK]): generates files for the registers of one block from a *.regs.json.
 # The files in ${GEN_DIR} are a Verilog include, a C header, a VHDL package and a Markdown page.
 # With BLOCK, it also generates the register block <block>_regs.v, the proof of this block, and
-# <block>_regs.vhd. The target is regmap_<block>, the interface library regs_<block>.
+# <block>_regs.vhd. The target is regmap_<block>. The interface library is regs_<block>.
 set(REGMAP ${PYTHON} -m icesoc.regs.generate)
 file(GLOB REGMAP_FILES CONFIGURE_DEPENDS ${TOOLS}/__init__.py ${TOOLS}/regs/*.py
   ${TOOLS}/regs/regs.schema.json ${TOOLS}/regs/templates/*.j2)
@@ -190,8 +190,8 @@ function(icesoc_regmap json)
   add_dependencies(regs_${block} regmap_${block})
 endfunction()
 
-# Adds the flags for waveforms and coverage counters to icesoc_verilate. It uses the variables of
-# that function.
+# Adds the flags for waveforms and coverage counters to icesoc_verilate. This macro uses the
+# variables of icesoc_verilate.
 macro(icesoc_verilate_observed)
   set(definitions) # observer.h reads these definitions
   if(TRACE)

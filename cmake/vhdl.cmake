@@ -12,9 +12,9 @@ add_custom_target(ghdl DEPENDS ${GHDL})
 # icesoc_vhdl(NAME entity SOURCES file... [REGS block...] [LIBRARY name] [LIBRARIES name=file...]
 #             [GENERICS name=value...] [FOREIGN])
 # Converts an entity to ${GEN_DIR}/<entity>.v with the target <entity>_verilog. LIBRARY is the
-# library of SOURCES. The files may be in any order. GHDL writes the names of the files into the
-# Verilog in the form in which it gets them. The names are relative to the tree, so that copies of
-# the tree give the same Verilog.
+# library of SOURCES. The files may be in any order. GHDL copies the names of the files into the
+# Verilog. The names passed to GHDL are relative to the tree, so that copies of the tree give the
+# same Verilog.
 function(icesoc_vhdl)
   cmake_parse_arguments(A "FOREIGN" "NAME;LIBRARY" "SOURCES;REGS;GENERICS;LIBRARIES" ${ARGN})
   list(TRANSFORM A_LIBRARIES REPLACE "(.+)" "--in;\\1" OUTPUT_VARIABLE members)

@@ -33,7 +33,7 @@ NOTES = {  # notes that are printed below the titles
             "if a layer\nexceeds its smaller budget in "
             "[`sw/size_budget.json`](../sw/size_budget.json)."}
 
-# Parts of a name that become the columns of a table, if it has two to six of these parts
+# Patterns for the parts of names that become columns, in tables of two to six columns
 AXES = [r"\d+ vehicles?", r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", r"interferer \d+ %",
         "in the clear|encrypted|with a key", r"of \d+ bytes", r"\d+ ports", r"HCLK \d+ MHz"]
 HEAD = """# Figures

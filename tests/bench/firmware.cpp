@@ -34,7 +34,7 @@ public:
         provide(48, 32, nullptr);
         until([this] { return ground.validated; }, 25, "the connection");
     }
-    // Runs until `done` returns true; it is called every simulated millisecond. Fails with the
+    // Runs until `done` returns true. `done` is called every simulated millisecond. Fails with the
     // message `what` after `seconds`.
     void until(std::function<bool()> done, double seconds, const char* what) {
         done_ = std::move(done);
@@ -210,9 +210,9 @@ void measureCalls(MeasuredFlight& f, unsigned calls, const std::string& what, do
 }
 
 void measureStream(MeasuredFlight& f, const std::string& what) {
-    // Floods the vehicle with one-way requests of 1 KB to an object that does not exist, so many
-    // that a window of the link is full and more requests wait in the queue. This loads the link
-    // and IceC's dispatcher, but no servant, and there are no replies.
+    // Floods the vehicle with one-way requests of 1 KB to an object that does not exist. A window
+    // of the link is always full, and more requests wait in the queue. This loads the link and
+    // IceC's dispatcher, but no servant, and there are no replies.
     f.ground.replies.clear();
     uint64_t bytes = 0;
     const std::vector<uint8_t> load(1000, 0x55);

@@ -106,8 +106,8 @@ private:
     std::atomic<unsigned> next_{0}, answered_{0}, ended_{0};
 };
 
-// Stock Ice clients that all call at the same time through the gateway, which is a separate
-// process, over modems and air.
+// Stock Ice clients that all call at the same time. The calls pass through the gateway, which is a
+// separate process, and over modems and air.
 class Clients {
 public:
     Clients(const std::string& gateway, unsigned clients)

@@ -138,8 +138,8 @@ double streams(uint64_t cycles, uint64_t seed) {
     return worst;
 }
 
-// Measures the time from a request to the first word that is popped, with only one port in use and
-// with all other ports streaming.
+// Measures the time from a request to the first word that is popped, once while no other port is in
+// use, and once while all other ports stream.
 template <class Module, unsigned ports> void latency(uint64_t cycles, uint64_t seed) {
     for (unsigned size = 0; size <= 5; ++size) {
         double mean[2];

@@ -19,7 +19,7 @@ extern "C" {
 #include "link.h"
 }
 
-// A serial line to a modem on which each byte takes the same time as on a wire, and CTS is obeyed.
+// A serial line to a modem. Each byte takes the same time as on a wire, and the line obeys CTS.
 class TimedLine : public SerialLine {
 public:
     void send(const uint8_t* bytes, size_t count, uint64_t now) {

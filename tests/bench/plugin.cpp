@@ -57,7 +57,7 @@ public:
         std::snprintf(name, sizeof name, "Ice, goodput %s %s, loss %.2f",
                       down ? "UAV to ground" : "ground to UAV", modes[hasKey_], loss);
         figures_.add(name, rate, "bytes/s", mostBytesPerSecond);
-        echo_->ice_ping(); // when it returns, no late message can disturb the next figure
+        echo_->ice_ping(); // after this call, no late message can disturb the next figure
     }
 
     // Makes small calls, one after another. Returns their durations in ms, sorted.

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""fuzz_parsers: gives mutated files to a parser of files that people write, mostly in this process.
+"""fuzz_parsers: runs a parser of hand-written files on mutated files, mostly in this process.
 
     fuzz_parsers.py PARSER BUILD INPUTS [FILE...]
 
@@ -73,7 +73,7 @@ def chip_rdl():
 
 def manifests():
     """Returns the manifests of the tree's cores. Creates empty files with the names that occur in
-    them."""
+    the manifests."""
     texts = []
     for pattern in ("ip/*/core.toml", "tests/bus/cores/data/*.toml", "tests/e2e/cores/*/core.toml"):
         for path in sorted(TREE.glob(pattern)):

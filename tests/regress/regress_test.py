@@ -192,8 +192,8 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.has("^2 tests, SEED=1")
 
     def test_slow_terminal(self):
-        """TERM while the terminal is slow: results that CTest has printed and nobody has read yet
-        are not lost."""
+        """TERM while the terminal is slow: results that CTest has printed and the tool has not read
+        yet are not lost."""
         write("slow/CTestTestfile.cmake", "".join(
             f"add_test({number:03}{'x' * 2000} true)\n" for number in range(200)))
         results = self.work / "slow/junit.xml"

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""names_test: checks that names are rejected before anything is written if they collide in a
-generated file or are not allowed in a language. The message must contain both names. Texts must not
+"""names_test: checks that names that collide in a generated file, or that a language does not
+allow, are rejected before anything is written. The message must contain both names. Texts must not
 be able to end a comment."""
 import json
 import subprocess

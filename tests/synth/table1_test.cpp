@@ -15,7 +15,7 @@
 namespace {
 
 constexpr uint32_t ddr = MAP_DDR_WINDOW, slot = MAP_CONTROL_WINDOW + 64 * MAP_SLOT_MODEM;
-// addresses that use many address lines, with both levels
+// together, these addresses set many address lines to 0 and to 1
 constexpr uint32_t txRing = 0x02AAA800, rxRing = 0x01555000;
 
 XBee::Options options(const char* name, std::map<std::string, uint32_t> set) {

@@ -56,8 +56,8 @@ def links(folder, hidden):
 
 
 def configure(source, build, work, path):
-    """Configures a build as on a machine that has only the programs in `path`, and all programs
-    once the file `arrived` exists."""
+    """Configures a build as on a machine that has only the programs in `path`. Once the file
+    `arrived` exists, the machine has all programs."""
     hide = work / "hide.cmake"
     hide.write_text(f'if(NOT EXISTS "{work}/arrived")\n'
                     f'  set(CMAKE_IGNORE_PATH "{";".join(FOLDERS)}")\nendif()\n')

@@ -5,7 +5,7 @@ it a resource, at times drawn from seeds. docs/regression.md contains the table 
 consequences.
 
 A `moment` is a time of the flight: the first 0.3 seconds are counted from the start of the process,
-the rest in simulated seconds, about 1.7 per flight. Therefore each moment is within the flight,
+the rest in simulated seconds (about 1.7 s per flight). Therefore each moment is within the flight,
 however fast the machine is."""
 
 import argparse

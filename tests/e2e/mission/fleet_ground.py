@@ -94,8 +94,8 @@ class Caller(threading.Thread):
         self.wrong += [result.found, best] != [self.want["found"], self.want["best"]]
 
     def frames(self):
-        """Makes calls until the end of the flight, then for at most 20 seconds until another reply
-        arrives."""
+        """Makes calls until the end of the flight, and then until another reply arrives, for at
+        most 20 seconds."""
         engine = Autopilot.HwProcessingEnginePrx.uncheckedCast(
             self.ground.proxy("hwengine1", self.address))
         self.take(engine)

@@ -22,7 +22,7 @@ from script import TREE, Script, fresh, main, write
 CASE, BUILD = sys.argv[1], Path(sys.argv[3]).resolve()
 IMAGE = Path("/usr/share/xplanet/images/earth.jpg")
 # guard time of the modem, ms. With the default of 1 s, four guard times would pass in each flight.
-# Therefore only the cases that test the default, and vehicles with a flash memory, use it.
+# Therefore only the cases that test the default, and vehicles with a flash memory, use the default.
 GUARD = 1000 if CASE in ("plain", "stopped", "update") else 20
 SIMULATOR, PING = BUILD / "testbench/sim/icesoc-sim", BUILD / "sw/ground/ground_ping"
 CLIENTS = TREE / "sw/ground/clients"

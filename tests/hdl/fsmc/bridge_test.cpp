@@ -249,7 +249,7 @@ TEST_F(Bridge, StreamsAreRightHoweverSlowTheMemoryIs) {
 }
 
 // At an HCLK of 120 MHz, edges of NWE are 33.3 ns apart. With other ratios of the clocks, the edges
-// come at every phase of the bridge's clock.
+// have every phase relative to the bridge's clock.
 TEST(BridgeRatios, WritesOfAStreamAreTakenAtEveryPhase) {
     Random random(testSeed());
     for (auto [hclk, clk] :

@@ -191,7 +191,7 @@ module nwait_bench;
                         errors = errors + 1;
                     place = (place + 1) % 4096;
                 end
-            end else if (kind < 5 || kind == 7) begin // writes, to each or to each ninth address
+            end else if (kind < 5 || kind == 7) begin // writes, at consecutive addresses or 9 apart
                 for (i = 0; i < 2 * steps; i = i + 1) begin
                     value = $random(seed);
                     model[place[11:0]] = value;

@@ -57,11 +57,11 @@ def cone_of(module, port):
 
 
 def delay(module, names):
-    """Turns LUTs into LUTs with delays."""
+    """Replaces these LUTs by LUTs with delays."""
     for number, name in enumerate(names):
         cell = module["cells"][name]
         inputs = [cell["connections"].get(pin, ["0"]) for pin in INPUTS]
-        size = 1 << int(cell["type"][3:])  # a smaller table is repeated
+        size = 1 << int(cell["type"][3:])  # the table of a smaller LUT is repeated
         table = cell["parameters"]["INIT"].rjust(size, "0")[-size:] * (64 // size)
         module["cells"][name] = cell | {
             "type": "delay_lut",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// sync_test: tests the synchronous bridge (fsmc_sync_bridge) with the accesses and the references
-// of the tests of fsmc_bridge, in each mode of the FSMC that it supports.
+// sync_test: tests the synchronous bridge (fsmc_sync_bridge) in each mode of the FSMC that this
+// bridge supports. The accesses and the expected data are those of the tests of fsmc_bridge.
 
 #include "VFsmcBridge.h"
 #include "VFsmcSyncBridge.h"
@@ -44,7 +44,7 @@ protected:
         doorbell();                    // waits for the last write of init(), which is posted
     }
     static uint32_t at(uint32_t word) { return control + 4 * word; }
-    // Waits by a register access, after which all writes have reached the memory.
+    // Reads a register. When this access ends, all earlier writes have reached the memory.
     void doorbell() { b_.master.read32(at(0)); }
 
     BridgeBench<VFsmcSyncBridge> b_{testSeed()};

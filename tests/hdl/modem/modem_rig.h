@@ -18,7 +18,7 @@
 template <class Module, uint64_t clkNs> class ModemRig : public ::testing::Test {
 protected:
     static constexpr uint32_t txRing = 0xAAAAA800,
-                              // the two addresses together use every address line with both levels
+                              // together, the two addresses set every address line to 0 and to 1
         rxRing = 0x55555000;
 
     void power(XBee::Options options) {

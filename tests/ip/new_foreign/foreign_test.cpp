@@ -193,7 +193,7 @@ TEST(RegistersApart, EachThatIsNotReadBackIsNamed) {
               std::string::npos);
 }
 
-// A model of a counter in place of a Verilated model; it counts in every `every`th clock.
+// A model of a counter in place of a Verilated model; it counts once in `every` clocks.
 struct Counter {
     explicit Counter(VerilatedContext*) {}
     void eval() { root_.count += clk_i && ++clocks_ % every == 0; }

@@ -6,7 +6,7 @@
 
 The identifiers come from the C code that TEMPLATES generate. Each identifier replaces X in each
 template, in a separate module. There is one Slice file per kind of name; its C must compile as C90,
-and its header as C++. slice2c may reject a name with an underscore that already exists at file
+and its header as C++. slice2c may reject a name that has an underscore and already exists at file
 scope in C. It must accept all names without an underscore; Slice forbids underscores by default.
 """
 import os

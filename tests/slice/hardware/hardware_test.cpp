@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// hardware_test: tests that generated servants can call cores through the FSMC driver, a port to
-// the register bus of a slot, and generated wrappers.
+// hardware_test: tests that generated servants can call cores. A servant uses the FSMC driver, the
+// port of this driver is connected to the register bus of a slot, and a generated wrapper connects
+// the core.
 
 #include "VCalculatorSlot.h"
 #include "VManySlot.h"

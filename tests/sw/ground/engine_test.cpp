@@ -87,7 +87,7 @@ TEST_F(EngineTest, AModemThatIsResetInFlightIsSetUpAgain) {
         rig_.ground->resetPin(false, rig_.ns() + 1000);
         EXPECT_EQ(rig_.ground->parameter("BD"), 3u);
     });
-    EXPECT_TRUE(rig_.read(fd, 1).empty()); // the program is told that the connection was lost
+    EXPECT_TRUE(rig_.read(fd, 1).empty()); // the program is notified that the connection was lost
     close(fd);
     fd = engine->connect(0); // this call waits until the link is up again
     echoes(fd, 2);
@@ -396,8 +396,9 @@ size_t usersOf(const std::string& device) {
     }));
 }
 
-// A USB adapter that is unplugged and plugged in again: a symbolic link names its device, as udev
-// makes it. If the old device stayed open, the kernel would give the adapter another name.
+// A USB adapter that is unplugged and plugged in again. A symbolic link leads to the adapter's
+// device, as with udev. If the old device stayed open, the kernel would give the adapter another
+// name.
 TEST(Engine, AnAdapterThatIsUnpluggedIsReleasedAndOpenedAgainWhenItReturns) {
     EngineLog log;
     auto adapter = std::make_unique<Wire>();

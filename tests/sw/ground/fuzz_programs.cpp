@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_programs: fuzzes the bytes from a program with the plugin, with libFuzzer. They arrive in
-// pieces of any size on a socket, and the engine's ProgramConnection splits them into messages.
-// Each message must be one that was sent, complete and in order. The replies must also be complete
-// messages.
+// fuzz_programs: fuzzes the bytes that a program with the plugin sends, with libFuzzer. The bytes
+// arrive in pieces of any size on a socket, and the engine's ProgramConnection splits them into
+// messages. Each message must be one that was sent, complete and in order. The replies must also be
+// complete messages.
 //
 // If the lowest bit of the first byte is 1, the program is a server that the UAV has called. Each
 // step then has two bytes, its kind (mod 8) and its argument n, and may be followed by data:

@@ -4,10 +4,10 @@
 // proxy strings, with libFuzzer.
 //
 // The first byte selects the type of the message, or a request of which only the parameters are
-// fuzzed. In the parameters, two bytes select each read. A proxy that was read or parsed must be
-// the same after conversion to a string and back, and to bytes and back. After each message the
-// communicator must still answer a ping. With ICEC_MINIMAL it tests the minimal run time, without
-// the strings.
+// fuzzed. In the parameters, a pair of bytes selects each function that reads, and the argument of
+// this function. A proxy that was read or parsed must be the same after conversion to a string and
+// back, and to bytes and back. After each message the communicator must still answer a ping. With
+// ICEC_MINIMAL it tests the minimal run time, without the strings.
 
 #include "ice_messages.h"
 #include "loop.h"

@@ -131,8 +131,8 @@ private:
         return ICE_OK;
     }
     void close(int connection) {
-        // The peer may already have closed the connection. This event is then discarded, because a
-        // new connection may now have the same number.
+        // The peer may already have closed the connection. The event of this closing is then
+        // discarded, because a new connection may now have the same number.
         for (Event& e : events_)
             if (e.kind == ICE_EVENT_CLOSED && e.connection == connection) {
                 e.kind = ICE_EVENT_NONE;

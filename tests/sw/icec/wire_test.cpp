@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// wire_test: tests messages given as bytes that only the full run time supports, proxies as
+// wire_test: tests messages (given as bytes) that only the full run time supports, proxies as
 // strings, and streams.
 
 #include "icec_pair.h"

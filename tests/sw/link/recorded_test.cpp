@@ -90,7 +90,7 @@ struct Program {
     U32 sent = 0;
 };
 
-// Delivers the packets that have arrived at the time `now` to `to`, and records them.
+// Delivers to `to` the packets that arrive not later than `now`, and records them.
 void deliver(Program& from, Program& to, uint64_t now, Packets& packets) {
     while (!from.side.air.empty() && from.side.air.front().arrives <= now) {
         packets.push_back({now, from.name, from.side.air.front().bytes});

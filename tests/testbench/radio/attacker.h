@@ -15,7 +15,7 @@ class Attacker {
 public:
     using Bytes = std::vector<uint8_t>;
 
-    // Starts to listen; the channel may have no other listener.
+    // Starts to listen; the channel must not have another listener.
     Attacker(RfChannel& air, uint64_t seed)
         : air_(air), random_(seed), modem_(line_, air, modemOfNobody()) {
         air.onPacket([this](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
@@ -54,7 +54,8 @@ public:
         const auto any = [this]() -> const Bytes& { return recalled().bytes; };
         send(as.from, as.to, mischief(random_, any), now);
     }
-    // Starts or stops to send bytes that look like the beginning of a frame after each packet.
+    // Starts or stops sending bytes after each packet. The bytes look like the beginning of a
+    // frame.
     void hinder(bool isOn) { hinders_ = isOn; }
     void advance(uint64_t now) {
         modem_.advance(now);
@@ -105,6 +106,6 @@ private:
     std::vector<RfPacket> heard_;
     uint64_t sent_ = 0;
     bool hinders_ = false;
-    // number of received packets after which the misleading bytes have not been sent yet
+    // number of received packets after which the misleading bytes must still be sent
     unsigned toHinder_ = 0;
 };

@@ -15,8 +15,8 @@ protected:
     }
 };
 
-// A sequence: the bytes that are sent to `a`, each with the milliseconds until the next bytes are
-// sent, and the expected result.
+// A sequence: texts that are sent to `a`, each with the time until the next one, ms; and the
+// expected result.
 struct Sequence {
     const char* name;
     std::map<std::string, uint32_t> set;

@@ -272,7 +272,7 @@ TEST(CortexM3Firmware, AnAbortTellsWhereTheChipAndTheProgramAre) {
 TEST(CortexM3Firmware, WithoutAKeyItDoesNotStartAndTriesAgain) {
     Flight f;
     M3Machine machine(f.soc, firmware, [&] { return f.within(2.2); });
-    machine.stm32().backup().fill(0); // the backup memory is empty, as after the battery was empty
+    machine.stm32().backup().fill(0); // clears the memory, as an empty battery would
     machine.run();
     EXPECT_EQ(reasonOf(f.scratch()), BOOT_NO_KEY);
     EXPECT_GE(machine.stm32().resets().watchdog, 1u);

@@ -133,8 +133,8 @@ TEST_F(Soc, AnAccessWhileTheMemoryStartsIsToldAndLaterOnesAreRight) {
     EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_EVENT), 0u);
 }
 
-// Accesses registers and memory of the chip, or of its netlist, through real wires, in each corner
-// of their delays.
+// Accesses registers and memory of the chip, or of its netlist, through wires with real delays, in
+// each corner.
 TEST(SocCorners, NoAccessIsLostInAnyOfThem) {
     for (unsigned index = 0; index < std::size(fsmcCorners); ++index)
         for (unsigned hclk : {60u, 100u, 120u})

@@ -35,7 +35,7 @@ public:
         provide(64, 64, [](uint32_t i) { return i % 8 < 3 && i / 64 % 8 < 3 ? 150 : 100; });
     }
     // Begins a flight with these steps. Returns a function that a machine calls; the machine
-    // continues while it returns true.
+    // continues while this function returns true.
     std::function<bool()> flight(std::vector<Script> steps) {
         soc.reset(true);
         ground.start();

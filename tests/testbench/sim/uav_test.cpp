@@ -59,8 +59,8 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
     EXPECT_EQ(soc.modem().parameter("BD"), 250000u);
 }
 
-// Tests with a vehicle, two ground stations, each with its own key, and a ground station with
-// another key.
+// Tests with a vehicle, two ground stations that have separate keys, and a ground station with a
+// wrong key.
 class TwoGrounds : public GroundAndChip {
 public:
     static constexpr uint32_t observersAddress = 0x00F0;

@@ -39,6 +39,18 @@ class Names(unittest.TestCase):
             return 1, str(end)
         return 0, ""
 
+    def test_a_missing_file_or_folder_is_named_without_a_number(self):
+        status, said = self.generate()
+        self.assertEqual(status, 0, said)
+        for words, text in (
+                (["none.regs.json"], "none.regs.json: error: No such file or directory"),
+                ([str(self.work / "pair.regs.json"), "--output-dir", "none"],
+                 "regs: --output-dir: expected a folder, got 'none'; create it first")):
+            sys.argv = ["regs", *words]
+            with self.assertRaises(SystemExit) as end:
+                generate.main()
+            self.assertEqual(str(end.exception), text)
+
     def refused(self, words, *registers, **more):
         status, said = self.generate(*registers, **more)
         self.assertEqual(status, 1, (words, said))

@@ -73,7 +73,7 @@ def parse_arguments():
                  "missing" % (args.flight, error))
     except (OSError, ValueError, TypeError) as error:
         sys.exit("mission: '%s': expected a flight (./icesoc run writes it): "
-                 "%s" % (args.flight, error))
+                 "%s" % (args.flight, reason_of(error)))
     args.cores = [places.core(core) for core in flight["cores"]]
     return args
 

@@ -138,7 +138,8 @@ class Reader:
             with Image.open(path) as image:
                 grey = image.convert("L")
         except (UnidentifiedImageError, OSError, Image.DecompressionBombError) as error:
-            raise Refused(where, "a picture", f"'{path}' ({error})") from None
+            reason = getattr(error, "strerror", None) or error
+            raise Refused(where, "a picture", f"'{path}' ({reason})") from None
         return dict(zip(names, (grey.width, grey.height, grey.tobytes())))
 
     def check(self, value, kind, where, metadata=(), depth=0):

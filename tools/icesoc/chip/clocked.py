@@ -10,6 +10,7 @@ from icesoc.chip import manifest
 from icesoc.chip.core_output import render
 from icesoc.regs.generate import save
 from icesoc.regs.model import Wrong, check
+from icesoc.util.errors import reason_of
 
 
 def clocked(block, has_clk_hz):
@@ -27,7 +28,7 @@ def main():
         core = manifest.read(file)
         save(output, clocked(manifest.block_of(core, registers), core.facts.get("clk_hz", False)))
     except (Wrong, OSError) as e:
-        sys.exit(f"{file}: error: {e}")
+        sys.exit(f"{file}: error: {reason_of(e)}")
 
 
 if __name__ == "__main__":

@@ -18,6 +18,7 @@ from icesoc.regs import core_exchange
 from icesoc.chip import collisions, core_output, manifest
 from icesoc.regs.generate import save
 from icesoc.regs.model import Block, Wrong, check
+from icesoc.util.errors import reason_of
 
 SLOT_LIMIT, PIN_LIMIT = 64, 32
 SLOT_BYTES = 64
@@ -414,8 +415,8 @@ def main():
         description="Puts the cores of a list into the chip: address map, instances in Verilog, "
                     "the firmware's table.")
     parser.add_argument(
-        "list", help="cores.list, with one core per line: folder [name=] [identity=] [slot=] [memory=] "
-        "[gate=on] [clock=3/8] [signals=u_fir.count:9] [input=core.output] [pin=@places]")
+        "list", help="cores.list, with one core per line: folder [name=] [identity=] [slot=] "
+        "[memory=] [gate=on] [clock=3/8] [signals=u_fir.count:9] [input=core.output] [pin=@places]")
     parser.add_argument("--base", required=True, help="the platform's map.regs.json")
     for option, text in (
             ("--core", "FOLDER=MANIFEST=REGISTERS of a core (core.toml, *.regs.json)"),
@@ -428,7 +429,7 @@ def main():
         for name, text in build(asked).items():
             save(os.path.join(asked.output_dir, name), text)
     except (Wrong, OSError) as e:
-        sys.exit(f"{asked.list}:{'' if isinstance(e, Wrong) else '1: error: '}{e}")
+        sys.exit(f"{asked.list}:{'' if isinstance(e, Wrong) else '1: error: '}{reason_of(e)}")
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ from icesoc.cli.options import (CORE_FOLDERS, COUNT, FILE, FOLDER, FRAME, KEY_FI
                                 SHARE, SWITCH, TEXT, UCOS2, WORDS, Option, matching, number, one_of)
 from icesoc.regs.model import Wrong
 from icesoc.util.console import say
-from icesoc.util.errors import Stop, nearest
+from icesoc.util.errors import Stop, nearest, reason_of
 from icesoc.util.schema import limits, problems
 
 VERSION = 4
@@ -232,7 +232,7 @@ def take_board(values):
         board = (model.read if values.board.endswith(".toml") else model.find)(values.board)
         values.board = str(make.write(make.for_build(board), Path(values.out) / "board")[0].parent)
     except (Wrong, OSError) as error:
-        raise Stop(f"--board: {error}", 2) from None
+        raise Stop(f"--board: {reason_of(error)}", 2) from None
     if board.modem and "modem" not in values.given:
         values.modem = board.modem
 

@@ -100,7 +100,7 @@ def main(words, function=act):
         return 1
     except OSError as error:
         path = path_of(error)
-        warn(f"{error.strerror}" + (f": {path}" if path else ""))
+        warn(f"{error.strerror or error}" + (f": {path}" if path else ""))
         return 1
 
 

@@ -18,6 +18,7 @@ import sys
 import time
 
 from icesoc import TREE
+from icesoc.util.errors import reason_of
 
 RING_BYTES, READ_BYTES = 1 << 18, 4096  # probe.regs.json, probe_servant.h
 # gap: True if changes directly before this change were lost
@@ -36,8 +37,8 @@ class Signals:
             with open(path) as f:
                 probes = {probe["core"]: probe for probe in json.load(f)["probes"]}
         except (OSError, ValueError, LookupError, TypeError) as e:
-            raise Failed("cannot read --map %s (%s): it is in the build folder of the vehicle's "
-                         "chip, gen/chip.json" % (path, e))
+            raise Failed("--map: expected gen/chip.json of the build folder of the vehicle's chip, "
+                         "got '%s': %s" % (path, getattr(e, "strerror", None) or reason_of(e)))
         if name not in probes:
             raise Failed("--map %s: expected a probe '%s', found %s" %
                          (path, name, ", ".join(probes) or "none"))

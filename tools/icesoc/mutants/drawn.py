@@ -277,7 +277,10 @@ def main():
     options = parser.parse_args()
     out = pathlib.Path(options.out).resolve()
     shown = subprocess.run(["ctest", "--test-dir", options.build, "--show-only=json-v1", "-R",
-                            rf"^formal\.({options.block})"], stdout=subprocess.PIPE, check=True)
+                            rf"^formal\.({options.block})"], stdout=subprocess.PIPE)
+    if shown.returncode:
+        sys.exit(f"mutants: --build: expected a build folder, got '{options.build}'; run "
+                 "`make build` first")
     proofs = [Proof(test, out / "drawn") for test in json.loads(shown.stdout)["tests"]]
     # Proofs of several modules together are left out.
     proofs = [proof for proof in proofs if not proof.module.endswith("_proof")]

@@ -20,6 +20,7 @@ import argparse, collections, glob, json, os, pathlib, queue, re, shutil, subpro
 import threading, time
 from concurrent.futures import ThreadPoolExecutor
 
+from icesoc.util.errors import reason_of
 from icesoc.util.files import write
 from icesoc.util.lock import only_one
 from icesoc.util.tree import tree_state
@@ -70,7 +71,7 @@ def bugs(chosen):
                       for name, said in json.loads(pathlib.Path(file).read_text()).items()]
         except (ValueError, LookupError, TypeError, AttributeError) as error:
             sys.exit(f"mutants: {file}: expected bugs in the format that `tools/python -m "
-                     f"icesoc.mutants.run --help` shows: {error!r}")
+                     f"icesoc.mutants.run --help` shows: {reason_of(error)}")
     found = [bug for bug in found if not name or bug.name == chosen]
     return found or sys.exit(f"mutants: no {chosen} in tests/mutants/*.json and ip/*/*.bugs.json")
 
@@ -175,7 +176,7 @@ def check(chosen, build):
                     rf": {re.escape(bug.test)}(\.|$)", tests, re.M):
                 raise ValueError(f"unknown test {bug.test}")
         except (OSError, ValueError) as error:
-            print(f"{bug.name}: does not apply: {error}")
+            print(f"{bug.name}: does not apply: {reason_of(error)}")
             bad = 1
     return bad
 

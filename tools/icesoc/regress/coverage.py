@@ -14,7 +14,7 @@ import re
 import sys
 
 from icesoc.regress.lights import below_gate
-from icesoc.util.errors import Stop
+from icesoc.util.errors import Stop, reason_of
 from icesoc.util.files import write
 
 
@@ -168,7 +168,7 @@ def main(gates, folder):
                   if not any(name.startswith(path) for name in files)]
         below += [f"an explanation that explains nothing: {rule}" for rule in explanations.stale()]
     except (OSError, ValueError, KeyError, Stop) as error:
-        print(f"coverage: {error}", file=sys.stderr)
+        print(f"coverage: {reason_of(error)}", file=sys.stderr)
         return 2
     for line in below:
         print(f"coverage: {line}", file=sys.stderr)

@@ -130,7 +130,7 @@ def list_tests(build):
     """Returns all tests of a build folder."""
     status, text = collect(["ctest", "--test-dir", build, "--show-only=json-v1"])
     if status:
-        raise Stop(f"ctest cannot list the tests of {build}:\n{text[:2000]}")
+        raise Stop(f"ctest cannot list the tests of {build}; run `make build` first\n{text[:2000]}")
     if "{" not in text:
         raise Stop(f"ctest lists no tests in {build}; run `make build` first")
     below = f"{build.resolve()}/tests/"

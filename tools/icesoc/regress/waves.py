@@ -9,7 +9,7 @@ import pathlib
 import re
 
 from icesoc.util import vcd
-from icesoc.util.errors import Stop
+from icesoc.util.errors import Stop, reason_of
 from icesoc.util.files import write
 from icesoc.util.process import collect
 
@@ -183,7 +183,7 @@ def add_waves(failures, tests, source, build, jobs, limit):
             add_wave(failure, test, scene, source, build, jobs)
         # the report must be written even if a waveform cannot be made
         except (Stop, OSError) as error:
-            print(f"  none: {error}")
+            print(f"  none: {reason_of(error)}")
 
 
 class Signal:

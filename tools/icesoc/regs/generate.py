@@ -14,6 +14,7 @@ from pathlib import Path
 from icesoc.regs import names, verilog, vhdl
 from icesoc.regs.model import ACCESSES, Block, Wrong, check
 from icesoc.util import templates
+from icesoc.util.errors import reason_of
 
 FILES = {"regs.vh.j2": "{}_regs.vh", "regs.h.j2": "{}_regs.h", "regs_pkg.vhd.j2": "{}_regs_pkg.vhd",
          "regs.md.j2": "{}_regs.md"}
@@ -86,13 +87,15 @@ def main():
     parser.add_argument("--block", action="store_true",
                         help="also the register block in Verilog and VHDL, and its proof")
     args = parser.parse_args()
+    if not Path(args.output_dir).is_dir():
+        sys.exit(f"regs: --output-dir: expected a folder, got '{args.output_dir}'; create it first")
     for description in args.descriptions:
         try:
             block = Block.read(description)
             for name, text in views(block, args.block).items():
                 save(Path(args.output_dir) / name, text)
         except (Wrong, OSError) as e:
-            sys.exit(f"{description}: error: {e}")
+            sys.exit(f"{description}: error: {reason_of(e)}")
 
 
 if __name__ == "__main__":

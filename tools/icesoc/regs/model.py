@@ -229,8 +229,10 @@ class Block:
     def read(cls, path, is_built=False):
         try:
             return cls(json.loads(Path(path).read_text("utf-8-sig")), is_built)
-        except (json.JSONDecodeError, OSError) as e:
-            raise Wrong(str(e)) from None
+        except OSError as e:
+            raise Wrong(e.strerror) from None
+        except json.JSONDecodeError as e:
+            raise Wrong(f"expected JSON: {e}") from None
         except (ValueError, RecursionError):
             raise Wrong("expected JSON in UTF-8 without long numbers or deep brackets") from None
 

@@ -9,6 +9,7 @@ header contains every header that programs include.
 """
 import argparse
 import re
+import sys
 from collections import Counter
 from pathlib import Path
 
@@ -248,8 +249,11 @@ def main():
     parser.add_argument("component", nargs="*")
     args = parser.parse_args()
     args.folder.mkdir(parents=True, exist_ok=True)
-    for name, text in files(args.component).items():
-        write(args.folder / name, text)
+    try:
+        for name, text in files(args.component).items():
+            write(args.folder / name, text)
+    except Stop as stop:
+        sys.exit(f"single_file: {stop}")
 
 
 if __name__ == "__main__":

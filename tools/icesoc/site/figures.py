@@ -15,6 +15,8 @@ import sys
 import zlib
 from pathlib import Path
 
+from icesoc.util.errors import reason_of
+
 KEYWORD = b"Description"  # keyword of the PNG chunk with the text
 
 PICTURE = "docs/pictures/{}.png"
@@ -208,7 +210,10 @@ def correct(tree, given=None):
 def main(words):
     if len(words) != 1 or words[0].startswith("-"):
         sys.exit(__doc__)
-    wrong = list(differences(words[0]))
+    try:
+        wrong = list(differences(words[0]))
+    except OSError as error:
+        sys.exit("figures: " + reason_of(error))
     if wrong:
         print(*wrong, "./icesoc build figures pages  # writes the pages", sep="\n")
         print("./icesoc build figures synth pictures pages  # also retakes pictures of pages")

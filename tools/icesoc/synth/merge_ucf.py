@@ -12,6 +12,8 @@ import os
 import re
 import sys
 
+from icesoc.util.errors import reason_of
+
 PADS = {"c3_sys_clk": "sys_clk_i", "c3_sys_rst_i": "sys_rst_i"}
 
 
@@ -81,4 +83,7 @@ def main():
 
 
 if __name__ == "__main__":
-    main()
+    try:
+        main()
+    except OSError as error:
+        sys.exit("merge_ucf: " + reason_of(error))

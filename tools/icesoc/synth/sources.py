@@ -212,7 +212,8 @@ def read_json(file):
     try:
         return json.loads(file.read_text())
     except (OSError, ValueError) as error:
-        raise Stop(f"{file}: {error}") from None
+        raise Stop(f"{file}: " + (getattr(error, "strerror", None) or f"expected JSON: {error}")
+                   ) from None
 
 
 def read_plan(file, library, root):

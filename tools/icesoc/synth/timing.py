@@ -59,8 +59,8 @@ def is_unclocked(cell):
 
 def is_read(address, output):
     """Returns whether the output of a memory depends on this address port: DOA depends on ADDRA,
-    DPO on DPRA0.., SPO on A0... No output depends on the address of the write port, or on a port
-    that is not an address."""
+    DPO on DPRA0.., SPO on A0... No output depends on the write port, or on a port that is not an
+    address."""
     if address.startswith("ADDR"):
         return len(output) < 3 or address[-1] == output[2]
     if address.startswith("DPRA"):

@@ -17,7 +17,7 @@ from icesoc.synth import reports
 from icesoc.synth import runner
 from icesoc.synth import sources
 from icesoc.synth.report import Report, Row
-from icesoc.util.errors import Stop
+from icesoc.util.errors import Stop, reason_of
 from icesoc.util.files import write
 from icesoc.util.lock import only_one
 from icesoc.util.tree import tree_state
@@ -236,8 +236,7 @@ def main(words):
             print(reports.text(reports.read(o.source / "synth/reports.json")), end="")
             return 0
         if o.compare:
-            before, after = (json.loads(file.read_text())
-                             for file in (o.compare, o.output / "report.json"))
+            before, after = map(sources.read_json, (o.compare, o.output / "report.json"))
             print(report.differences(before, after), end="")
             return 0
         # If another run is synthesising a design, this run waits, and then finds the result in the
@@ -245,7 +244,7 @@ def main(words):
         with only_one(o.output, "utilisation"):
             return run(o, o.build / "page")
     except (Stop, OSError) as error:
-        print(f"utilisation: {error}", file=sys.stderr)
+        print(f"utilisation: {reason_of(error)}", file=sys.stderr)
         return 2
 
 

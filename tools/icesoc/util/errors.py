@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""errors: exceptions that end a command of the tools, and a function for their messages."""
+"""errors: exceptions that end a command of the tools, and functions for messages."""
 import difflib
 
 SKIPPED = 77  # exit status of a command that needs a network but has none
@@ -18,6 +18,14 @@ class Interrupted(BaseException):
     def __init__(self, number):
         super().__init__(number)
         self.status = 128 + number
+
+
+def reason_of(error):
+    """Returns the text of an exception for a message: without its class, and for an error of the
+    system, without its number."""
+    if isinstance(error, OSError) and error.strerror:
+        return ": ".join(str(part) for part in (error.filename, error.strerror) if part)
+    return f"missing key {error}" if isinstance(error, KeyError) else str(error)
 
 
 def nearest(word, words):

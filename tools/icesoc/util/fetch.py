@@ -25,6 +25,7 @@ import tarfile
 import tempfile
 
 from icesoc import TREE
+from icesoc.util.errors import reason_of
 
 CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "icesoc"
 LIST = TREE / "examples/foreign/cores.json"
@@ -100,7 +101,9 @@ def kept(url, checksum, part=None):
             with urllib.request.urlopen(url, timeout=60) as answer:
                 data = answer.read()
         except OSError as error:
-            raise Unreachable(f"{url}: {error}")
+            reason = getattr(error, "reason", error)
+            raise Unreachable(f"{url}: " + (str(error) if hasattr(error, "code") else
+                                            reason_of(reason)))
         if part:
             found = re.search(part.encode(), data, re.S)
             data = found[1] if found else b""

@@ -122,5 +122,7 @@ if __name__ == "__main__":
         sys.exit(__doc__)
     try:
         sys.stdout.write(load(sys.argv[1]).header(os.path.basename(sys.argv[1])))
-    except (OSError, ValueError) as error:
+    except OSError as error:
+        sys.exit(f"record: error: {sys.argv[1]}: {error.strerror}")
+    except ValueError as error:
         sys.exit(f"record: error: {error}")

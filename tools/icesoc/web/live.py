@@ -39,7 +39,7 @@ from http import HTTPStatus
 import places
 
 from icesoc.call import objects
-from icesoc.util.errors import Stop
+from icesoc.util.errors import Stop, reason_of
 from icesoc.web import bridge
 
 HERE = os.path.dirname(os.path.abspath(__file__))
@@ -403,7 +403,8 @@ def main(program="icesoc-live", build=None):
         Page.slots = blocks_by_slot(words.build) if words.dir else []
         Page.build = words.build
     except (OSError, ValueError, KeyError) as error:
-        sys.exit(f"{program}: error: cannot read '{words.build}/gen/chip.json': {error}")
+        sys.exit(f"{program}: error: cannot read '{words.build}/gen/chip.json': "
+                 + (getattr(error, "strerror", None) or reason_of(error)))
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: os._exit(0))
     try:

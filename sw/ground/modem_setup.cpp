@@ -99,8 +99,8 @@ std::string ModemSetup::ask(const std::string& text, std::initializer_list<std::
 
 // Sets a parameter of a modem in API mode; without a value, reads the parameter. Returns OK, ERROR
 // or the value in hexadecimal; "" if no reply arrives in time. With `endsLine`, a carriage return
-// is sent after the frame. A modem in API mode ignores it. A modem in command mode takes the frame
-// for a command line and refuses it; the function then returns "COMMAND".
+// is sent after the frame. A modem in API mode ignores the carriage return. A modem in command mode
+// takes the frame for a command line and rejects this command; the function then returns "COMMAND".
 std::string ModemSetup::askApi(const std::string& letters, const std::string& value, int timeoutMs,
                                bool endsLine) {
     constexpr uint8_t id = 0xA5;

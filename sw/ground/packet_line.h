@@ -64,7 +64,7 @@ public:
     // Reads the available bytes. Calls `deliver` for received bytes, and `answer` for each sent
     // packet whose result has arrived. Returns the result of read().
     ssize_t read(const Deliver& deliver, const Answer& answer);
-    // Calls `answer(false)` for each packet whose result is too late to be expected.
+    // Calls `answer(false)` for each packet without a result after LINK_ANSWER_LAST.
     void expire(U32 now, const Answer& answer) {
         if (api_)
             api_->expire(now, [&] { answer(false); });

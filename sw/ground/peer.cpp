@@ -128,8 +128,8 @@ void Peer::openWanted(U32 now) {
     }
 }
 
-// Ends the connections of programs whose messages have waited for room too long. Returns the time
-// until the next check, in microseconds.
+// Ends the connections of programs whose messages have waited too long for room in the link.
+// Returns the time until the next check, in microseconds.
 U32 Peer::endLate(U32 now) {
     U32 wait = never;
     for (int channel = 0; channel < LINK_CHANNELS; ++channel) {

@@ -57,7 +57,7 @@ struct Ice_ValueType {
 };
 
 /* The class ::Ice::Object. It is the type of instances without members, and of received instances
- * all of whose slices were unknown. */
+ * that have only slices of unknown types. */
 extern const Ice_ValueType Ice_Value_type;
 
 /* Returns 1 if the instance has this type or a type derived from it; 0 for a null instance. */
@@ -104,7 +104,7 @@ typedef struct Ice_InputValues {
     struct Ice_LatePatch* late;
     /* slices of unknown types in the message, the last one first */
     Ice_UnknownSlice* unknown;
-    Ice_Bool pending; /* as in Ice_OutputValues */
+    Ice_Bool pending; /* same meaning as in Ice_OutputValues */
     /* function that reads the indirection table of an exception's slice */
     void (*readTable)(Ice_InputStreamPtr is);
     /* function that skips an optional value that the reader does not know */

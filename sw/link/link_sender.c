@@ -262,9 +262,9 @@ static void sendAgain(Link_Sender* sender, U32 order) {
     }
 }
 
-/* Marks fragments as acknowledged: the first `advance` ones, and those in the bitmap, in which bit
- * n stands for the fragment at advance + 1 + n. A fragment without acknowledgement counts as lost
- * if it was sent before the newest acknowledged one. */
+/* Marks fragments as acknowledged: the first `advance` fragments, and the fragments in the bitmap.
+ * Bit n of the bitmap is 1 if the fragment at advance + 1 + n has arrived. A fragment without
+ * acknowledgement counts as lost if it was sent before the newest acknowledged fragment. */
 static int markAcked(Link_Sender* sender, U32 advance, const U8* bitmap, U32 size) {
     const Link_Fragment* newest = 0;
     int isNew = 0;

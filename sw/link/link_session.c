@@ -84,7 +84,7 @@ int link_expect(Link_Session* session, const U8* frame, U32 attempt, Link_Seal* 
     seal->key = LINK_PEERS_KEY(present, keys);
     seal->session = present->key;
     seal->acked = LINK_IS_PIGGYBACK(kind) ? link_extend(expected, frame[LINK_HEADER]) : 0U;
-    if (kind >= LINK_KIND_PIGGYBACK) /* or data */
+    if (kind >= LINK_KIND_PIGGYBACK) /* a PIGGYBACK or data */
         expected = session->receiver.expected;
     if (kind == LINK_KIND_PING)
         expected =

@@ -46,6 +46,6 @@ void link_onFrame(Link_Session* session, const U8* frame, U32 attempt);
  * wipes the candidate instead. */
 void link_onForgery(Link_Session* session, const U8* frame);
 
-/* Polls the handshake and the liveness. Ends a session whose peer is silent, or that has lasted too
- * long. Returns 1 if there is a session. */
+/* Polls the handshake and the liveness. Ends a session if the peer is silent, or if the session has
+ * reached LINK_LAST_NUMBER or LINK_MOST_FAILURES. Returns 1 if there is a session. */
 int link_pollSession(Link_Session* session);

@@ -29,7 +29,7 @@ struct Ice_Communicator {
     Ice_Int id;          /* id of the current call; always odd */
     Ice_Int body;        /* start of the encapsulation in `os` */
     Ice_OutputStream os; /* stream that writes to `out`: a request or a reply */
-    Ice_InputStream is;  /* in `in` */
+    Ice_InputStream is;  /* stream that reads from `in` */
     U32 arena[ICE_ARENA_BYTES / 4];
     Ice_Byte in[ICE_MESSAGE_MAX], out[ICE_RESULT_MAX];
 };

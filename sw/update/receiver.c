@@ -33,7 +33,7 @@ static int holds(const Receiver* self, U32 at, const U8* data, U32 bytes) {
     return memcmp(chunk, data, bytes) == 0;
 }
 
-/* Programs those bytes that are not in flash yet, and reads all of them back. */
+/* Programs the bytes that are not in flash yet, and reads all bytes back. */
 static int put(const Receiver* self, U32 at, const U8* data, U32 bytes) {
     const Slots_Port* port = self->port;
     U32 size;

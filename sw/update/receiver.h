@@ -40,7 +40,8 @@ typedef enum Receiver_Reason {
 typedef struct Receiver {
     const Slots_Port* port;
     const struct Receiver*
-        /* receiver of the other kind of image, which the owner sets; 0 if there is none */
+        /* receiver of the other kind of image, set by the owner of this receiver; 0 if there is
+         * none */
         counterpart;
     U32 product;
     U32 running, slot;   /* slot of the running image; slot for new images */

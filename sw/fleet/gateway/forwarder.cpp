@@ -22,8 +22,8 @@ constexpr size_t mostUnderWay = 8; // limit of the requests in flight on one lan
 // limits of the bytes in flight, for the lane of short calls and the lane of long calls; if no
 // request is in flight on a lane, the lane accepts a request of any size
 constexpr size_t mostBytesUnderWay[] = {1536, 8192};
-// number of one-way requests after which a ping is sent, whose reply confirms that the requests
-// have arrived
+// number of one-way requests after which a ping is sent; the reply to the ping confirms that the
+// requests have arrived
 constexpr size_t mostUnconfirmed = 4;
 
 std::exception_ptr refusal(const Ice::Identity& maintained) {
@@ -310,7 +310,8 @@ void Forwarder::sendOne(const std::shared_ptr<Request>& request) {
         confirm(request->lane, request->current);
 }
 
-// Sends a ping unless one is pending. Its reply confirms that all earlier requests have arrived.
+// Sends a ping unless another ping is pending. The reply to the ping confirms that all earlier
+// requests have arrived.
 void Forwarder::confirm(int number, const Ice::Current& of) {
     const auto done = [this, number] {
         std::lock_guard<std::mutex> lock(mutex_);

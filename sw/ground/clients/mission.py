@@ -277,8 +277,8 @@ class Mission:
         return others
 
     def call_vehicle(self, address):
-        """Calls the vision core of one of the other vehicles; runs at the same time for each of
-        them."""
+        """Calls the vision core of another vehicle. This function runs for all other vehicles at
+        the same time."""
         frame = os.path.join(self.args.out, f"before{address}.png")
         engine = self.autopilot.HwProcessingEnginePrx.uncheckedCast(
             self.proxy("hwengine1", address))

@@ -8,8 +8,8 @@ import Ice
 
 def use_second_clock():
     """Selects the clock of the simulator's second ground station, if a simulator has started this
-    program. The file of this clock is named like that of the first ground station, with a 2
-    appended."""
+    program. The name of this clock's file is the name of the first ground station's file, followed
+    by 2."""
     clock = os.environ.get("XBEEAT_CLOCK")
     if clock and not clock.endswith("2"):
         os.environ["XBEEAT_CLOCK"] = clock + "2"

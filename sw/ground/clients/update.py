@@ -52,9 +52,9 @@ class Failed(Exception):
 
 
 def read_package(path):
-    """Returns the parts of a package, in order. Each part is a pair: "keys" and the lists of keys,
-    or the name of the object that receives an image, and a dictionary that maps each flash offset
-    to (header, image)."""
+    """Returns the parts of a package, in order. Each part is a pair: either ("keys", lists of
+    keys), or (name of the object that receives the image, dictionary). The dictionary maps each
+    flash offset to (header, image)."""
     with open(path, "rb") as f:
         data = f.read()
     parts, at, last = [], 0, None

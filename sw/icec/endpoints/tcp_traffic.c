@@ -68,7 +68,7 @@ static void sendReason(TcpEndpoint_Connection* c, const char* reason) {
     Ice_OutputStream os;
     Ice_OutputStream_init(&os, bytes, (Ice_Int)sizeof bytes);
     icec_beginMessage(&os, ICEC_REPLY);
-    Ice_OutputStream_writeBlob(&os, c->data + ICEC_HEADER, 4); /* its id */
+    Ice_OutputStream_writeBlob(&os, c->data + ICEC_HEADER, 4); /* id of the request */
     Ice_OutputStream_writeByte(&os, ICE_UNKNOWN_LOCAL_EXCEPTION);
     Ice_OutputStream_writeText(&os, reason);
     icec_endMessage(&os);

@@ -118,7 +118,7 @@ void interruptPoint() {
         OSIntEnter();
         port.machine.serve();
         port.serving = false;
-        OSIntExit(); // another task may run first; this one continues here later
+        OSIntExit(); // another task may run first; this task continues here later
     }
 }
 

@@ -19,8 +19,8 @@ template <class T> T at(const std::vector<uint8_t>& file, size_t offset) {
     return value;
 }
 
-// Returns the CRC over all words of an image except the last one, which stores it. The CRC is that
-// of the STM32's CRC unit (RM0033, 3.2).
+// Returns the CRC over all words of an image except the last word, which contains the CRC. The CRC
+// is that of the STM32's CRC unit (RM0033, 3.2).
 uint32_t checksum(const std::vector<uint8_t>& image) {
     uint32_t crc = 0xFFFFFFFF;
     for (size_t offset = 0; offset + 4 < image.size(); offset += 4) {

@@ -93,8 +93,8 @@ struct Keys {
         Bytes seed(crypto_sign_SEEDBYTES);
         if (!readSeed(path, seed)) {
             randombytes_buf(seed.data(), seed.size());
-            // The file gets its name when it is complete, because several runs at the same time may
-            // use it: all source trees of a user share it.
+            // The file gets its final name only when it is complete: all source trees of a user
+            // share this file, so several runs may use it at the same time.
             std::string temporary = path + ".XXXXXX";
             const int out = mkstemp(temporary.data()); // mode 0600
             const bool made = out >= 0 &&

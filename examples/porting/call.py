@@ -5,7 +5,8 @@
 Usage: call.py KERNEL ENDPOINT [STATION-ENDPOINT] [Ice options]
 
 KERNEL is the name that the meter must report. With a STATION-ENDPOINT, this program also serves an
-object Station at this endpoint, and waits until the meter calls it. """
+object Station at this endpoint, and waits until the meter calls it.
+"""
 import os
 import sys
 import threading

@@ -197,7 +197,8 @@ static int testReset(void) {
     return 0;
 }
 
-/* Returns 1 if the FPGA can lift one of its outputs: their bank has a supply. */
+/* Returns 1 if the FPGA can drive at least one of its outputs high. The bank of these pins then has
+ * a supply. */
 static int isBankPowered(void) {
     set(PIN_TXD, 1);
     set(PIN_RTS, 1);

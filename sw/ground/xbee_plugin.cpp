@@ -27,8 +27,8 @@ public:
         : instance_(instance), o_(options) {}
 
     void streamWriteImpl(Ice::OutputStream* s) const override {
-        // A proxy contains only the options that a peer can use. The serial device of this machine
-        // is not one of them.
+        // A proxy contains only the options that a peer can use. A peer cannot use the name of this
+        // machine's serial device.
         s->write(static_cast<Ice::Short>(o_.serial.target));
         s->write(static_cast<Ice::Byte>(o_.channel));
         s->write(o_.timeoutMs);

@@ -196,7 +196,7 @@ Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callbac
     Ice_Status status = sendAndUnlock(self, callback, cookie);
     if (status != ICE_OK || self->mode != ICE_TWOWAY)
         return Ice_ObjectPrx_end(self, status);
-    /* Wakes the receiving task, so that it wakes again in time for this call's time-out. */
+    /* Wakes the receiving task, which then waits at most until this call's time-out. */
     if (isWaiting(ic, slot))
         icec_wake(ic);
     return ICE_OK;

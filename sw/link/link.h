@@ -104,9 +104,9 @@ void Link_setKey(Link* link, int slot, const U8* key, U32 side);
 int Link_keyInUse(const Link* link);
 #endif
 
-/* Starts the handshake. Both sides or only one of them may start it; one HELLO is enough to make
- * the session. A side that never calls this function still answers a HELLO. If the peer disappears
- * later, the state returns to CONNECTING. */
+/* Starts the handshake. Only one side must start the handshake, but both sides may do so; one HELLO
+ * is enough to make the session. A side that never calls this function still answers a HELLO. If
+ * the peer disappears later, the state returns to CONNECTING. */
 void Link_start(Link* link, U32 nowUs);
 
 /* Ends the session: informs the peer, reports LINK_UNKNOWN for messages in flight, and sets the

@@ -12,8 +12,9 @@
 #define CLEAR_AT 11U  /* offset in the nonce at which the unencrypted payload begins */
 #define CLEAR_MOST 5U /* largest size of an unencrypted payload, bytes */
 
-/* Returns how many bytes at the start of the payload are not encrypted: all bytes of a control
- * frame, the acknowledgement in a PIGGYBACK, the nonces in HELLO-ACK and CONFIRM. */
+/* Returns the number of bytes at the start of the payload that are not encrypted: in a PIGGYBACK
+ * the acknowledgement, in HELLO-ACK and CONFIRM the nonces, in other control frames all bytes, in a
+ * data frame none. */
 static U32 clearOf(const U8* frame) {
     U32 most = frame[2] >> 5 >= LINK_KIND_PIGGYBACK ? 1U : 2U * LINK_NONCE_BYTES;
     if (!(frame[0] & LINK_CONTROL))

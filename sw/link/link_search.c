@@ -130,7 +130,7 @@ static void skip(Link_Search* search, const U8* frame, U32 left) {
  * wants to delay the genuine frame. Frames that end within bytes kept from earlier calls were
  * already checked.
  *
- * An attacker can send bytes in which a handshake frame seems to end with each portion that the
+ * An attacker can send bytes that look like a handshake frame at the end of each portion that the
  * caller reads, and so use up the search budget before the genuine frame arrives. If the budget
  * does not suffice for a handshake frame at the end of the bytes, this frame is therefore kept, and
  * tried again after a silence. */

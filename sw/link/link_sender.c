@@ -249,8 +249,8 @@ static void setTimer(Link_Sender* sender) {
     sender->timerAt = sender->pacing->env.now + rto;
 }
 
-/* Marks the fragments that were sent before transmission number `order` and are not acknowledged as
- * lost, so that they are sent again. */
+/* Marks fragments as lost, so that they are sent again: all unacknowledged fragments whose last
+ * transmission was before transmission number `order`. */
 static void sendAgain(Link_Sender* sender, U32 order) {
     U32 seq;
     for (seq = sender->base; seq != sender->next; ++seq) {

@@ -10,8 +10,8 @@
 
 typedef enum Link_FragmentState { LINK_TO_SEND, LINK_SENT, LINK_ACKED } Link_FragmentState;
 
-/* A fragment in the window. It stays there until it and all earlier fragments have been
- * acknowledged. */
+/* A fragment in the window. A fragment stays in the window until it and all earlier fragments have
+ * been acknowledged. */
 typedef struct Link_Fragment {
     Link_Chunk chunk;
     U32 firstAt, sentAt; /* times of the fragment's first and last transmission, us */

@@ -28,7 +28,7 @@ CALLS = 20
 
 
 class StationI(Autopilot.Station):
-    """Counts the calls from the vehicle: the first one is two-way, the second one is one-way."""
+    """Counts the calls from the vehicle: the first call is two-way, the second call is one-way."""
 
     def __init__(self):
         self.called = threading.Semaphore(0)

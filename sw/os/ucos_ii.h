@@ -56,9 +56,9 @@ INT8U OSTaskCreate(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT8U p
 /* fills the stack with zeros, so that OSTaskStkChk can count the unused words */
 #define OS_TASK_OPT_STK_CLR 2U
 
-/* Creates a task like OSTaskCreate, with the bounds of its stack: `pbos` is its lowest address,
- * `stk_size` its size in units of OS_STK. `id` and `pext` have no effect; they are parameters of
- * uC/OS-II. */
+/* Creates a task like OSTaskCreate, with the bounds of the task's stack: `pbos` is the lowest
+ * address of the stack, `stk_size` the size of the stack in units of OS_STK. `id` and `pext` have
+ * no effect; they are parameters of uC/OS-II. */
 INT8U OSTaskCreateExt(void (*task)(void* p_arg), void* p_arg, OS_STK* ptos, INT8U prio, INT16U id,
                       OS_STK* pbos, INT32U stk_size, void* pext, INT16U opt);
 

@@ -52,15 +52,15 @@ public:
     bool block(const std::string& subject);
     void unblock(const std::string& subject) { --subjects_[subject].blocked; }
     void add(std::shared_ptr<Request> request);
-    // Drops the two-way requests of a client that has disconnected; its one-way requests remain.
-    // Returns the client, or null if `connection` belongs to no client.
+    // Drops the two-way requests of a client that has disconnected; the client's one-way requests
+    // remain. Returns the client, or null if `connection` belongs to no client.
     std::shared_ptr<Client> leave(const Connection& connection);
 
     using MayGo = std::function<bool(const Client&)>;
     // Returns whether the condition is true for at least one client that has waiting requests.
     bool isAnyWaiting(const MayGo& condition) const;
-    // Chooses the client whose turn it is among those that may send now; removes and returns its
-    // oldest request. Returns null if no client may send.
+    // Among the clients that may send now, chooses the client whose turn is next; removes and
+    // returns this client's oldest request. Returns null if no client may send.
     std::shared_ptr<Request> popNext(const MayGo& mayGo);
     // Removes and returns the requests that arrived before `due`.
     Requests popOlder(std::chrono::steady_clock::time_point due);

@@ -125,8 +125,8 @@ bool Forwarder::mayGo(const Client& client) const {
              lane.bytes + request.parameters.size() <= mostBytesUnderWay[number]));
 }
 
-// Returns a lane that must be connected: requests wait for it, and it has no connection. Returns -1
-// if there is no such lane.
+// Returns a lane that has no connection although requests wait for this lane; -1 if there is no
+// such lane.
 int Forwarder::laneToConnect() const {
     const bool isConnected = lanes_[shortCalls].connection != nullptr;
     int found = -1;

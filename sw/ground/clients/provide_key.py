@@ -4,7 +4,8 @@
 in the factory or after a key was lost.
 
 Connect the port to PA9 and PA10, start this program, then switch the vehicle on. During its start,
-the vehicle looks for a break (a line held low) on this port. If it finds one, it waits for a key.
+the vehicle looks for a break (a line held low) on this port. If the vehicle finds a break, it waits
+for a key.
 """
 
 import argparse

@@ -9,8 +9,8 @@
 
 #define LOADER_MAGIC 0x1CE50C06UL
 
-/* Functions of libsodium that the loader contains, so that images need not contain them. The table
- * follows the loader's vector table. */
+/* Functions of libsodium that the loader contains, so that images need not contain these functions.
+ * The table follows the loader's vector table. */
 typedef struct Loader_Services {
     U32 magic;
     int (*isSigned)(const U8* signature, const U8* message, U32 bytes, const U8* key);

@@ -255,7 +255,8 @@ class Call(unittest.TestCase):
                                 "COMP_POINT": str(len(line)),
                                 "_ARGCOMPLETE_SUPPRESS_SPACE": "1"})
             self.assertIn(wanted, done.stdout.split("\n"), line)
-        self.assertIn("several have this operation", self.ask("ice_ping", operation=False)[2])
+        self.assertIn("several objects have this operation",
+                      self.ask("ice_ping", operation=False)[2])
         self.assertIn("did you mean filter", self.ask("fliter", operation=False)[2])
         with self.assertRaisesRegex(Stop, "no object 'fri'; did you mean fir"):
             Catalogue(str(BUILD)).find("fri.filter")

@@ -102,7 +102,7 @@ class Lists(unittest.TestCase):
             self.assertIn("never overwritten", ask("./icesoc", "key", f"{work}/pilot.pem",
                                                    "--certificate")[1])
             Path(work, "authority.key").unlink()
-            self.assertIn("one of them is missing", ask("./icesoc", "key", f"{work}/new.pem",
+            self.assertIn("restore the missing file", ask("./icesoc", "key", f"{work}/new.pem",
                                                         "--certificate")[1])
 
     def test_a_build_is_one_line_and_a_file(self):

@@ -244,7 +244,7 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
         self.lights(coverage="green   *100.0 % of lines, 100.0 % of toggles, 1 of 1 cover points")
         self.has('"reset_at_two"', file="build/regress/report.html")
         edit("gates.json", '{"hdl/"', '{"gone.v": {}, "hdl/"')
-        self.assertIn("a gate of no file: gone.v", measure())
+        self.assertIn("gates.json: no file belongs to the gate gone.v", measure())
 
     def test_lights_mutants(self):
         results = "small/one\tcaught\ttest_a\t1\nsmall/two\t{}\ttest_a\t1\n"

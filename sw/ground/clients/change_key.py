@@ -148,7 +148,8 @@ def main():
         return 0
     except Ice.UserException as e:
         if e.ice_id() == "::Autopilot::InFlight":
-            sys.exit("change_key: the vehicle is flying: it accepts no key before it has landed")
+            sys.exit("change_key: the vehicle is flying, and accepts a key only after it has "
+                     "landed")
         sys.exit("change_key: %s" % reason_of(e))
     except (Ice.Exception, provide_key.Failed, RuntimeError, OSError) as e:
         sys.exit("change_key: %s" % reason_of(e))

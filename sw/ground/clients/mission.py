@@ -168,9 +168,8 @@ def part_of(folder):
     """Imports FOLDER/ground.py and returns the module."""
     path = os.path.join(folder, "ground.py")
     if not os.path.exists(path):
-        raise RuntimeError("the core in %s has no part in a mission: expected a file ground.py "
-                           "there" %
-                           folder)
+        raise RuntimeError("the core in %s cannot be called in a mission: expected a file "
+                           "ground.py in this folder" % folder)
     spec = importlib.util.spec_from_file_location("ground_" + os.path.basename(folder), path)
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)

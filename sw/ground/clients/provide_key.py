@@ -179,10 +179,11 @@ def main():
         termios.tcsetattr(port, termios.TCSANOW, mode)
         provide(port, command, args.patience)
         print("provide_key: the vehicle %s" %
-              ("is protected" if args.protect else
-               "has the group's key" if args.ground == GROUP else
-               "serves a second ground" if args.ground is not None else
-               "has a fellow" if args.fellow is not None else "is open" if args.open else
+              ("has read protection" if args.protect else
+               "has the key for calls to all vehicles" if args.ground == GROUP else
+               "has the key of a second ground station" if args.ground is not None else
+               "has the key of another vehicle" if args.fellow is not None else
+               "has no key, and is open to anyone" if args.open else
                "has this key, and no other"))
         return 0
     except Failed as e:

@@ -36,15 +36,15 @@ TEXT = {
     "busyNow": "another update is in progress",
     "onTrial": "the running image is not confirmed yet; the vehicle reverts within a minute",
     "needsOther": "the package needs a newer bitstream (or firmware) that is confirmed: send that "
-                  "first; a list of keys needs the list before it, and a running image that is "
-                  "signed with one of its keys",
+                  "first; a list of keys needs the previous list, and a running image that is "
+                  "signed with a key of the new list",
     "flashFault": "the vehicle could not write its flash",
     "wentBack": "the new version was started, then replaced by the old one: it was not confirmed "
                 "in time, or crashed",
     "refused": "the FPGA has not accepted the bitstream: its CRC is wrong, or it is for another "
                "device; the golden bitstream runs",
 }
-IN_FLIGHT = "the vehicle is flying: it accepts no update before it has landed"
+IN_FLIGHT = "the vehicle is flying, and accepts an update only after it has landed"
 
 
 class Failed(Exception):

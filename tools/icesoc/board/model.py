@@ -239,7 +239,7 @@ def checked(path, kind, boards=BOARDS):
     if kind == "board" and "base" in facts:
         facts = with_base(path, facts, boards)
     elif "without" in facts:
-        raise Wrong(f"{path}: without: expected with 'base' only")
+        raise Wrong(f"{path}: without: expected only in a board with 'base'")
     problems(path, facts, kind)
     return facts
 

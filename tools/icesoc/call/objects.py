@@ -88,8 +88,8 @@ class Catalogue:
             names = self.slices.operations(self.objects[text].interface)
             raise Stop(f"{text}: expected {text}.OPERATION; it has {listed(names)}", 2)
         if having:
-            raise Stop(f"{text}: expected an object before it, since several have this operation: "
-                       + listed(f"{each.identity}.{text}" for each in having), 2)
+            raise Stop(f"{text}: expected OBJECT.{text}, because several objects have this "
+                       "operation: " + listed(f"{each.identity}.{text}" for each in having), 2)
         every = {name for each in self.objects.values()
                  for name in self.slices.operations(each.interface)}
         raise Stop(f"no object has an operation '{text}'{nearest(text, every)}; --list lists "

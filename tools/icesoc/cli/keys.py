@@ -83,7 +83,8 @@ def check_authority(authority, signs):
     """Fails unless certificate and key of the authority are regular files, and only their owner can
     read the key."""
     if os.path.lexists(authority) != os.path.lexists(signs):
-        raise Stop(f"expected both '{authority}' and '{signs}', or neither; one of them is missing")
+        raise Stop(f"expected both '{authority}' and '{signs}', or neither, got one; restore the "
+                   "missing file")
     for path in authority, signs:
         if os.path.lexists(path) and not path.is_file():
             raise Stop(f"'{path}': expected a regular file")

@@ -71,7 +71,8 @@ class Signals:
                 raise Failed("--trigger: expected a signal and a value such as u_fir.count=0x10, "
                              "got '%s'" % word)
             if not 0 <= value < 1 << width:
-                raise Failed("--trigger: %s has %d bits, and is never %s" % (name, width, number))
+                raise Failed("--trigger: %s: expected 0 to %d, got %s" %
+                             (name, (1 << width) - 1, number))
             if lsb + width > 31:
                 raise Failed("--trigger: %s is at bits %d to %d of the list, and only bits below "
                              "31 can trigger; list it earlier in signals=" %
@@ -158,12 +159,13 @@ def save(path, signals, probe, state, before, after):
     """Writes the capture into a file; returns messages about the capture."""
     changes = read(probe, state, before, after)
     if not changes:
-        raise Failed("the probe has no capture")
+        raise Failed("expected recorded changes in the probe, got none; run the recorded core "
+                     "during the capture")
     write_vcd(path, signals, changes, state.clkHz)
     lost = sum(c.gap for c in changes)
     return "%d changes of %d signals in %d clocks%s: gtkwave %s" % (
         len(changes), len(signals.list), changes[-1].clock - changes[0].clock + 1,
-        ", lost ones at %d places" % lost if lost else "", path)
+        ", changes were lost at %d places" % lost if lost else "", path)
 
 
 def capture(probe, signals, args, say):

@@ -197,7 +197,7 @@ def by_tests(rows, copy, pool):
     for name in bad:
         path = copy / "build" / f"{name}.0.log"
         print(f"{path.read_text(errors='replace')}mutants: {name} fails without any mutant, so it "
-              f"caught none: repair that first ({path})", file=sys.stderr)
+              f"caught none; repair the test first ({path})", file=sys.stderr)
     return bad
 
 

@@ -164,9 +164,9 @@ def main(gates, folder):
         if not files:
             raise Stop("nothing was measured; run the tests with COVERAGE_DIR set to this folder")
         below = report(files, limits["gates"], f"{folder}/summary.json")
-        below += [f"a gate of no file: {path}" for path in limits["gates"]
+        below += [f"{gates}: no file belongs to the gate {path}" for path in limits["gates"]
                   if not any(name.startswith(path) for name in files)]
-        below += [f"an explanation that explains nothing: {rule}" for rule in explanations.stale()]
+        below += [f"{gates}: explanation without effect: {rule}" for rule in explanations.stale()]
     except (OSError, ValueError, KeyError, Stop) as error:
         print(f"coverage: {reason_of(error)}", file=sys.stderr)
         return 2

@@ -7,7 +7,7 @@ import subprocess
 from icesoc.synth import timing
 from icesoc.synth.owners import Cost
 from icesoc.synth.sources import read_json
-from icesoc.util.errors import Stop
+from icesoc.util.errors import Stop, reason_of
 from icesoc.util.files import write
 
 KEYS = ("lut", "ff", "slices", "carry", "dsp", "ram", "mhz")
@@ -72,7 +72,7 @@ def read_baseline(file):
     try:
         return parse(j)
     except (KeyError, TypeError, AttributeError) as error:
-        raise Stop(f"{file}: expected accepted figures: {error!r}") from None
+        raise Stop(f"{file}: expected accepted figures: {reason_of(error)}") from None
 
 
 def written(baseline):

@@ -79,7 +79,7 @@ class Library:
         self.modules = {}
         for folder in folders:
             if not folder.is_dir():
-                raise Stop(f"{folder} is not a folder")
+                raise Stop(f"expected a folder, got {folder}")
             for file in sorted(folder.glob("*.v")):
                 self.scan(file)
         for file in files:

@@ -251,7 +251,7 @@ def foreign(target):
             note.write_text(sums)
             reached += 1
         except Unreachable as error:
-            print(f"fetch: without {', '.join(its['cores'])}: {error}", file=sys.stderr)
+            print(f"fetch: left out {', '.join(its['cores'])}: {error}", file=sys.stderr)
     if not reached:
         raise Unreachable("no source of a third-party core")
 

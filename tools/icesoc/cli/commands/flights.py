@@ -341,7 +341,8 @@ def key(values):
         return
     make = keys.make_certificate if values.certificate else flight.make_key
     if not make(values.file):
-        raise Stop(f"'{values.file}' already exists: a key is never overwritten")
+        raise Stop(f"'{values.file}' already exists, and a key is never overwritten; "
+                   "choose another name")
     used = "" if values.certificate else f": ./icesoc run --key {values.file}"
     say(f"made {values.file}, which only you can read{used}")
 

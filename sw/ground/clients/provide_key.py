@@ -181,8 +181,8 @@ def main():
         print("provide_key: the vehicle %s" %
               ("has read protection" if args.protect else
                "has the key for calls to all vehicles" if args.ground == GROUP else
-               "has the key of a second ground station" if args.ground is not None else
-               "has the key of another vehicle" if args.fellow is not None else
+               "accepts a second ground station" if args.ground is not None else
+               "accepts another vehicle" if args.fellow is not None else
                "has no key, and is open to anyone" if args.open else
                "has this key, and no other"))
         return 0

@@ -4,7 +4,7 @@
 // request as one access to the core, and keeps the answer until the next access ends.
 //
 // A reset of the core ends the access with an error. Requests do not overlap: the next request
-// comes after ended_o of the previous one.
+// comes after ended_o of the previous request.
 
 `default_nettype none
 

@@ -60,8 +60,8 @@ module bus_decoder #(
         end else begin : g_many
             localparam GROUPS = (SLOTS + 7) / 8;
             reg [2:0]            index;
-            // one bit per group, high if the group is selected; a group that is incomplete and the
-            // only one is always selected
+            // one bit per group, high if the group is selected; with only one group, which is
+            // incomplete, the bit is always high
             reg [GROUPS-1:0]     group;
             // answers of each group that may still be selected; each bit of the slot number halves
             // their number

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // table1: the blocks in the paper's Table I: FSMC bridge, memory controller with two NPI ports,
-// radio IP. With MODEM_API = 1, the modem controller is that of the chip that flies (hdl/soc.v).
+// radio IP. With MODEM_API = 1, the modem controller is the same as in the chip that flies
+// (hdl/soc.v).
 //
 // The table does not include the system slot (page register, errors). Therefore the signals of the
 // system slot are ports of this module, and slot 0 answers like an empty slot.

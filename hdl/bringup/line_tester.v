@@ -61,7 +61,8 @@ module line_tester #(
     end
 
     // ---- counter of NWE's rising edges. It also counts edges that follow each other closely, so a
-    // strobe that rings adds more than one. The microcontroller changes NWE only between frames.
+    // strobe that rings is counted more than once. The microcontroller changes NWE only between
+    // frames.
     reg [7:0] edges = 8'd0;
     always @(posedge pins_i[NWE]) edges <= edges + 8'd1;
     // The count is stable when it is captured, because a frame starts at least two clocks after the

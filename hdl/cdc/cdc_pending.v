@@ -3,8 +3,8 @@
 // cdc_pending: reports that an event of cdc_pulse is still in transfer. Synthesis maps this module
 // to one LUT and does not merge it with other logic.
 //
-// Only one input changes at a time, because two events are further apart than the transfer of one
-// event takes. The output of a single LUT then does not glitch; the output of several LUTs might.
+// Only one input changes at a time, because the time between two events is longer than the transfer
+// of an event. The output of a single LUT then does not glitch; the output of several LUTs might.
 
 `default_nettype none
 

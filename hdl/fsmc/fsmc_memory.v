@@ -347,8 +347,8 @@ module fsmc_memory #(
                 assert (memory == newest);
             // Missing data is requested if no other request is pending.
             if (rd_miss_i && idle_o && !wanted && !busy)
-                // |(a ^ b) instead of a != b: otherwise Yosys merges this comparison with the one
-                // above
+                // |(a ^ b) instead of a != b: otherwise Yosys merges this comparison with the
+                // previous one
                 assert (miss || at_whole || (at_alone && !(|(at_word ^ one_word))));
             // A block stays valid until a fetch replaces it, or all data is discarded.
             if ($past(!rst_i && !drop_i && !wr_i && !(miss && at_upper != upper)))

@@ -24,7 +24,8 @@ module fsmc_sync_bridge_proof #(
     parameter ABORTS = 0 // 1: the processor may end an access at any time
 ) (
     input wire        clk_i,
-    // pins: addresses are 8 halfwords, and one beyond the slots; a halfword has two bits of data
+    // pins: the address is one of 8 halfwords, or an address after the last slot; a halfword has
+    // two bits of data
     input wire        ne1_i,
     input wire        ne2_i,
     input wire        noe_n_i,

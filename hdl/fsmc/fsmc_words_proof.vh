@@ -14,9 +14,9 @@
 //   neither.
 // - A read returns a half of the word that the bus returned last, and that word has the address of
 //   the read. The transfer of this word began in this access or, for a high half, in the previous
-//   read of its low half. If no access was attempted between these two reads, this transfer began in
-//   the read of the low half, so both halves are from one transfer. Otherwise aborted reads, also
-//   of the low half, may lie between the two reads. A read after the last slot returns 0.
+//   read of its low half. If no access was attempted between these two reads, the transfer began
+//   in the read of the low half, so both halves are from one transfer. Otherwise aborted reads,
+//   also of the low half, may lie between the two reads. A read after the last slot returns 0.
 // - Each read, even if it is aborted, makes at most one transfer. A transfer happens only for an
 //   access.
 //
@@ -241,7 +241,8 @@
                  (!seen || done_s == 2'b11)));
         assert (!done || calm_n != 2'd2 || done_s[0]);
 
-        // The read in progress is the one at the pins, or one that was aborted a few clocks ago.
+        // The read in progress is the read at the pins, or a read that was aborted a few clocks
+        // ago.
         if (fetching && reads)
             assert (s0 && s1 && bus_addr == {8'd0, a_i[2:1]} && asked_high == a_i[0] &&
                     (give || !beyond_i));

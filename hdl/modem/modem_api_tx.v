@@ -70,7 +70,7 @@ module modem_api_tx (
             total <= place < DATA ? 8'd0 : total + data_o;
         if (past && !$past(rst_i)) begin
             assert (place <= CHECKSUM);
-            // Each position follows the one before it. CHECKSUM follows the last byte of the
+            // The positions follow each other in order. CHECKSUM follows the last byte of the
             // packet.
             if ($past(api_i) && api_i)
                 assert (place == $past(!taken || (place == DATA && !last_i) ? place :

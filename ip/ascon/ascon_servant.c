@@ -49,9 +49,9 @@ static int fits(const Cores_Bytes* bytes) {
     return bytes->size <= ASCON_LIMIT;
 }
 
-/* Returns 1 if an earlier operation of the core has not ended, because the memory does not respond.
- * The core would then ignore a new key, nonce or start, and the end of the earlier operation would
- * look like the end of the new operation. */
+/* Returns 1 if an earlier operation of the core is still in progress. This happens if the memory
+ * does not respond. The core would then ignore a new key, nonce or start, and the end of the
+ * earlier operation would look like the end of the new operation. */
 static int hangs(const Ascon_Core* self) {
     return (FSMC_read(self->core.slot, ASCON_STATUS) & ASCON_STATUS_BUSY_MASK) != 0;
 }

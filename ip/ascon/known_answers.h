@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // known_answers: provides inputs for tests, and the known answers of NIST SP 800-232. A test writes
-// all its answers in the format of the published file; the SHA-256 of this text must be that of the
-// published file.
+// all its answers in the format of the published file; the SHA-256 of this text must equal the
+// SHA-256 of the published file.
 
 #pragma once
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * camera_servant: implements Cores::Camera with the registers of the core, which it accesses
- * through the FSMC. It also tells other servants where the frames are (Hw_Frames).
+ * through the FSMC. It also gives other servants the location of the frames (Hw_Frames).
  */
 #include "camera_servant.h"
 #include "camera_regs.h"

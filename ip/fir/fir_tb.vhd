@@ -1,7 +1,7 @@
 -- SPDX-License-Identifier: MIT
 --
--- fir_tb: compares the results of the VHDL filter with those of the model (vectors.txt), with gaps
--- in the input and stalls of the output.
+-- fir_tb: compares the results of the VHDL filter with the results of the model (vectors.txt), with
+-- gaps in the input and stalls of the output.
 
 library ieee;
 use ieee.std_logic_1164.all;

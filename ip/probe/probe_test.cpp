@@ -98,7 +98,7 @@ protected:
         }
         return all;
     }
-    // Checks that in each clock from the first change to the last, the recorded value is the one
+    // Checks that in each clock from the first change to the last, the recorded value is the value
     // that the test applied. Clocks after a loss are not checked.
     void expectGiven(const std::vector<Change>& all, bool loses = false) {
         unsigned found = 0;

@@ -1,6 +1,6 @@
 -- SPDX-License-Identifier: MIT
 --
--- vision_tb: compares the records of the VHDL core with those of the model, with a memory that
+-- vision_tb: compares the records of the VHDL core with the records of the model, while the memory
 -- stalls.
 
 library ieee;

@@ -94,7 +94,7 @@ bool hasResults(const Operation& o);
 bool isAmd(const Declaration& owner, const Operation& o);
 bool isSliced(const Declaration& owner, const Operation& o);
 // sendsClasses: true if an in parameter holds a class instance. returnsClasses: true if a result
-// holds one.
+// holds a class instance.
 bool sendsClasses(const Operation& o);
 bool returnsClasses(const Operation& o);
 // True if a slot holds a class instance. The second function considers only required slots: if one

@@ -114,7 +114,7 @@ void writeThrown(Writer& w, const std::vector<Thrown>& family) {
     w.line("}");
 }
 
-// Writes code that reads one slice and compares its type id with those of the exceptions in
+// Writes code that reads one slice and compares its type id with the type ids of the exceptions in
 // `family`.
 void readOneSlice(Writer& w, const std::vector<Thrown>& family, bool preserves) {
     w.line(std::string(preserves ? "" : "Ice_String ") + "id = Ice_InputStream_startSlice(is);");

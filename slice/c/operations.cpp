@@ -10,8 +10,8 @@ namespace {
 
 const char* const resultName = "result";
 
-// Returns the declaration of an in parameter or of a response value. An optional one is a pointer,
-// which is 0 if the value is absent.
+// Returns the declaration of an in parameter or of a response value. An optional parameter or value
+// is a pointer, which is 0 if the value is absent.
 std::string passed(const Type& t, const std::string& name, bool isOptional) {
     bool isPointer = isByPointer(t) || isOptional;
     if (isClass(t))

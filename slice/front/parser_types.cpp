@@ -37,7 +37,7 @@ Symbol* Parser::resolve(const std::string& written, const Location& at) {
     return symbols_.resolve(scopeId_, written, at, user_.empty() ? scopeId_ : user_);
 }
 
-// Checks that a type that is not local does not contain a local type.
+// Reports an error if a type that is not local contains a local type.
 void Parser::checkLocal(const Type& type, bool local, const std::string& what, const Location& at) {
     bool isLocal =
         type.kind == Kind::LocalObject || (type.declaration && type.declaration->isLocal);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// writer: fills in templates, indents lines, and breaks long ones.
+// writer: fills in templates, indents lines, and breaks long lines.
 
 #include "text/writer.h"
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // lines: top level for ISE, which connects line_tester to its pads, for the self-test of a new
-// board (docs/first-board.md). It has the pads of chip.v except those of the DDR3, and uses the
+// board (docs/first-board.md). It has the pads of chip.v except the pads of the DDR3, and uses the
 // same board.ucf.
 
 `default_nettype none

@@ -44,7 +44,7 @@ public:
     }
 
 private:
-    // limit for the wait for ready, clocks: the TIMEOUT of an adapter (docs/bus.md) plus one
+    // longest wait for ready, clocks: the TIMEOUT of an adapter (docs/bus.md) plus one clock
     static constexpr unsigned slowest = 256;
     Bench<Module>& bench_;
 };

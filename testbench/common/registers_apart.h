@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// registers_apart: checks that each writable register of a third-party core keeps a value of its
-// own. This finds lost writes. It also finds a wrong address unit (words instead of bytes, or bytes
+// registers_apart: checks that each writable register of a third-party core keeps a separate value.
+// This finds lost writes. It also finds a wrong address unit (words instead of bytes, or bytes
 // instead of words), because two neighbouring addresses then access the same register. If a core
-// has fewer registers than addresses, several addresses may access one register at a regular
-// distance; this is not an error.
+// has fewer registers than addresses, addresses at a regular distance may access the same register;
+// this is not an error.
 //
 // For each register, the test prints a note that reports whether the value could be read back. It
 // prints another note, with the names of the signals that change, if the core is active although

@@ -21,7 +21,7 @@
 #include <unicorn/unicorn.h>
 #include <vector>
 
-// Interface to everything around the processor. Addresses are those that the program uses.
+// Interface to everything around the processor. Addresses are the addresses that the program uses.
 class CpuBus {
 public:
     virtual ~CpuBus() = default;

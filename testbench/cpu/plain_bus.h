@@ -35,7 +35,7 @@ struct PlainCpu {
         return bytes.substr(0, std::strlen(bytes.c_str()));
     }
     // Runs until a BKPT instruction is reached or `cycleLimit` cycles have passed. Returns the
-    // immediate value of the BKPT, or -1 if it did not reach one.
+    // immediate value of the BKPT, or -1 if no BKPT was reached.
     int run(uint64_t cycleLimit) {
         uint64_t end = cpu.cycles() + cycleLimit;
         bus.limit = [this, end] {

@@ -434,9 +434,9 @@ void SystemControl::checkRegion(const Region& r) const {
                           ", RASR " + hex(r.rasr));
 }
 
-// Returns the region that applies to an address: of all regions that contain it, the one with the
-// highest number (B3.5.3). A region of at least 256 bytes has eight subregions, and SRD can disable
-// each of them.
+// Returns the region that applies to an address: the region with the highest number of all regions
+// that contain the address (B3.5.3). A region of at least 256 bytes has eight subregions, and SRD
+// can disable each of them.
 const SystemControl::Region* SystemControl::regionAt(uint32_t address) const {
     for (unsigned n = regions; n--;) {
         const Region& r = region_[n];

@@ -46,7 +46,7 @@ public:
     static constexpr unsigned interrupts = 81;
     static constexpr unsigned count = FirstInterrupt + interrupts;
     static constexpr uint8_t priorityBits = 0xF0; // implemented bits of a priority: the upper four
-    // execution priority of thread mode, lower than that of any exception
+    // execution priority of thread mode, lower than the priority of any exception
     static constexpr int none = 256;
 
     struct State {

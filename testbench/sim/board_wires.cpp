@@ -353,7 +353,7 @@ void BoardWires::toProcessor(const FsmcPins& chip, FsmcPins& near) {
         chip_.set(from_[D + bit], chip.dDriven, chip.dFromDesign >> bit & 1);
     chip_.set(from_[Nwait], true, chip.nwaitN);
     const bool reads = !near.noeN && !near.dOut;
-    // The contents of the second memory differ from those of the memory behind the chip.
+    // The second memory's contents differ from the contents of the chip's memory.
     const bool isOtherDriving = hasSecondDriver_ && reads && !(near.neN & 1);
     const auto other = static_cast<uint16_t>(near.a * 0x9E37u >> 3 ^ 0x5AA5u);
     near.dFromDesign = 0;

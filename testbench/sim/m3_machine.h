@@ -57,7 +57,7 @@ public:
     void report();
 
     // Runs as a debugger commands. Execution begins when a debugger connects. After the debugger
-    // has detached, the program runs freely until another one connects. `canGoBack` is true if
+    // has detached, the program runs freely until another debugger connects. `canGoBack` is true if
     // nothing outside of this process takes part in the flight; a debugger can then run the program
     // backwards, even from its end.
     void debug(GdbStub& stub, bool canGoBack);

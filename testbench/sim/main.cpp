@@ -200,8 +200,8 @@ Flight::Options recorded(const Flight::Options& now, const std::string& folder) 
     return o;
 }
 
-// Checks the flight's board and its faults, and sets the kind of modem to the board's unless the
-// flight chooses one. Throws std::invalid_argument if the board or a fault is wrong.
+// Checks the flight's board and its faults. Uses the board's kind of modem, unless the flight
+// chooses a kind. Throws std::invalid_argument if the board or a fault is wrong.
 void completeBoard(Flight::Options& o) {
     try {
         for (const std::string& fault : o.fault)

@@ -77,7 +77,7 @@ void SocModel::timeModels() {
     fromModem();
 }
 
-// Shows the chip the levels of the modem's outputs.
+// Passes the levels of the modem's outputs to the chip.
 void SocModel::fromModem() {
     bool rxd = line_.rxd(), ctsN = line_.ctsN();
     if (!wires_.areOthersStraight()) {
@@ -217,7 +217,8 @@ void SocModel::tick() {
     resting_ = quiet_ ? 0 : clocks.platform;
 }
 
-// Shows the modem and the processor the levels of the chip's outputs, except those of the FSMC.
+// Passes the levels of the chip's outputs, except the outputs of the FSMC, to the modem and the
+// processor.
 void SocModel::passOutputs() {
     const bool isStraight = wires_.areOthersStraight();
     if (!isStraight)

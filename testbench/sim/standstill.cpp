@@ -47,8 +47,8 @@ std::vector<void*> interruptedCode(const void* context) {
     void** at = std::find(frames, end, interruptedAt(context));
     std::vector<void*> code(at, end);
     if (!code.empty())
-        // functionsAt() expects return addresses and subtracts 1 from each; the program counter is
-        // not one, so 1 is added
+        // functionsAt() subtracts 1 from each address, because it expects return addresses; 1 is
+        // added to the program counter to cancel this
         code[0] = static_cast<char*>(code[0]) + 1;
     return code;
 }

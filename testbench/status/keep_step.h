@@ -17,7 +17,7 @@ inline bool isSimStatus(const void* bytes) {
 }
 
 // The upper 24 bits of toGround are the number of the session, so that bytes given to one program
-// are not counted for the next one.
+// are not counted for the next program.
 constexpr int simCountBits = 40;
 constexpr uint64_t simCount(uint64_t toGround) {
     return toGround & ((uint64_t(1) << simCountBits) - 1);

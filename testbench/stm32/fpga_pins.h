@@ -39,7 +39,7 @@ public:
     bool isDone() const { return isDoneWired && (!flash_ || (boot_.running && now_() >= doneAt_)); }
     bool isDoneWired = true; // false: the wire of DONE is missing, so DONE always reads as low
     const Spartan6Boot& boot() const { return boot_; }
-    // called when the FPGA has lost its configuration and begins to load a new one
+    // called when the FPGA has lost its configuration and begins to load a new configuration
     std::function<void()> onReconfigured;
 
     // Transfers one byte in both directions, with the processor as the master.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
 // stm32_flash: models the 1 MiB flash memory of an STM32F2, and the registers of its interface
-// (ST's PM0059; erase and programming times from the data sheet). The flash has one bank, so during
-// an erase or a write every read waits until it has ended. Programming can only clear bits. If a
-// reset or a loss of power interrupts an operation, the affected bits become random; a seed makes
-// them repeatable.
+// (ST's PM0059; erase and programming times from the data sheet). The flash has one bank, so every
+// read during an erase or a write waits until the erase or write has ended. Programming can only
+// clear bits. If a reset or a loss of power interrupts an operation, the affected bits become
+// random; a seed makes them repeatable.
 
 #pragma once
 

@@ -2,9 +2,9 @@
 //
 // wires: nets between the chips of a board, with drivers and pulls at both ends, and faults.
 //
-// A net joins two ends: 0 the microcontroller's or the modem's, 1 the FPGA's. Each end has a
-// driver, which may be off, and a pull. A released wire follows a pull after a microsecond, and
-// keeps its level without one.
+// A net joins two ends. End 0 belongs to the microcontroller or the modem, end 1 to the FPGA. Each
+// end has a driver, which may be off, and a pull. A released wire follows a pull after a
+// microsecond; without a pull, it keeps its level.
 
 #pragma once
 

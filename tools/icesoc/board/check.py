@@ -119,7 +119,7 @@ def balls(board: Board):
 
 
 def twice(board: Board):
-    """Finds pins, balls and pins of the modem that two nets use."""
+    """Finds pins of the microcontroller, balls, and pins of the modem that two nets use."""
     for end, noun in (("mcu", "pin"), ("fpga", "ball"), ("modem", "modem's pin")):
         seen = {}
         for net in board.nets:
@@ -166,7 +166,7 @@ def loads(use, net: Net, end):
 
 
 def memory(board: Board):
-    """Finds nets on balls of the memory controller that the DDR3 uses."""
+    """Finds nets on balls of the memory controller, which the DDR3 needs."""
     if not board.ddr:
         return
     bank = board.ddr["bank"]

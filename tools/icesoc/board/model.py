@@ -2,8 +2,7 @@
 """model: reads boards/NAME/board.toml, and the files of the modules and parts that it names.
 
 The facts of parts (boards/parts/*.csv) and of modules (boards/modules/*.toml) are read here and
-nowhere else. check.py checks a board that was read; the generators are in ucf.py and the files next
-to it.
+nowhere else. check.py checks a Board; ucf.py and the files next to it generate files from a Board.
 """
 import csv
 import json

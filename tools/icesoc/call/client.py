@@ -176,7 +176,7 @@ class Client:
                           "files", ABSENT,
                           "Ice.OperationNotExistException") from None
         except Ice.UnknownLocalException as error:
-            # A gateway that cannot reach the vehicle answers with its name and the reason.
+            # A gateway that cannot reach the vehicle answers "icesoc-gateway: " and the reason.
             gateway, _, reason = reason_of(error).partition("icesoc-gateway: ")
             if gateway or not reason:
                 raise self.refused(error) from None

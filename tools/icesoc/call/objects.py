@@ -40,7 +40,7 @@ class Object:
 
 def only_interface(slices, files):
     """Returns the interface of a core's servant: the interface with the metadata [":hw"], or the
-    only interface of the files. Returns "" if neither of the two is exactly one."""
+    only interface of the files. Returns "" if neither of these is unique."""
     folders = {os.path.realpath(file) for file in files}
     found = [name for name in slices.interfaces()
              if os.path.realpath(slices.get(name)["file"]) in folders]

@@ -56,8 +56,8 @@ def blocks_of(tree, slice2c, work):
 
 
 def add_memory(block, facts):
-    """Adds the size of the buffers to the description of a block. The core's manifest contains this
-    size, but it is part of the contract."""
+    """Adds the size of the buffers to the description of a block. The size is in the core's
+    manifest, but belongs to the register contract."""
     if "memory_bytes" in facts:
         block.description["memory_bytes"] = facts["memory_bytes"]
 

@@ -2,8 +2,8 @@
 """command: the list of all commands, and the parser of each for its two entry points.
 
 `./icesoc run --loss 0.1` and `make run LOSS=0.1` are equivalent: an option that is not given is
-read from the environment variable with its name, to which make exports the variables of its command
-line.
+read from the environment variable with its name, and make exports the variables of its command line
+to the environment.
 """
 import argparse
 import os

@@ -238,8 +238,8 @@ def take_board(values):
 
 
 def check_chip(values, build):
-    """Rejects a core of the tree that is not in the chip, because its call would fail only minutes
-    later."""
+    """Rejects a core of the tree that is not in the chip. Without this check, the call of the core
+    would fail after minutes."""
     listed = build.cached("CORES") or "ip/cores.list"
     lines = re.findall(r"^\s*(\w+)", Path(listed).read_text(), re.M)
     for core in (Path(folder).name for folder in values.cores):

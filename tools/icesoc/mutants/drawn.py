@@ -18,7 +18,7 @@ TESTS = {
     "axis_filter": "test_ip_foreign_axis", "modem_api_": "test_modem_api",
     "modem_": "test_modem test_modem_api", "camera_|async_fifo": "test_ip_camera",
     "fsmc_": "test_fsmc_bridge test_fsmc_modes", "cdc_": "test_fsmc_bridge"}
-# s of CPU time for each step of a mutant's proof; longer if the proof itself takes longer
+# s; least limit of CPU time for each step of a mutant's proof
 SECONDS = "20"
 DRAW = """setattr -set keep 1 w:f_*
 opt_clean

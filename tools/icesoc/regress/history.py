@@ -44,7 +44,7 @@ class History:
         return self.ends[name][-1][0][0] if self.ends[name] else ""
 
     def now(self, test, seed=None):
-        """Returns how the last run with the current sources (and with this seed) of a test ended.
+        """Returns how a test's last run with the current sources (and with this seed) ended.
         If there is no such run, returns "f" if the test failed in its last run."""
         return next((end[0] for end, _ in reversed(self.ends[test.name])
                      if end[2] == test.print and seed in (None, end[3])),

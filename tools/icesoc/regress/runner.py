@@ -180,8 +180,7 @@ def readable(log):
 
 def run_tests(tests, build, out, seed, jobs, history):
     """Runs tests in parallel; tests that failed last time start first. Returns the results, and the
-    signal that interrupted the tests, or None. After a signal, these are the results of the
-    finished tests."""
+    signal that interrupted the tests, or None. After a signal, only finished tests have results."""
     chosen, junit = out / "tests.list", (out / f"junit-{seed}.xml").resolve()
     write_numbers(chosen, tests)
     junit.unlink(missing_ok=True)

@@ -15,7 +15,7 @@ C_MACROS |= {"CHAR_BIT", "SIG_DFL", "SIG_IGN", "SIG_ERR", "EXIT_SUCCESS", "EXIT_
              "LC_MONETARY", "LC_NUMERIC", "LC_TIME", "FLT_RADIX", "FLT_ROUNDS"}
 C_MACROS |= {f"{kind}_{what}" for kind in ("FLT", "DBL", "LDBL") for what in (
     "DIG", "EPSILON", "MANT_DIG", "MAX_EXP", "MAX_10_EXP", "MIN_EXP", "MIN_10_EXP")}
-# Prefixes of the project's headers: HW_OK, ICE_OK, MAP_SLOT_MODEM.
+# Prefixes of macros in the project's headers, such as HW_OK, ICE_OK, MAP_SLOT_MODEM.
 PREFIXES = {"hw", "ice", "fsmc", "link", "uav", "os"}
 # Ports that every register block begins with (bus/slot_ports.vh): name, output or not, width.
 SLOT_PORTS = (
@@ -95,5 +95,5 @@ def check_ports(b):
 
 
 def rdl(name):
-    """Returns a name in the form for SystemRDL, in which keywords are escaped."""
+    """Returns a name for SystemRDL; a keyword is escaped."""
     return "\\" + name if name in RDL_KEYWORDS else name

@@ -88,8 +88,8 @@ def vhdl_reads(b):
 
 
 def word_cover(b):
-    """Returns the words of the block's registers in the form of a choice of a VHDL case, such as 0
-    to 10 | 13."""
+    """Returns the words of the block's registers as a choice of a VHDL case, such as 0 to 10 |
+    13."""
     words, runs = sorted(r.word for r in b.registers), []
     for word in words:
         if runs and runs[-1][1] == word - 1:

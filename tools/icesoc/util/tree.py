@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tree: lists the files of a checkout, and returns their state and its commits."""
+"""tree: lists the files of a checkout, and returns the state of folders and hashes of commits."""
 import subprocess
 
 from icesoc.util.errors import Stop

@@ -146,7 +146,8 @@ CALL = """(async () => {
 
 
 def shoot_mission(path, profile, icesoc):
-    """Takes the picture that the default mission draws, with what the mission prints."""
+    """Takes the picture that the default mission draws, and stores the mission's output in it as
+    text."""
     out, log = f"{profile}/run", f"{profile}/log"
     logged([*icesoc, "--out", out], log, "the mission failed")
     path.write_bytes(Path(out, "after.png").read_bytes())

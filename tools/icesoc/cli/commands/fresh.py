@@ -91,7 +91,7 @@ def use_packages(root, release, values):
     machine = root.parent / f"{release}-packages"
     if not (values.again and (machine / "root").is_dir()):
         empty_machine(machine, release)
-    there = machine / "srv/packages"  # the package files must be readable for all users
+    there = machine / "srv/packages"  # the package files must be readable by all users
     shutil.rmtree(there, ignore_errors=True)
     shutil.copytree("tests/package", there)
     for path in Path(folder).glob("*.deb"):

@@ -129,8 +129,8 @@ def named(base):
 
 
 def tests_of(names):
-    """Returns lines that compare the test results of two commits. For each commit, they use the
-    stored run with the most tests. The counts are followed by the tests whose results differ."""
+    """Returns lines that compare the test results of two commits. The counts of a commit are from
+    its stored run with the most tests. The last lines list the tests whose results differ."""
     history = Path("build/regress/history.jsonl")
     kept = list(map(json.loads, history.read_text().splitlines())) if history.exists() else []
     runs = [max((each for each in kept if each["commit"] == name), default={},

@@ -37,7 +37,8 @@ class Option:
     # False: the option is only for tests of this project, and the help does not list it
     listed: bool = True
     completer: typing.Callable = None  # of argcomplete
-    choices: typing.Callable = None  # function that takes the values of all options and returns the known names (choices.py)
+    # function that takes the values of all options and returns the known names (choices.py)
+    choices: typing.Callable = None
     has_name: typing.Callable = None  # function that returns whether a value is valid although it
                                       # is not among the choices
     is_checked: bool = True  # False: the choices are for completion only

@@ -18,7 +18,7 @@ module bus_crossing #(
 ) (
     `include "slot_ports.vh"
     output wire        irq_o,
-    // clock of the core, and the signals of the slot in this clock domain
+    // clock of the core, and the slot's signals in the core's clock domain
     input  wire        core_clk_i,
     output wire        core_rst_o,
     output wire        core_valid_o,

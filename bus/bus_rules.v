@@ -9,7 +9,7 @@
 `default_nettype none
 
 module bus_rules #(
-    parameter MASTER   = 0,   // 1: the rules for a master are asserted; 0: those for a slave
+    parameter MASTER   = 0,   // 1: asserts the rules for a master; 0: asserts the rules for a slave
     parameter LIMIT    = 16,  // number of clocks within which a slave must answer, at least 1
     parameter PATIENCE = 256  // number of clocks after which a master may abandon an access
 ) (

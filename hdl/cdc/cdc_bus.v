@@ -84,7 +84,8 @@ module cdc_bus #(
     // dst_valid_o was high in the last clock of dst_clk_i
     wire       gives = edge_of_clk ? was_valid : gave;
     always @* if (past) begin
-        // Each word is pending at once, and is transferred once, in order and unchanged.
+        // A word is pending as soon as it was sent, and is transferred once, in order and
+        // unchanged.
         assert (!handed || count != 2'd0);
         assert (left <= 2'd1 || dst_valid_o);
         assert (pending_async_o == (new_write || left != 2'd0 || gives));

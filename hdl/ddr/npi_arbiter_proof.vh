@@ -330,7 +330,8 @@
     wire [W-1:0] came_me  = back_kind[KIND-1:4] == me ? came : 0;
     wire [3:0] w_word = w_words[4*w_mark[F-1:0] +: 4];
     wire [5:0] r_word = r_words[6*r_mark[F-1:0] +: 6];
-    // b_* are the values s_*; for the slot that is accepted next, they are the counts themselves.
+    // b_* are the values s_*, except for the place that the next request gets: there they are the
+    // counts.
     reg [W*SLOTS-1:0] b_w, b_r, b_wo, b_ro;
     always @* begin
         b_w  = s_w;

@@ -24,8 +24,8 @@ module npi_fifo #(
     output wire             full_o
 );
     `SHIFT_ORDER(after, LOG2)
-    // Addresses of the next word to write, and of the next word to move to data_o (with LUT RAM: of
-    // the word on data_o).
+    // write_place: address of the next word to write. read_place: address of the next word to move
+    // to data_o; with LUT RAM, address of the word on data_o.
     reg  [LOG2-1:0] write_place, read_place;
     wire [LOG2-1:0] write_next = after(write_place);
 

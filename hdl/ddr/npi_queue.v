@@ -86,7 +86,8 @@ module npi_queue #(
     assign full_o = full;
 
     // The kind of the request at `move` is in flip-flops, because the write FIFOs depend on it.
-    // These are loaded from the RAM or, if the request is not in the RAM yet, from the input.
+    // These flip-flops are loaded from the RAM or, if the request is not in the RAM yet, from the
+    // input.
     reg             moving;
     reg [KIND-1:0]  move_kind;
     wire [KIND-1:0] push_kind = {push_port_i, push_read_i, push_size_i};

@@ -49,7 +49,7 @@ module npi_stream #(
 
     reg                 request, request_read; // a request is waiting for its acknowledgement
     reg [ADDR_BITS-1:6] read_addr, write_addr; // addresses of the next bursts
-    // number of words that must still be requested, and that must still be delivered to the core
+    // number of words to request, and number of words to deliver to the core
     reg [WORD_BITS-1:0] to_ask, to_give;
     // number of words that were requested and have not been popped
     reg [5:0]           outstanding;

@@ -101,8 +101,9 @@ module fsmc_bridge #(
     wire        same, found, counts, holds1, holds2; // inputs of the gate that drives NWAIT
     wire        hit = same && found;
 
-    // Both are high when the previous write has been transferred and no register access is in
-    // progress. `clear` is used for NWAIT, `clear_sync` for decisions in clk_i.
+    // `clear` and `clear_sync` are high when the previous write has been transferred and no
+    // register access is in progress. `clear` is used for NWAIT, `clear_sync` for decisions in
+    // clk_i.
     wire clear      = !wr_async && !busy;
     wire clear_sync = !wr_sync && !busy;
 
@@ -125,9 +126,9 @@ module fsmc_bridge #(
     );
     wire wr_ne2_async = wr_async && held[44];
 
-    // A register read is not synchronised until the previous write has been transferred; otherwise
-    // a late synchroniser could let the read overtake the write. A memory read does not wait,
-    // because a write discards the read buffer.
+    // A register read enters the synchroniser only after the previous write has been transferred;
+    // otherwise the read could overtake the write if a synchroniser is late. A memory read does not
+    // wait, because a write discards the read buffer.
     wire [1:0] reads = ne & {!fsmc_noe_n_i && !wr_async, !fsmc_noe_n_i};
     cdc_bit #(.WIDTH(5), .TOGETHER(3)) u_access (
         .clk_i(clk_i),

@@ -215,7 +215,8 @@ module fsmc_bridge_proof #(
                     waited <= waited + 8'd1;
                 assert (waited < BOUND);
             end
-            // clocks since the last access to memory, because a synchroniser may be late
+            // clocks since the last access to memory, up to 7; a late synchroniser may still see
+            // this access
             reg [2:0] since_ne1 = 3'd7;
             always @(posedge step)
                 if (ne1_i && strobe)

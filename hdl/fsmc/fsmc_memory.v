@@ -20,7 +20,8 @@
 module fsmc_memory #(
     parameter ADDR_BITS   = 25, // width of a halfword address
     parameter WIDTH       = 16, // width of a halfword; 16, but smaller in proofs
-    parameter POST_LOG2   = 4,  // number of closed words that can wait: 2**POST_LOG2 - 1
+    // number of closed words (fsmc_post) that can wait: 2**POST_LOG2 - 1
+    parameter POST_LOG2   = 4,
     parameter BLOCK_LOG2  = 3,  // number of words in a block: 2**BLOCK_LOG2, BLOCK_LOG2 1..4
     parameter REGION_LOG2 = 9   // read-ahead stops at multiples of 2**REGION_LOG2 words
 ) (
@@ -90,7 +91,7 @@ module fsmc_memory #(
     // ---- Read buffer
     reg [UPPER-1:0]      upper;           // region of both blocks in the buffers
     reg [PAIR-1:0]       pair0, pair1;    // pair number of the even block and of the odd block
-    // bit n of full: all words of block n have arrived; settled is full one clock ago
+    // bit n of full: all words of block n have arrived; settled: the value of full one clock ago
     reg [1:0]            full, settled;
     reg                  current;         // block that the processor reads
     // the other buffer contains the next block, or will contain it
@@ -225,7 +226,7 @@ module fsmc_memory #(
                 full <= 2'b00;
         end
         // If the address has changed since the previous clock, the words of another address are
-        // fetched. This is harmless, because their tag has the same address.
+        // fetched. This is harmless, because the tag is the address of these words.
         if (loads) begin
             fetch_block <= target;
             fetch_word  <= single ? at_word : {BLOCK_LOG2{1'b0}};
@@ -270,7 +271,7 @@ module fsmc_memory #(
     reg untold = 1'b0;         // another master has written the halfword since the last drop_i
     // Model of the memory port. It counts the words pushed, and returns the words of a read in
     // order, with the values that the memory had when the request was acknowledged.
-    reg [POST_LOG2-1:0] pushed; // words pushed, of requests that are not acknowledged yet
+    reg [POST_LOG2-1:0] pushed; // number of words pushed for requests that are not acknowledged yet
     reg [4:0] to_come;
     reg [WORD-1:0] coming;     // address of the word that arrives next
     reg [WIDTH-1:0] coming_data;
@@ -338,8 +339,8 @@ module fsmc_memory #(
         end
 
         if (past && !rst_i) begin
-            // A read returns the last write of the processor. If another master has written since,
-            // and drop_i has followed, the read returns that value.
+            // A read returns the value that the processor has written last. If another master has
+            // written since, and drop_i has followed, the read returns the other master's value.
             if (rd_hit && rd_addr_async_i == place && !untold)
                 assert (rd_data_o == newest);
             assert (!rd_safe_o || rd_hit);

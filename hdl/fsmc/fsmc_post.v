@@ -109,7 +109,7 @@ module fsmc_post #(
     (* anyconst *) reg [ADDR_BITS-1:0] place;
     (* anyseq *) reg foreign;
     (* anyseq *) reg [WIDTH-1:0] foreign_data;
-    // values of the halfword at `place`: in memory, and written last
+    // memory: value of the halfword at `place` in memory; newest: value that was written last
     reg [WIDTH-1:0] memory, newest;
     localparam HALF = WIDTH / 2, DEPTH = 1 << LOG2;
     reg past = 1'b0;

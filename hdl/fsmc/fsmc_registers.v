@@ -8,9 +8,9 @@
 // high half is read without its low half, the word is transferred again. A high half that is
 // written without its low half is an error. Writes are posted: busy_o is high from the cycle after
 // wr_i until the word has been written, and every other access waits until busy_o is low. All
-// memory writes are flushed before a transfer. expired_i ends the wait for a slave with an error.
-// If the memory does not accept the writes in time, an error is reported, and the transfer
-// continues.
+// memory writes are flushed before a transfer. expired_i ends the wait for a slave, and the access
+// then ends with an error. If the memory does not accept the writes in time, an error is reported,
+// and the transfer continues.
 
 `default_nettype none
 
@@ -62,7 +62,8 @@ module fsmc_registers (
     // half_read: `word` contains the high half of the word at bus_addr_o, for the next read.
     // half_write: `low` contains its low half, for the next write.
     reg        half_read, half_write;
-    // the current transfer is for a read of the high half, even if the pins have changed since
+    // the current transfer was requested by a read of the high half; the pins may have changed
+    // since
     reg        asked_high;
     reg        given_up;   // the processor has ended the read early, so the answer is discarded
     reg        give, seen, done_ne, done_noe;
@@ -74,9 +75,9 @@ module fsmc_registers (
     wire in_range = wr_i ? wr_addr_i[24:11] == 14'd0 : rd_addr_i[24:11] == 14'd0;
     wire [9:0] addr = wr_i ? wr_addr_i[10:1] : rd_addr_i[10:1];
     wire same     = in_range && addr == bus_addr_o;
-    // this write is of a low half, which is only stored
+    // this access writes a low half, which is only stored
     wire keep     = wr_i && !high && in_range;
-    // this read is of the high half, which `word` already contains
+    // this access reads the high half, which `word` already contains
     wire kept     = !wr_i && high && half_read && same;
     wire wrong    = !in_range || (wr_i && !(half_write && same));
     wire transfer = begins && !keep && !kept && !wrong;

@@ -55,9 +55,9 @@ module modem_baud #(
     end
 
 `ifdef FORMAL
-    // Proves that n clocks have the same effect as one step of n, which the simulator computes at
-    // once (testbench/sim/quiet_span.cpp). Such a span may begin in any clock without a carry and
-    // without a tick.
+    // Proves that n clocks have the same effect as one step of n clocks, which the simulator
+    // computes at once (testbench/sim/quiet_span.cpp). Such a span may begin in any clock without a
+    // carry and without a tick.
     (* anyseq *) reg begins;
     reg        past = 1'b0, spans = 1'b0;
     reg [17:0] phase_then;

@@ -125,7 +125,8 @@ module modem_npi (
             assert (words == (state == WRITE));
             assert (owed == (state == WAIT_WORD));
             assert (!(npi_rd_pop_o && npi_rd_empty_i));
-            // A withdrawn read is never done, and an accepted write is requested.
+            // A read that was withdrawn is never completed, and a write that was accepted is
+            // requested.
             if (rd_done_o)
                 assert ($past(rd_valid_i) && rd_valid_i && $past(wanted));
             if ($past(wr_ready_o))

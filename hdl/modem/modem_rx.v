@@ -166,8 +166,8 @@ module modem_rx (
         end
         if (past && !rst_i && !$past(rst_i)) begin
             // A packet that has not been released is never overwritten: nothing is written while
-            // the ring is full, or after the longest packet. Bytes are written in order, each at
-            // its position.
+            // the ring is full, or beyond the greatest length of a packet. Bytes are written in
+            // order, each at its position.
             assert (!wr_valid_o || (!full_i && wr_index_o < most));
             assert (wr_be_o == 8'd1 << wr_index_o[2:0]);
             assert (!wr_valid_o || (wr_data_o == latest && wr_index_o == wrote && !lost));

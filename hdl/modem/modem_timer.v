@@ -36,7 +36,7 @@ module modem_timer #(
 
 `ifdef FORMAL
     // Proves that time_o counts the ticks since clear_i. Before the tick, n clocks have the same
-    // effect as one step of n, which the simulator computes at once.
+    // effect as one step of n clocks, which the simulator computes at once.
     (* anyseq *) reg begins; // a span
     reg        past = 1'b0, spans = 1'b0;
     reg [16:0] then, n;
@@ -57,7 +57,7 @@ module modem_timer #(
             n         <= 17'd1;
         end
         if (past) begin
-            // A unit begins with clear_i, and with each tick, which is counted.
+            // A unit begins with clear_i and with each tick; the ticks are counted.
             assert (passed == 17'd0 || !$past(rst_i || clear_i || tick_o));
             assert (time_o ==
                     ($past(rst_i || clear_i) ? 12'd0 : $past(time_o) + {11'd0, $past(tick_o)}));

@@ -86,7 +86,7 @@ module system_slot #(
     wire unused = &{1'b0, scratch, 1'b0};
 `ifdef FORMAL
     // The registers themselves are proven in formal.system_regs. Without an access only the cycle
-    // count changes, by n in n clocks. The simulator relies on this when it adds n at once
+    // count changes, by n in n clocks. The simulator relies on this when it adds n clocks at once
     // (testbench/sim/quiet_span.cpp).
     reg past = 1'b0;
     (* anyseq *) reg begins; // a span

@@ -71,7 +71,7 @@ module fir (
 
     npi_stream #(.ADDR_BITS(32), .WORD_BITS(7)) u_stream (
         `include "memory_connect.vh"
-        // not core_rst: words that were requested must be received even after a reset of the core
+        // rst_i instead of core_rst: words that were requested must be received even after core_rst
         .clk_i(clk_i), .rst_i(rst_i),
         .read_start_i(go && !core_rst), .read_base_i(source[31:6]),
         .read_words_i(to_send[8:2] + {6'd0, |to_send[1:0]}), .read_stop_i(core_rst),

@@ -8,7 +8,7 @@
 #include "vision_regs.h"
 
 #define FRAME_TIMEOUT_MS                                                     \
-    5000U /* a frame takes a tenth of this time; after it the core counts as \
+    5000U /* ten times the duration of a frame; a core that takes longer has \
            * hung */
 
 enum { DONE, REFUSED }; /* events */

@@ -154,7 +154,8 @@ struct CContext {
             if (d->kind == kind && !d->fromInclude && !d->isLocal)
                 f(*d);
     }
-    // Calls `f` for each operation that an interface of the main file declares, with the interface.
+    // Calls `f` for each operation of the main file's interfaces; the arguments are interface and
+    // operation.
     template <class F> void eachOperation(F f) const {
         each(Declaration::Kind::Interface, [&](const Declaration& d) {
             for (const Operation& o : d.operations)

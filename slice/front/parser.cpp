@@ -69,7 +69,7 @@ std::string Parser::name(const std::string& what) {
              "')");
     NameRules rules = rules_;
     if (!isMain(token().at.file))
-        // the rules for names apply only to the user's file, not to included files
+        // the rules for names apply to the main file only, not to included files
         rules = {true, true};
     checkName(text, rules, token().at, diagnostics_);
     ++position_;
@@ -113,7 +113,7 @@ std::string Parser::doc() {
     return std::string(token().doc);
 }
 
-// Reads metadata, and the doc comment before or after it.
+// Reads metadata, and the doc comment before or after the metadata.
 void Parser::readMetadata(std::string& text, Metadata& found) {
     text = doc();
     found = metadata();

@@ -79,7 +79,7 @@ void markEnd(Preprocessed& p, const std::string& file) {
     p.text += "#line " + std::to_string(lines) + p.text.substr(7, end - 6);
 }
 
-// libmcpp's limit for a line, including lines joined to it by a backslash, bytes
+// longest line that libmcpp accepts, bytes; lines that are joined by backslashes count as one line
 constexpr size_t longestLine = 65500;
 
 // Returns an error message that names the line that exceeds libmcpp's limit, in `file` or in an

@@ -21,7 +21,7 @@ constexpr uint64_t sleepStep = 1 << 20;
 CortexM3::Stop CortexM3::run(bool singleStep) {
     singleStep_ = singleStep;
     stepped_ = breakpointHit_ = false;
-    passBreakpoint_ = true; // do not stop again at the breakpoint at which the processor stands
+    passBreakpoint_ = true; // do not stop again at the breakpoint at which the processor is now
     for (;;) {
         if (failure_) {
             auto failure = failure_;

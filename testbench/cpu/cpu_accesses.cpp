@@ -10,7 +10,7 @@
 #include <cstring>
 
 namespace {
-constexpr unsigned storeCycles = 14; // number of FSMC cycles of a store of one register word
+constexpr unsigned storeCycles = 14; // number of FSMC cycles for a store of one register word
 
 std::string accessText(uint32_t address, unsigned bytes, const char* what) {
     char text[64];

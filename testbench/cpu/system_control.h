@@ -116,8 +116,8 @@ public:
     uint32_t basepri() const { return basepri_; }
     uint32_t faultmask() const { return faultmask_; }
 
-    // Returns the number of the exception that must be entered now; 0 if there is no such
-    // exception.
+    // Returns the number of the exception that must be entered now; 0 if no exception must be
+    // entered.
     unsigned deliverable() const { return bestPriority_ < runningPriority_ ? best_ : 0; }
     // Returns the current execution priority, raised by the mask registers; `none` in thread mode
     // without masks.

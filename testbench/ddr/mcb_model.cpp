@@ -140,8 +140,8 @@ static uint32_t joined(uint32_t value, uint32_t lines) {
     return lines && (value & lines) != lines ? value & ~lines : value;
 }
 
-// Returns the address that a faulty memory accesses instead. Bits 10..1 are the column, 13..11 the
-// bank, 26..14 the row.
+// Returns the address that a faulty memory accesses instead of `address`. Bits 10..1 are the
+// column, 13..11 the bank, 26..14 the row.
 uint32_t McbModel::reached(uint32_t address) const {
     if (!isFaulty_)
         return address;

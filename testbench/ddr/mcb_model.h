@@ -104,7 +104,7 @@ public:
         // startClocks)
         unsigned calibration = 64;
         unsigned commandWay = 6; // number of clocks from cmd_en to the command on the memory bus
-        // number of clocks from the last word of a burst on the memory bus to the end of rd_empty
+        // number of clocks from the last word of a burst on the memory bus until rd_empty falls
         unsigned dataWay = 5;
     };
 
@@ -209,8 +209,8 @@ private:
     Ddr3Timing device_;
     bool hung_ = false;
     uint64_t now_ = 0, nextEvent_ = 0;
-    // Delays by AR36413, memory clocks: additional wait before a refresh, and time from the end of
-    // read data to a write.
+    // Delays according to AR36413, memory clocks: additional wait before a refresh, and time from
+    // the end of read data to a write.
     static constexpr unsigned refreshLater = 2, readToWrite = 3;
     uint64_t readEnd_ = 0; // memory clock in which the data of the last read ends
     bool lastWasRead_ = false;

@@ -162,8 +162,8 @@ bool FsmcMaster::isWaiting(const Access& access) const {
            pins_.nwaitN == bool(access.bank->bcr & bcrWaitHigh);
 }
 
-// Drives the pins from the falling edge of NE to the beginning of the data phase, at which the
-// strobe is low.
+// Drives the pins from the falling edge of NE to the beginning of the data phase; the strobe is low
+// then.
 void FsmcMaster::addressPhase(const Access& access, uint16_t value, uint8_t lanes) {
     bool early = access.write ? access.mode == '2'
                               : access.mode == '1' || access.mode == '2' || access.mode == 'B';

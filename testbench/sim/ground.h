@@ -187,8 +187,8 @@ struct GroundAndChip {
         soc.onTime([this](uint64_t now) { return ground.advance(now); });
     }
     bool within(double seconds) const { return static_cast<double>(soc.now()) < seconds * 1e9; }
-    // Gives the vehicle a picture, whose pixels the function computes, or only the size of a
-    // picture.
+    // Gives the vehicle a picture; `pixel` computes its pixels. If `pixel` is empty, only the size
+    // of the picture is set.
     void provide(uint32_t width, uint32_t height, const std::function<uint8_t(uint32_t)>& pixel) {
         const uint32_t size[2] = {width, height};
         std::memcpy(soc.memory().data() + UAV_FRAME_HEADER, size, sizeof size);

@@ -164,7 +164,7 @@ std::string rejected(const std::string& path, const Bytes& file, const char* rea
     const std::string type = typeOf(file);
     if (type.empty())
         return "'" + path + "': expected a PNG, JPEG or PGM file";
-    // The reason that stb_image reports is the one for PNG, the format that it tries last.
+    // stb_image reports why the last format that it tried failed; this format is PNG.
     const std::string why = type != "PNG" ? "" : reason && *reason ? reason : "no end";
     return "'" + path + "': the " + type + " file is damaged, cut or of an unusual kind" +
            (why.empty() ? "" : " (" + why + ")") + ": save it again as PNG";

@@ -34,8 +34,8 @@ public:
     ~SocModel();
 
     // Resets the chip. If `memoryStarts` is false, the memory is ready when this function returns.
-    // If it is true, the function returns before the memory is ready, which takes a millisecond, as
-    // for a processor that does not wait for the memory.
+    // If it is true, the function returns at once, although the memory only becomes ready a
+    // millisecond later; this suits a processor that does not wait for the memory.
     void reset(bool memoryStarts = false);
     void tick(); // computes one clock cycle
 

@@ -39,8 +39,8 @@ private:
     uint64_t until_ = 0;
 };
 
-// A ground station in a flight: a modem on a pty, or on the recording of a replayed flight, with
-// its own clock and recording. Simulated time waits for the station's program.
+// A ground station in a flight: a modem on a pty (in a replay: on the recording), with a separate
+// clock and a separate recording. Simulated time waits for the station's program.
 struct Station {
     static constexpr uint32_t second = 0x00F0; // modem address of a second ground station
 
@@ -73,8 +73,8 @@ struct Station {
     GroundStep step;
 };
 
-// Returns a vehicle's key from a file, or an empty key. While a key change is pending, returns the
-// old key.
+// Returns a vehicle's key from a file; returns an empty key if no file is given. While a key change
+// is pending, returns the old key.
 inline std::vector<uint8_t> keyOf(const std::string& file, int address) {
     if (file.empty())
         return {};

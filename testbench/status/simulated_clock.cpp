@@ -67,9 +67,9 @@ uint32_t SimulatedClock::nowUs() const {
     return static_cast<uint32_t>(nowNs() / 1000);
 }
 
-// Waits for file descriptors or a simulated time. Simulated time rarely runs faster than real time,
-// so the program first sleeps for the remaining time in real time, and then reads simulated time
-// again.
+// Waits for file descriptors, or until a simulated time. Simulated time rarely runs faster than
+// real time. Therefore the program first sleeps in real time for as long as the remaining simulated
+// time, and then reads simulated time again.
 int SimulatedClock::wait(pollfd* fds, nfds_t count, uint32_t us) {
     const uint64_t begin = nowNs() / 1000;
     // A program that keeps step waits at least shortestUs. If it waited for 0 us, simulated time

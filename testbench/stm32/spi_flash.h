@@ -31,7 +31,7 @@ public:
             if (instruction == WriteEnable || instruction == WriteDisable) {
                 mayWrite_ = instruction == WriteEnable;
             } else if (mayWrite_ && instruction == PageProgram && in_.size() > 4) {
-                // after the last byte of the page, the address continues with the first
+                // after the last byte of the page, the address continues with the first byte
                 const uint32_t page = at & ~(pageBytes - 1);
                 page_.assign(pageBytes, 0xFF);
                 for (size_t i = 4; i < in_.size(); ++i)

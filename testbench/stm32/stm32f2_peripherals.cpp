@@ -35,7 +35,7 @@ struct Stm32F2::Peripheral {
     uint32_t (Stm32F2::*read)(uint32_t offset);
     void (Stm32F2::*write)(uint32_t offset, uint32_t value);
 
-    // Returns the clock bit of the peripheral; each GPIO port has a bit of its own.
+    // Returns the clock bit of the peripheral; each GPIO port has a separate bit.
     unsigned clockBit(uint32_t address) const {
         return base == gpio ? (address - gpio) / 0x400 : bit;
     }
@@ -82,8 +82,8 @@ void Stm32F2::writePeripheral(uint32_t address, uint32_t value) {
     (this->*p.write)(address - p.base, value);
 }
 
-// Returns the stored value of a register. The register must be one of those in the first `bytes`
-// bytes of the peripheral; all of them only store a value.
+// Returns the stored value of a register. The register must be in the first `bytes` bytes of the
+// peripheral, which contain only registers that store a value.
 uint32_t& Stm32F2::storedIn(uint32_t base, uint32_t offset, uint32_t bytes) {
     if (offset >= bytes)
         throw noRegister();

@@ -116,15 +116,15 @@ void Wires::settle(uint64_t now) {
     };
     for (unsigned i = 0; i < ends_.size(); ++i) {
         const unsigned node = nodeOf_[i];
-        // An inverted wire is not part of the node: the inverter passes its signal on to end 0
-        // only.
+        // An end behind an inverter does not drive the node, because the inverter passes the signal
+        // only towards this end.
         const bool passes = !inverted_[i];
         if (passes)
             combine(node, ends_[i].driver);
         if (i % 2 == 0 && passes)
             combine(node, others_[i / 2]);
         if (ends_[i].pull != None && passes && (i % 2 == 1 || pull_[node] == None))
-            pull_[node] = ends_[i].pull; // the FPGA's pulls are stronger than other pulls
+            pull_[node] = ends_[i].pull; // the FPGA's pull is stronger than the pull at end 0
     }
     for (unsigned n = 0; n < nodes_.size(); ++n) {
         Node& node = nodes_[n];

@@ -18,7 +18,7 @@ import time
 from icesoc.regress.junit import ended, finished, read_junit, write_junit
 from icesoc.util.errors import Interrupted
 from icesoc.util.process import (adopt_orphans, end_descendants, hear_signals, reading, start,
-                                 wait)
+                                 wait, wait_for)
 
 
 def reason(text):
@@ -55,9 +55,9 @@ def run(words, results):
     # report them as failed.
     program = start(["ctest", "--test-output-size-passed", "100000", *words], process_group=0,
                     stdout=subprocess.PIPE, text=True, errors="replace")
-    reader = reading(program, hear)
+    output_ended = reading(program, hear)
     try:
-        reader.join()
+        wait_for(output_ended)
         status = wait(program)
         if results.exists() or status < 128:
             return status, False
@@ -67,7 +67,7 @@ def run(words, results):
         program.kill()
         program.wait()
         end_descendants()
-        reader.join()
+        wait_for(output_ended)
         status = stop.status
     # CTest was stopped, by us or by a signal, before it wrote its JUnit file, which it does only
     # when it ends.

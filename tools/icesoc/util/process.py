@@ -25,10 +25,18 @@ INTERRUPTS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
 def hear_signals():
+    """Turns the first SIGINT, SIGTERM or SIGHUP into the exception Interrupted. Further signals are
+    ignored, because the program is already ending."""
+    interrupted = False
+
     def hear(number, _):
-        for each in INTERRUPTS:
-            # further signals are ignored, because the program is already being ended
-            signal.signal(each, signal.SIG_IGN)
+        nonlocal interrupted
+        if interrupted:
+            return
+        interrupted = True
+        # Programs that are started from now on inherit this mask, so a second Ctrl-C does not end
+        # them.
+        signal.pthread_sigmask(signal.SIG_BLOCK, INTERRUPTS)
         raise Interrupted(number)
 
     for number in INTERRUPTS:
@@ -145,14 +153,14 @@ def collect(command, environment=None, on_line=None, before_kill=None, **more):
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                           errors="replace", env={**os.environ, **(environment or {})},
                           **more) as process:
-        reader = reading(process, hear)
+        ended = reading(process, hear)
         try:
-            reader.join()
+            wait_for(ended)
         except BaseException:
             if before_kill:
                 before_kill()
             process.kill()
-            reader.join(1)
+            ended.wait(1)
             raise
     status = process.returncode
     if status in (126, 127):
@@ -161,14 +169,27 @@ def collect(command, environment=None, on_line=None, before_kill=None, **more):
 
 
 def reading(process, hear):
-    """Starts and returns a thread that calls `hear` with each line of a program's output. A signal
-    interrupts only the main thread, so it does not lose lines that were not yet read."""
+    """Starts a thread that calls `hear` with each line of a program's output. A signal interrupts
+    only the main thread, so it does not lose lines that were not yet read. Returns an event for
+    `wait_for`, which is set at the end of the output."""
+    ended = threading.Event()
+
     def read():
-        for line in process.stdout:
-            hear(line)
-    reader = threading.Thread(target=read, daemon=True)
-    reader.start()
-    return reader
+        try:
+            for line in process.stdout:
+                hear(line)
+        finally:
+            ended.set()
+    threading.Thread(target=read, daemon=True).start()
+    return ended
+
+
+def wait_for(event):
+    """Waits for an event that another thread sets. The wait consists of short parts, because the
+    kernel may deliver a signal to the other thread; this does not wake the main thread, and Python
+    calls the handler only when the main thread runs again."""
+    while not event.wait(0.1):
+        pass
 
 
 def children(pid):

@@ -15,9 +15,9 @@
 
 module cdc_bit #(
     parameter             WIDTH    = 1,
-    // 0: each bit has its own delay. Above 0: all bits that change in the same clock have the same
-    // delay; in simulation, they are late only if one of the upper TOGETHER bits changes in that
-    // clock.
+    // 0: each bit is late independently of the others. N > 0: all bits that change in one clock are
+    // late together, or none of them is; in simulation, they are late only if one of the N most
+    // significant bits changes in that clock.
     parameter             TOGETHER = 0,
     // 1: bits are never late here, because a cdc_skew in front of this module delays them
     parameter             EXACT    = 0,

@@ -12,9 +12,9 @@
 module fsmc_found (
     input  wire       block_i,    // block that the address selects, 0 or 1
     input  wire [1:0] full_i,     // bit n: all words of block n have arrived
-    input  wire       have_one_i, // the word that was fetched alone has arrived
-    input  wire       one_block_i, // block of the word that was fetched alone
-    // within its block, the address selects the word that was fetched alone
+    input  wire       have_one_i, // the single word (fetched without its block) has arrived
+    input  wire       one_block_i, // block of the single word
+    // the address selects the single word's position in a block
     input  wire       is_one_i,
     output wire       found_o
 );

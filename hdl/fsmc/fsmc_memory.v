@@ -406,7 +406,7 @@ module fsmc_memory #(
             end
             assert (!wanted || !have_one);
             assert (!full[fetching_for] || !fetching || stale);
-            // The word was fetched alone, or has arrived as part of its block.
+            // The word was fetched as a single word, or has arrived as part of its block.
             assert (!(have_one && busy && !stale) || (!single && one_word < fetch_word));
             if (place_same && !untold) begin
                 assert (!(full[place_block] || place_filled || place_alone) || kept == memory);

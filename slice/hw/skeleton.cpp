@@ -66,9 +66,9 @@ void head(Writer& w, const Block& b, const char* comment) {
     w.line();
 }
 
-// Statements of a core that does not use its memory port yet: the port as two idle streams of
-// words, for reading and writing the core's buffers. No operation may have a name that begins with
-// npi_.
+// Statements of a core that does not use its memory port yet. They declare two streams of words,
+// for reading and writing the core's buffers, that make no requests. No operation may have a name
+// that begins with npi_.
 const char npiStream[] =
     R"(    // The buffers in DDR3 as two idle streams of words (docs/memory.md, npi_stream).
     wire        npi_read_start = 1'd0, npi_read_take = 1'd0;

@@ -86,7 +86,7 @@ public:
     bool isWanted() const; // true if a program wants a connection
     bool listens() const { return listening_; }
     // Starts the peer when the modem is ready. `longest`: size of the largest frame, bytes.
-    // `isApi`: the modem reports a result for each packet.
+    // `isApi`: true if the modem reports a result for each packet.
     virtual void start(U32 longest, bool isApi, U32 now) = 0;
     virtual void stop(U32 now) = 0; // stops the peer, and informs the vehicle
     void fail();                    // ends all connections and pending connects

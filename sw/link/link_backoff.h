@@ -9,10 +9,10 @@
 #include "base.h"
 #include "link_port.h"
 
-/* Traffic of one side. */
+/* Traffic that one end of the link sends: this side (`own`) or the peer (`peers`). */
 typedef struct Link_Traffic {
     U32 before;  /* total of bytes at the start of the current span of time */
-    U8 isStream; /* 1: the side sends a stream */
+    U8 isStream; /* 1: this end sends a stream */
 } Link_Traffic;
 
 typedef struct Link_Backoff {
@@ -36,9 +36,9 @@ typedef struct Link_Backoff {
 #define LINK_IS_CALLED(c) ((c)->isCalled && !(c)->peers.isStream)
 
 /* Records the radio's result for a packet at time `now`. `silence` is the time since the peer was
- * heard, us. `isBusy`: the radio has further packets. Returns the longest pause before the next
- * packet, us; 0 means no pause. */
+ * heard, us. `isBusy` is 1 if the radio has further packets to send. Returns the longest pause
+ * before the next packet, us; 0 means no pause. */
 U32 link_noteAnswer(Link_Backoff* c, U32 now, int isDelivered, U32 silence, int isBusy);
 
-/* Returns the RN for Link_randomWait. `isSlow`: the modem encrypts. */
+/* Returns the RN for Link_randomWait. `isSlow` is 1 if the modem encrypts, which makes it slow. */
 U32 link_chooseWait(Link_Backoff* c, U32 now, const Link_Statistics* counts, U32 isSlow);

@@ -22,8 +22,8 @@ const Ground::Call isAlive = {"uav", "isAlive", 0, {7, 0}};
 class MeasuredFlight : public GroundAndChip {
 public:
     // `scaled`: 1 for the ratio of clocks on the board; 50 makes processor time realistic in
-    // proportion to radio time. `key`: key of the link, or empty. `isTransparent`: the modem of the
-    // vehicle is in transparent mode.
+    // proportion to radio time. `key`: key of the link, or empty. `isTransparent`: true if the
+    // vehicle's modem is in transparent mode.
     MeasuredFlight(const std::string& elf, double scaled, const std::vector<uint8_t>& key = {},
                    bool isTransparent = false)
         : GroundAndChip(1), warp(scaled),

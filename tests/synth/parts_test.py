@@ -59,8 +59,8 @@ def longest(n):
 
 
 class Timing(unittest.TestCase):
-    """Tests of the longest paths, and of the clock that is reported for several orders of the
-    cells."""
+    """Tests of the longest paths, and of the figures that are reported for a design that was mapped
+    several times, each time with its ports in another sequence."""
 
     def test_a_path_is_the_sum_of_its_cells_and_nets(self):
         p = longest(chain([4, 1, 88, 26, 2, 5, 16], "CE"))
@@ -157,7 +157,7 @@ class Timing(unittest.TestCase):
         shows("0 of 3 designs, about 2:06 left: chip")
         large.begun, large.spent = 1, 22  # this design took twice as long as expected
         shows("1 of 3 designs, about 4:32 left: chip")
-        for suffix in ".part", ".1":  # two of five orders are done
+        for suffix in ".part", ".1":  # two of five mappings are done
             (folder / f"chip{suffix}").touch()
         shows("1 of 3 designs, about 0:30 left: chip")
         # the result of `small` comes from the cache

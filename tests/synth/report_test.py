@@ -120,7 +120,7 @@ class Cases(Script):
         # either.
         for file in (PROGRAM.parents[1] / "gen").glob("*.v"):
             self.lacks(re.escape(f"{TREE}/"), file=file)
-        # The clock and the LUTs are shown with their ranges over other orders of the cells.
+        # The clock and the LUTs are shown with their ranges over all mappings of the design.
         self.has(r"^wide .* [0-9.]+ \([0-9.]*-[0-9.]*\) +[0-9]+-[0-9]+$",
                  r"nine of ten of [0-9]+ published reports of map, of [0-9]+ of TRCE",
                  r"^wide +[0-9]+ \([0-9]*-[0-9]*\) ")

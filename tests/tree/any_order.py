@@ -4,8 +4,8 @@
 which installs these packages, must find the same tests as a machine that had all packages from the
 start. If CMake does not find something that it needs, its message must name the package.
 
-A folder of links to all other programs takes the place of the machine without the packages; CMake
-looks for programs only there.
+The test simulates a machine without these packages by a folder of links to all other programs.
+CMake looks for programs only in this folder.
 Usage: any_order.py source-folder work-folder
 """
 

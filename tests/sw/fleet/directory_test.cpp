@@ -82,7 +82,7 @@ private:
 
 class Directory : public Gateway {
 protected:
-    // `isSecure`: TLS is used between the machines, and the vehicle has a key.
+    // `isSecure`: true if the machines use TLS between them, and the vehicle has a key.
     explicit Directory(bool isSecure = false) : isSecure_(isSecure) {
         rig_.placeOther(rig_.elsewhere);
     }

@@ -159,7 +159,7 @@ TEST_F(Gateway, AHundredFloodingConnectionsLeaveAGoodClientItsTurns) {
                 try {
                     ++sent;
                     proxy->ice_invoke("note", Ice::OperationMode::Normal, in, out);
-                } catch (const Ice::LocalException&) { // expected if too many requests are waiting
+                } catch (const Ice::LocalException&) { // the gateway already has too many requests
                     std::this_thread::sleep_for(std::chrono::milliseconds(50));
                 }
         });

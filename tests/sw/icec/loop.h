@@ -4,7 +4,7 @@
 //
 // Proxies: "loop [-c n]"; n is 0 or 1 and selects one of the two connections of this side. Time is
 // simulated: it passes only while a communicator waits and nothing else can happen. Without a peer,
-// messages are only passed to `tap`, and inject takes the place of the other side.
+// a message that is sent is only passed to `tap`, and the test calls `inject` to deliver messages.
 
 #pragma once
 

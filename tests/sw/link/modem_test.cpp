@@ -122,7 +122,8 @@ TEST_P(LinkOverModems, TheTraceOfTheExampleIsFlown) {
 }
 
 // An idle link sends a PING after five seconds, which takes few bytes; without a reply, it repeats
-// the PING soon. The session must last for an hour in any weather, and with 30 % loss.
+// the PING soon. The session must last for an hour under each of the published channel conditions
+// (RfWeather), and for another hour with 30 % packet loss.
 TEST_P(LinkOverModems, AnIdleSessionLastsInBadWeather) {
     a_.longestRestUs = b_.longestRestUs = 100'000;
     const U32 before = a_.statistics().bytesSent + b_.statistics().bytesSent;

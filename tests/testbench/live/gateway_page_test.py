@@ -191,7 +191,7 @@ class Cases(Script):
         self.server_with_tls(trust, security)
 
     def server_with_tls(self, trust, security):
-        """Makes a complete call; a server of stock Ice takes the place of the gateway."""
+        """Makes a complete call to a server of stock Ice, which is used instead of the gateway."""
         port, page = self.start(
             ["/usr/bin/python3", TREE / "tests/cli/call_server.py",
              "--Ice.Plugin.IceSSL=IceSSL:createIceSSL", "--Trial.Endpoints=wss -h 127.0.0.1",

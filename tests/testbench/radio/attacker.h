@@ -27,7 +27,7 @@ public:
         });
     }
 
-    // Sends bytes in the name of `from`, in packets of at most the longest size.
+    // Sends one packet in the name of `from`. Bytes that do not fit into a packet are cut off.
     void send(uint16_t from, uint16_t to, Bytes bytes, uint64_t now) {
         RfPacket packet;
         packet.from = from;

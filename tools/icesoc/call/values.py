@@ -69,7 +69,7 @@ class Reader:
         self.slices, self.place = slices, place
 
     def argument(self, text, parameter):
-        """Returns the checked value of a parameter for a text from the command line."""
+        """Converts a text from the command line to a parameter's value, and checks the value."""
         where, kind = parameter["name"], parameter["type"]
         metadata = parameter.get("metadata")
         if "tag" in parameter and text == "null":

@@ -49,8 +49,8 @@ class Option:
         self.many = self.kind in (WORDS, FILES, ARGUMENTS)
 
     def value(self, text, called):
-        """Returns the value for a text, or for a list of texts from argparse. `called` is the name
-        of the option in messages."""
+        """Converts a text, or a list of texts from argparse, to the value of this option. `called`
+        is the name of the option in messages."""
         if self.kind is ARGUMENTS:
             return [text] if isinstance(text, str) else text
         if isinstance(text, list):

@@ -53,7 +53,7 @@ class Signals:
                          (state.names & 0xFFFFFFFF, self.names))
 
     def trigger(self, text):
-        """Returns the mask and the value for a text such as "u_fir.sent=1,u_fir.count=0x10"."""
+        """Converts a text such as "u_fir.sent=1,u_fir.count=0x10" to a mask and a value."""
         mask = wanted = 0
         for word in text.split(",") if text else ():
             name, _, number = word.partition("=")

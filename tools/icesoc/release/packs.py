@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""packs: puts IceC into the forms of package managers for firmware.
+"""packs: packages IceC for package managers for firmware.
 
-All forms contain the single files of the components (single_file.py), because the layered sources
-have headers with common names such as link.h. `library` returns the files of one folder that is a
-PlatformIO library and a Zephyr module; `cmsis` returns the files of a CMSIS-Pack.
+Each package contains every component of IceC as one merged C file and one header (single_file.py),
+because the layered sources have headers with common names such as link.h. `library` returns the
+files of one folder that is a PlatformIO library and a Zephyr module; `cmsis` returns the files of a
+CMSIS-Pack.
 """
 import json
 import re

@@ -100,7 +100,7 @@ def paper_table(plan, row):
 
 
 def ranged(value, values, text=str):
-    """Returns a figure and the range of its values in all orders of a netlist: "863 (858-865)"."""
+    """Returns a figure and the range of its values over all mappings: "863 (858-865)"."""
     return text(value) + (f" ({text(min(values))}-{text(max(values))})" if len(values) > 1 else "")
 
 

@@ -80,8 +80,8 @@ def nine_of_ten(errors):
 
 
 def range_of(ratios):
-    """Returns the median of the ratios, and the range of errors. For an error, each ratio is
-    predicted as the median of all other ratios."""
+    """Returns the median of the ratios, and the range in which nine of ten ratios are expected
+    around it. The error of a ratio is the ratio divided by the median of all other ratios."""
     median = statistics.median(ratios)
     low, high = nine_of_ten(left_out(ratios, statistics.median))
     return Range(median, median * low, median * high, len(ratios))

@@ -181,8 +181,8 @@ class Design:
     pads: dict = dataclasses.field(default_factory=dict)  # output port -> greatest delay from any
                                                           # pad, ns, grade -2
     paper: bool = False  # True: the paper has figures for the design
-    # number of further orders of inputs and outputs in which the design is mapped; the clock of a
-    # single order depends on chance
+    # The design is mapped this number of additional times, each time with its inputs and outputs
+    # in another sequence, because the estimated clock of a single mapping depends on chance.
     orders: int = 0
 
 

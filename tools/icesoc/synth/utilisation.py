@@ -160,7 +160,7 @@ def run(o, libraries):
         return equivalent(plan, library, options, o)
     if o.core:
         for design in plan.designs:
-            design.orders = 0  # the other orders are only needed for the median of the clock
+            design.orders = 0  # further mappings are only needed for the median of the clock
         runs = synthesise(plan, library, options, o) if o.design else []
         return tell_cores(library, options, o, accepted, runs)
     yosys = runner.version_of(o.yosys)

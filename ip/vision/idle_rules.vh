@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// idle_rules: assumptions of formal.idle_vision: while no frame is being processed, the core makes
+// idle_rules: invariants for formal.idle_vision: while no frame is being processed, the core makes
 // no memory requests, and its count of outstanding words is correct.
 
     (* hierconn *) wire [1:0] \u_core.state , \u_core.u_memory.state ;

@@ -256,9 +256,10 @@ private:
         uint64_t data = getBits(top_.npi_rd_data_o, 64 * port.number, 64);
         uint64_t index = getBits(top_.npi_rd_word_o, 4 * port.number, 4);
         if (data != e.data || index != e.index)
-            throw std::runtime_error(where(port) + "read " + std::to_string(data) + " place " +
-                                     std::to_string(index) + ", expected " +
-                                     std::to_string(e.data) + " place " + std::to_string(e.index));
+            throw std::runtime_error(where(port) + "read " + std::to_string(data) +
+                                     " at position " + std::to_string(index) + ", expected " +
+                                     std::to_string(e.data) + " at position " +
+                                     std::to_string(e.index));
         ++port.counters.readWords;
         if (e.first) {
             uint64_t latency = now_ - e.since;

@@ -391,10 +391,11 @@ void Flight::runOnCortexM3() {
 
 void Flight::report() {
     fmt::print(
-        "icesoc-sim: {:.1f} s simulated at {:.2f} million clocks/s without pauses (real time "
-        "would be {:.1f}); {:.2f} % of the clocks were evaluated; {} packets on the air, {} lost\n",
+        "icesoc-sim: {:.1f} s simulated; speed without waiting times: {:.2f} million clocks/s "
+        "(real time: {:.1f}); {:.2f} % of the clocks were idle and skipped; {} packets on the air, "
+        "{} lost\n",
         static_cast<double>(soc_.now()) / 1e9, millionsPerSecond(), SocModel::clkHz / 1e6,
-        100 * static_cast<double>(soc_.evaluated()) / static_cast<double>(soc_.cycles()),
+        100 - 100 * static_cast<double>(soc_.evaluated()) / static_cast<double>(soc_.cycles()),
         ground_.status->packets, ground_.status->lost);
     if (!followers_.empty()) {
         fmt::print("icesoc-sim: the vision cores were started {}", starts_[&soc_]);

@@ -30,7 +30,8 @@ public:
     // Uses an empty file that is open for writing. The caller remains responsible for closing it.
     explicit StatusFile(int fd) {
         if (const int error = map(fd))
-            throw std::system_error(error, std::generic_category(), "no file for simulated time");
+            throw std::system_error(error, std::generic_category(),
+                                    "cannot map the file that shares the simulated time");
     }
     ~StatusFile() { munmap(status_, sizeof(SimStatus)); }
     StatusFile(const StatusFile&) = delete;

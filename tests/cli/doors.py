@@ -201,7 +201,7 @@ MISTAKES = {
     "./icesoc run --wire=yes": "--wire: expected no value, got 'yes'",
     "./icesoc run --again tools/icesoc/cli/flight.schema.json":
     "is not a flight file: version: expected 4, got none",
-    "./icesoc contract": "contract: expected a command: diff, from-rdl",
+    "./icesoc contract": "contract: expected one of the commands diff, from-rdl",
     "./icesoc contract dif": "contract has no command 'dif'; did you mean diff?",
     "./icesoc bench --only airr":
     "--only: expected the name of a bench, got 'airr'; did you mean air? Known: simulator, air, ",

@@ -435,7 +435,7 @@ target_include_directories(same PRIVATE ${{CMAKE_BINARY_DIR}}/gen ${{CMAKE_SOURC
                  env={**os.environ, "ICESOC_TREE": "."})
         self.has("version 1.2.3 is already released as commit .*; give CHANGELOG.md a new version")
         self.ask(TREE / "icesoc", "release", "--only", "sauce", status=2)
-        self.has("--only: expected parts from source, .*, got 'sauce'")
+        self.has("--only: expected one of source, .*, got 'sauce'")
 
     def package(self, path, seconds):
         """Writes a Debian package without files, whose time stamp is `seconds`."""

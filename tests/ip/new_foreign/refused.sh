@@ -61,9 +61,9 @@ refused 'only Verilog or only VHDL' wb_port wishbone wb_port.v lamps.vhd
 refused "TOP: expected the name of a module or an entity, got 'wb_port; x'" \
     'wb_port; x' wishbone wb_port.v
 refused "no entity 'lamp' in FILES; found lamps" lamp own lamps.vhd
-refused 'no port for write, wdata, rdata: .*PORTS=' req_words own cores.v
+refused 'no port for write, wdata, rdata; its ports are clock, .*PORTS=' req_words own cores.v
 refused "'grant': expected one of .*select, strobe" req_words own grant=gnt cores.v
-refused "has no port 'go'" req_words own write=go cores.v
+refused "has no port 'go'; its ports are clock, " req_words own write=go cores.v
 refused "ack must be an output of the core, and 'req' is not" req_words own ack=req cores.v
 refused 'a strobe of one clock needs an ack' req_words own strobe=req write=wr wdata=value \
     rdata=held clock=clock cores.v
@@ -83,7 +83,7 @@ refused "'pads' of broad has 128 bits, but a pin has at most 32: PORTS='open=pad
 refused 'include looks for timescale.v' apb_words apb "$here/apb_words.v"
 : >timescale.v
 refused 'Verilator does not elaborate odd' odd memory odd.sv
-refused "no port for ack: .*ack=1" wbs_names wishbone cores.v
+refused "no port for ack; .*ack=1" wbs_names wishbone cores.v
 refused "more than one port for rdata: wbs_dat_o, spare" wbs_names wishbone rdata=spare ack=1 \
     cores.v
 echo 'module two(input clk, input [7:0] a_tdata, b_tdata, input a_tvalid, output [7:0] o_tdata,

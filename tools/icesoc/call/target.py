@@ -41,7 +41,7 @@ def of_flight(folder, vehicle):
     vehicles = live["vehicles"]
     name = vehicle or next(iter(vehicles))
     if name not in vehicles:
-        raise Stop(f"--vehicle: expected {', '.join(vehicles)}, got '{name}'", 2)
+        raise Stop(f"--vehicle: expected one of {', '.join(vehicles)}, got '{name}'", 2)
     return Target(f"the flight in {folder}", ":" + vehicles[name], build=live["build"])
 
 

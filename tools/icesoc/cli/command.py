@@ -171,7 +171,7 @@ def find(words):
     if first in GROUPS:
         parts = [name.split()[1] for name in COMMANDS if name.startswith(first + " ")]
         if not rest:
-            raise Stop(f"{first}: expected a command: {', '.join(parts)}", 2)
+            raise Stop(f"{first}: expected one of the commands {', '.join(parts)}", 2)
         raise Stop(f"{first} has no command '{rest[0]}'" + nearest(rest[0], parts), 2)
     raise Stop(
         f"unknown command '{first}'" + nearest(first, [*GROUPS, *COMMANDS])

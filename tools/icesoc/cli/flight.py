@@ -57,11 +57,11 @@ FIELDS = [
     ),
     Option("wire", SWITCH, "connect vehicle and ground station by a serial cable, without modems"),
     Option("modem", one_of("s1", "s2c", "xb3"),
-           "modems of vehicle and ground station: XBee series 1, S2C or XBee 3; with --board, the "
-           "board's modem by default", "s1"),
+           "modems of vehicle and ground station: XBee series 1, S2C or XBee 3; --board changes "
+           "the default to the board's modem", "s1"),
     Option("board", TEXT,
-           "board of the vehicle: its name, its file board.toml, or a folder made by board make; "
-           "the vehicle then runs the ARM binary", ""),
+           "board of the vehicle: its name, its file board.toml, or a folder written by ./icesoc "
+           "board make; the vehicle then runs the ARM binary", ""),
     Option("fault", WORDS,
            "faults of the vehicle's board, such as D3:open D1-D2:short NWE:late=12ns "
            "(docs/simulation.md); the vehicle then runs the ARM binary"),

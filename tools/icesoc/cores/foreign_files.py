@@ -139,9 +139,9 @@ def check_names(slot, top, files):
             fail(f"'{slot}' is the name of this project's module in "
                  f"{os.path.relpath(file, room)}: give the slot another name")
         if name in first and first[name][0] != file:
-            fail(f"{first[name][0]}:{first[name][1]}: module '{name}' has the same name as this "
-                 f"project's {os.path.relpath(file, room)}:{line}: rename it, also in the modules "
-                 "that use it")
+            fail(f"{first[name][0]}:{first[name][1]}: module '{name}' has the same name as a "
+                 f"module of this project ({os.path.relpath(file, room)}:{line}); rename your "
+                 "module, also in the modules that instantiate it")
     return top
 
 

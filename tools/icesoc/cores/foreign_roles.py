@@ -158,7 +158,7 @@ def take_given(top, bus, ports, roles, given):
             roles.update(dict.fromkeys(found, words[what]))
             port = next(iter(found), port)
         if port not in ports:
-            fail(f"PORTS: {top} has no port '{port}': {', '.join(ports)}")
+            fail(f"PORTS: {top} has no port '{port}'; its ports are {', '.join(ports)}")
         if words[what] and is_output != (ports[port]["direction"] == "output"):
             fail(f"PORTS: {what} must be an {'output' if is_output else 'input'} of the core, and "
                  f"'{port}' is not")
@@ -178,8 +178,8 @@ def check_needed(top, bus, ports, roles, latency):
              *(["stb"] if bus == "wishbone" and "cyc" in roles.values() else [])}
     missing = [say.get(r, r) for r in NEEDED[bus] + ["clock"] if r not in there]
     if missing:
-        fail(f"{top} has no port for {', '.join(missing)}: {', '.join(ports)}; name the port with "
-             f"PORTS='{missing[0]}=port ...'"
+        fail(f"{top} has no port for {', '.join(missing)}; its ports are {', '.join(ports)}: name "
+             f"the port with PORTS='{missing[0]}=port ...'"
              + (", or give ack=1 if read data is valid one clock later"
                 if "ack" in missing else ""))
     often = {"", "clock", "reset", "resetn", "interrupt", "interruptn", "setting", "low", "high",

@@ -92,7 +92,7 @@ class Request:
         if self.address not in ("", "words", "bytes") or self.address and self.bus == "axis":
             fail(f"ADDRESS={self.address}: expected words or bytes, and a core with registers")
         if self.bus not in NEEDED:
-            fail(f"BUS: expected {', '.join(NEEDED)}, got '{self.bus}'")
+            fail(f"BUS: expected one of {', '.join(NEEDED)}, got '{self.bus}'")
         if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", self.name):
             fail(f"'{self.name}': expected words of small letters and digits, joined by _")
         if not re.fullmatch(r"[A-Za-z_]\w*", self.top):

@@ -375,11 +375,12 @@ def options(program, build):
     parser.add_argument("--vehicle", type=Vehicle, action="append", default=[],
                         help="NAME=ws:PORT or NAME=wss:PORT: a vehicle of the gateway; can be "
                         "repeated")
-    parser.add_argument("--listen", type=place, help="HOST:PORT of the page, which must be opened "
-                        "under this HOST; default: 127.0.0.1 and --port")
+    parser.add_argument("--listen", type=place, help="HOST:PORT at which the page is served; the "
+                        "address in the browser must contain this HOST; default: 127.0.0.1, and "
+                        "the port of --port")
     parser.add_argument("--certificate", help="PEM file with certificate and key, for https")
     parser.add_argument("--gateway", type=place, help=of_flight(
-        "HOST:PORT of a gateway to call instead of the flight's"))
+        "HOST:PORT of a gateway to call instead of the gateway of the flight"))
     parser.add_argument("--port", type=port_number, default=0, help="port; default: any free port")
     parser.add_argument("--open", action="store_true", help="open the page in a browser")
     parser.add_argument("--try", dest="only_try", action="store_true",

@@ -25,7 +25,7 @@ NAME = Option("name", TEXT, "name of the board, such as nucleo-qmtech", "", posi
 def read(name):
     """Returns the board with this name, or the board described in a file board.toml."""
     if not name:
-        raise Stop(f"expected the name of a board: {', '.join(model.names())}", 2)
+        raise Stop(f"expected one of the boards {', '.join(model.names())}", 2)
     try:
         if name.endswith(".toml"):
             return model.read(name)
@@ -85,7 +85,7 @@ def board_make(values):
     """generate the files of a board: constraints, pins, wiring, parts
 
     Also writes the settings of OpenOCD and a page. Nothing is written for a board with errors or
-    missing facts; board check lists these."""
+    missing facts; ./icesoc board check lists these errors and facts."""
     board = read(values.name)
     if values.docs:
         made = make.write(documents(board), PAGES)

@@ -31,9 +31,9 @@ CONSOLE = "/dev/ttyUSB0"
     Option("fault", WORDS, "with --simulated: faults of the board, such as D3:open D1-D2:short "
                            "NWE:late=12ns (docs/simulation.md)"),
     Option("device", TEXT, "serial port of the board's console", CONSOLE),
-    Option("cable", TEXT, "serial port of a cable in the modem's place (docs/modem.md); the "
-                          "command then loads the firmware and calls it instead of running the "
-                          "self-test", ""),
+    Option("cable", TEXT, "serial port of a cable that replaces the modem (docs/modem.md); "
+                          "the command then loads the firmware and calls it instead of running "
+                          "the self-test", ""),
     Option("listen", SWITCH, "only read the console, for a self-test that was started by hand"),
     Option("silence", SECONDS, "end the report after this time without output from the board",
            SILENCE),

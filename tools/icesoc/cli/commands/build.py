@@ -214,5 +214,5 @@ def pictures(values):
                     raise Stop(f"{page} not found; ./icesoc {by} writes it")
                 shoot(path, width, height, f"file://{page.absolute()}{part}")
             else:
-                raise Stop(f"unknown picture '{name}': expected mission, live, "
+                raise Stop(f"unknown picture '{name}': expected one of mission, live, "
                            f"{', '.join(PAGES)}", 2)

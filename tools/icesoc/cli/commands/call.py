@@ -86,7 +86,7 @@ OPTIONS = [
     Option("facet", TEXT, "facet of the object", ""),
     Option("context", TEXT, "context of the call: NAME=VALUE pairs, separated by spaces", ""),
     Option("encoding", one_of("1.0", "1.1"), "Ice encoding", "1.1"),
-    Option("flight", FOLDER, "folder of the flight in progress; default: found below build/", ""),
+    Option("flight", FOLDER, "folder of the flight in progress; default: the one below build/", ""),
     Option("vehicle", TEXT, "name of the vehicle: uav1, uav2, ... in a flight, or its name in "
                             "IceGrid", ""),
     Option("gateway", TEXT, "HOST:PORT of a gateway or another Ice server, or endpoints in Ice's "

@@ -117,8 +117,8 @@ def netlist(values):
 def sanitizers(values):
     """run programs with AddressSanitizer and ThreadSanitizer
 
-    Builds IceC, and the engine, gateway and plugin of the ground station, with both sanitizers, and
-    runs their tests. Then fuzzes the simulator's GDB stub.
+    Builds IceC, and the radio engine, gateway and plugin of the ground station, with both
+    sanitizers, and runs their tests. Then fuzzes the simulator's GDB stub.
     """
     build, status = configured(values, tests=True), 0
     # the programs of each sanitizer are built in a separate build folder
@@ -165,8 +165,8 @@ def fuzz(values):
 
 
 @command("check mutants", [
-    dataclasses.replace(BLOCK, help="block with seeded bugs, or block/bug", choices=choices.seeded,
-                        is_checked=True),
+    dataclasses.replace(BLOCK, help="block whose seeded bugs are planted, or one bug as BLOCK/BUG",
+                        choices=choices.seeded, is_checked=True),
     Option("draw", COUNT,
            "instead of the bugs in tests/mutants, plant this number of random mutants per proof"),
      SEED,
@@ -223,8 +223,8 @@ def faults(values):
 @command("check soak", [
     Option("minutes", MINUTES, "CPU time of the whole test", 4.0),
     Option("fuzzed", COUNT,
-           "number of bytes of noise sent to the modem controller; link and engine receive ten "
-           "times as many",
+           "number of bytes of noise sent to the modem controller; the link layer and the ground "
+           "station's radio engine get ten times as many",
            1000000), SEED, BUILD, JOBS], make="soak",
          brief="check soak --minutes 0.01 --fuzzed 1000",
          long="check soak --minutes 60 --seed {day}", examples=[
@@ -234,10 +234,10 @@ def faults(values):
 def soak(values):
     """test the radio for a long time: bad channel, restarts, noise
 
-    In a quarter of the time, tests the link alone; in a quarter, the link under attack; in half of
-    the time, stock Ice calls IceC on the chip's RTL through the plugin. In addition, ten vehicles
-    and two ground stations fly for --minutes of simulated time, which adds a twentieth to the CPU
-    time.
+    Spends a quarter of the CPU time on tests of the link layer, a quarter on the link layer under
+    attack, and half on calls between stock Ice, which uses the plugin, and IceC on the chip's RTL.
+    In addition, ten vehicles and two ground stations fly for --minutes of simulated time, which
+    adds a twentieth to the CPU time.
     """
     build = configured(values, "soak", "test_chip_soak", "test_ground_engine", "test_modem_soak",
                        "test_link")

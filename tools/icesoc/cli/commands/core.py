@@ -224,7 +224,7 @@ def test(values):
              "core synth fir --chip",
              "core synth my_core --core-folders ~/my_core"])
 def synth(values):
-    """report the utilisation of one core, alone and in the chip
+    """report the utilisation of one core, and its cost in the chip
 
     Prints LUTs, flip-flops, block RAM and DSP blocks of the core and of its parts, and the cost
     that its slot and memory port add to the chip.

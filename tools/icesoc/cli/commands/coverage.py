@@ -31,10 +31,10 @@ LEFT_OUT = "NOT_BUILT|^fuzz|^e2e.cores"
 def coverage(values):
     """measure the lines, branches and toggles that the tests reach
 
-    Builds models, C and C++ with counters (build/coverage), runs all tests except proofs, lints and
-    tests of tools, and merges the counts of Verilator, GHDL and gcov. Writes html/index.html and
-    summary.json in build/coverage. Exit status 1: a figure is below its minimum in
-    tests/regress/coverage_gates.json."""
+    Builds the RTL models and the C and C++ programs with coverage counters (build/coverage), runs
+    all tests except proofs, lints and tests of tools, and merges the counts of Verilator, GHDL and
+    gcov. Writes html/index.html and summary.json in build/coverage. Exit status 1: a figure is
+    below its minimum in tests/regress/coverage_gates.json."""
     build = configured(values, tests=True)
     build.ninja("regress")
     counted = BuildFolder("build/coverage", values)

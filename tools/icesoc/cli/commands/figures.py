@@ -64,8 +64,8 @@ def figures_of_synth(report):
 def build_figures(values):
     """make the figures and pictures of README.md and docs/ from one run
 
-    Runs `bench`, `synth accept` and a regression with a seeded fault, takes pictures of their pages
-    and of two flights, and writes the figures into the documentation. `make test
+    Runs ./icesoc bench, ./icesoc synth accept and a regression with a seeded fault, takes pictures
+    of their pages and of two flights, and writes the figures into the documentation. `make test
     NAME=tree.figures` compares pages and pictures with the measured figures.
     """
     for step in STEPS:

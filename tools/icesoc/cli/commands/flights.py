@@ -213,7 +213,7 @@ def explain_failure(values, status, has_flown):
              "replay build/run --from 1.5 --to 1.51",
              "replay build/run --from 4.2 --out build/end"])
 def replay(values):
-    """repeat a recorded flight bit by bit, or write a part as waveform
+    """repeat a recorded flight bit by bit, or write its waveform
 
     Without --from and --to, repeats the flight and compares every result. With one of them, writes
     the waveform of this part of the flight to OUT/wave.fst. The first time, it also builds a
@@ -303,8 +303,8 @@ def gdb(values):
                                   "a missing authority.pem is created"),
     Option("signing", SWITCH, "make a private key for signing updates, and its public half "
                               "(spare.pub for spare.key); an existing key is kept"),
-    Option("list", COUNT, "make a list of signing keys with the number N, which must be the "
-                          "number of the previous list plus 1"),
+    Option("list", COUNT, "make list number N of the signing keys; N is the number of the "
+                          "previous list plus 1"),
     Option("by", FILE, "private key that signs the list; it must be in the previous list"),
     Option("first", FILE, "first public key of the list"),
     Option("second", FILE, "second public key of the list"), BUILD, JOBS], make="key",

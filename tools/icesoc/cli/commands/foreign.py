@@ -27,7 +27,8 @@ def foreign_words(values):
 @command("core foreign", [
     NAME,
     Option("top", TEXT, "top module or entity of the core", ""),
-    Option("bus", TEXT, "bus of the core: wishbone, axil, apb, avalon, memory, own or axis", ""),
+    Option("bus", TEXT, "bus of the core: wishbone, axil, apb, avalon, memory, axis, or own (any "
+                        "other bus, described by --ports)", ""),
     Option("files", FILES, "Verilog or VHDL files of the core"),
     Option("ports", WORDS, "roles of the core's ports, as ROLE=PORT, such as write=we ack=done"),
     Option("params", WORDS, "parameters of the top module, such as DEPTH=16"),
@@ -108,7 +109,7 @@ def put_and_fly(values, listed, known):
 
 @command("core examples", [
     Option("cores", WORDS, "names of the cores to use, from examples/foreign/cores.json (default: "
-                           "all); the chip is then built only once, not in three orders"),
+                           "all); the chip is then built only once, with the cores in this order"),
     Option("chip", SWITCH, "also print the cost of each core in the chip"), SEED,
     *(o for o in FIELDS if o.name == "image"), BUILD, JOBS], make="foreign",
          brief="core examples --cores foreign_i2c foreign_arbiter foreign_queue",
@@ -123,9 +124,9 @@ def examples(values):
     The cores have Wishbone, Avalon-MM, AXI4-Lite, AXI-Stream and plain buses, and are written
     in Verilog, SystemVerilog and VHDL. They are downloaded from Debian's mirror and GitHub; a core
     that cannot be downloaded is skipped. Together with two cores of this tree they form a chip,
-    which is built and flown three times, with its cores in three orders. Cores in SystemVerilog
-    that Yosys cannot read fly in a second chip, which is not synthesised. Exit status 77: none of
-    the cores, or not all cores of --cores, could be downloaded.
+    which is built and flown three times, each time with its cores in another order. Cores in
+    SystemVerilog that Yosys cannot read fly in a second chip, which is not synthesised. Exit
+    status 77: no core could be downloaded, or a core that --cores names could not.
     """
     listed = json.loads(Path("examples/foreign/cores.json").read_text())
     known = {name for source in listed.values() for name in source["cores"]}

@@ -25,13 +25,14 @@ from icesoc.util.errors import Stop
 def release(values):
     """make the files of a release: sources, packages, checksums
 
-    Also makes IceC as single files and as packs, the documentation, and a list of all
-    components. Everything is made from the last commit. The same commit always gives the same
-    bytes, except for a signature by gpg, which contains the time.
+    Also makes IceC as one C file and header per component, and as packs for PlatformIO, Zephyr
+    and CMSIS; the documentation; and a list of all components. Everything is made from the last
+    commit. The same commit always gives the same bytes, except for a signature by gpg, which
+    contains the time.
     """
     for part in values.only:
         if part not in build.PARTS:
-            raise Stop(f"--only: expected parts from {', '.join(build.PARTS)}, got '{part}'", 2)
+            raise Stop(f"--only: expected one of {', '.join(build.PARTS)}, got '{part}'", 2)
     parts = values.only or list(build.PARTS)
     out = Path(values.out).absolute()
     number, made = build.build(Path.cwd(), out, parts, values.key, values.packages)

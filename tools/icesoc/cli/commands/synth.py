@@ -49,7 +49,7 @@ def utilisation(build, values, *words):
 def synth(values):
     """report LUTs, flip-flops, slices and clock of the chip and each part
 
-    Synthesises every design that has changed with Yosys. Compares the figures with the baseline,
+    Uses Yosys to synthesise every design that has changed. Compares the figures with the baseline,
     with the limits in synth/designs.json and with the paper. Writes build/synth/report.html.
     """
     first, between, last = values.base.partition("..")
@@ -104,7 +104,7 @@ def synthesise(program, jobs, base, folder):
         run([*GIT, "-C", folder, "checkout", "-q", "--detach", base])
     else:
         run([*GIT, "worktree", "add", "-q", "--detach", folder, base])
-    warn(f"building what {named(base)} synthesises ...")
+    warn(f"building the files needed to synthesise {named(base)} ...")
     failed = f"{base} does not build"
     if not (folder / "build/main/build.ninja").exists():
         logged(["cmake", "-S", folder, "-B", folder / "build/main", "-G", "Ninja"],

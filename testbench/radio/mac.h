@@ -50,7 +50,7 @@ private:
     Modem& modem_;
     State state_ = State::Idle;
     RfPacket packet_;
-    // outcome that the model of the weather has drawn for this packet
+    // outcome that the model of the air has drawn for this packet
     RfOutcome drawn_ = RfOutcome::Delivered;
     // Number of tries left in this round, number of rounds left (RR), and number of copies of a
     // broadcast left.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // rf_channel: models the air between modems. It is half duplex and shared, so frames can collide.
-// The simulated weather loses, damages, delays and duplicates frames at random; a seed makes this
+// The simulated air loses, damages, delays and duplicates frames at random; a seed makes this
 // repeatable.
 
 #pragma once
@@ -75,7 +75,7 @@ private:
     std::vector<Row> rows_;
 };
 
-// Weather: the conditions on the air. Fields are probabilities unless stated otherwise.
+// RfWeather: the radio conditions. Fields are probabilities unless stated otherwise.
 struct RfWeather {
     // Probability that a packet is lost in one direction in spite of the MAC's retries. Such a loss
     // takes no additional air time.
@@ -102,7 +102,7 @@ struct RfWeather {
     // carrier sense, collisions, or processing time in the modems. No real radio behaves like this.
     bool perfect = false;
 
-    // Kinds of weather from publications: losses in bursts as on flights, lost tries as in field
+    // Radio conditions from publications: losses in bursts as on flights, lost tries as in field
     // tests, a distance in open terrain, an interferer. Sources: docs/simulation.md.
     static const std::vector<std::pair<std::string, RfWeather>>& published() {
         static const auto all = [] {
@@ -127,8 +127,8 @@ struct RfWeather {
         }();
         return all;
     }
-    // Draws a weather at random: one of the published kinds, or independent losses below `mostLoss`
-    // percent, or no losses; sometimes also duplicated and damaged packets.
+    // Draws radio conditions at random: one of the published kinds, or independent losses below
+    // `mostLoss` percent, or no losses; sometimes also duplicated and damaged packets.
     static RfWeather drawn(Random& random, unsigned mostLoss) {
         RfWeather w;
         const size_t kind = random.below(static_cast<uint32_t>(3 * published().size()));

@@ -109,8 +109,8 @@ double flow(AirPair& w, bool both, uint64_t seconds) {
     return rate;
 }
 
-// Returns the largest number of bytes per second that the modems can transfer in this weather, over
-// all values of RN. A key of the link does not change this limit.
+// Returns the largest number of bytes per second that the modems can transfer under these radio
+// conditions, with the best value of RN. A key of the link does not change this limit.
 double limitOf(const std::string& what, const RfWeather& weather, bool isEncrypted, bool both) {
     static std::map<std::string, double> known;
     double& most = known[what + (isEncrypted ? ", encrypted" : "") + (both ? ", both ways" : "")];

@@ -328,9 +328,9 @@ inline double floorMs(size_t out, size_t back, bool isEncrypted = false) {
     return times[times.size() / 2];
 }
 
-// Returns the largest number of bytes per second that two modems can transfer in this weather, in
-// one direction or in both. A full packet is always ready, and a lost packet costs only its air
-// time, as if the sender noticed the loss immediately.
+// Returns the largest number of bytes per second that two modems can transfer under these radio
+// conditions, in one direction or in both. A full packet is always ready, and a lost packet costs
+// only its air time, as if the sender noticed the loss immediately.
 inline double mostBytesPerSecond(const RfWeather& weather, bool both, bool isEncrypted,
                                  unsigned leastExponent, uint64_t seconds, uint64_t seed) {
     BareModems w(weather, seed, isEncrypted, leastExponent);

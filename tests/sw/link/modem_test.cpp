@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // modem_test: tests two link layers over two modem models and the air between them. Cases are
-// packets that modems lose after they have acknowledged them, published weather conditions, and the
+// packets that modems lose after they have acknowledged them, published radio conditions, and the
 // example of a trace.
 
 #include "modem_pair.h"
@@ -122,7 +122,7 @@ TEST_P(LinkOverModems, TheTraceOfTheExampleIsFlown) {
 }
 
 // An idle link sends a PING after five seconds, which takes few bytes; without a reply, it repeats
-// the PING soon. The session must last for an hour under each of the published channel conditions
+// the PING soon. The session must last for an hour under each of the published radio conditions
 // (RfWeather), and for another hour with 30 % packet loss.
 TEST_P(LinkOverModems, AnIdleSessionLastsInBadWeather) {
     a_.longestRestUs = b_.longestRestUs = 100'000;

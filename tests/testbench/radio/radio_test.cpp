@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // radio_test: tests the radio side of the modem, and the air: addresses, times, tries, encryption,
-// weather.
+// radio conditions.
 
 #include "two_modems.h"
 #include <openssl/evp.h>

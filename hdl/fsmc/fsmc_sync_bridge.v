@@ -96,7 +96,7 @@ module fsmc_sync_bridge #(
     generate
         if (MUXED != 0) begin : g_muxed
             // `pins_was` and nadv_n were sampled at the pins in the same clock. Therefore `low`
-            // keeps the value from the last clock in which NADV was low, which is the address.
+            // keeps the address: the value of the pins in the last clock in which NADV was low.
             wire       nadv_n;
             reg [15:0] low, pins_was;
             cdc_bit #(.INITIAL(1'b1)) u_nadv (

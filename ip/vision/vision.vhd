@@ -320,13 +320,13 @@ begin
     end if;
   end process;
 
-  -- The score that leaves vision_suppress belongs to the centre of its neighbourhood, which is one
-  -- line and one column before the score that entered KEPT_DELAY steps ago.
+  -- The score that leaves vision_suppress belongs to the centre of its neighbourhood. This centre
+  -- is one line and one column before the pixel whose score entered KEPT_DELAY steps ago.
   kept_position : process (clk_i)
   begin
     if rising_edge(clk_i) then
       if go = '1' then
-        -- The first centre is one column before (0, -1), which is the last column of line -2. The
+        -- The first centre is one column before (0, -1): it is in the last column of line -2. The
         -- numbers are unsigned.
         kept_x <= last_column;
         kept_y <= to_unsigned(131070, 17); -- -2

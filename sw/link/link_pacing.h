@@ -113,8 +113,8 @@ int link_flush(Link_Pacing* pacing);
  * the radio at once if the radio has room. Returns 1 if the frame is in the packet. */
 int link_sendNow(Link_Pacing* pacing, U8* frame, U32 header, const Link_Seal* seal);
 
-/* Seals a frame whose payload is in place with the session's key, and adds the frame to the
- * packet, which may wait for more frames. The lowest byte of `number` is byte 1 of the
+/* Uses the session's key to seal a frame whose payload is in place, and adds the frame to the
+ * packet. The packet may then wait for more frames. The lowest byte of `number` is byte 1 of the
  * header. `acked` is the number that a PIGGYBACK acknowledges; otherwise 0. Returns 1 if the
  * frame is in the packet. */
 int link_sendFrame(Link_Pacing* pacing, U8* frame, U32 header, U32 number, U32 acked);

@@ -120,8 +120,8 @@ static void skip(Ice_InputStreamPtr is) {
         (void)readInstance(is, number);
 }
 
-/* Reads the indirection table after a slice, which contains the instances to which the slice's
- * members refer. These references are the patches from patchBegin. */
+/* Reads the indirection table that follows a slice. The table contains the instances to which the
+ * slice's members refer. These references are the patches from patchBegin. */
 static void readTable(Ice_InputStreamPtr is) {
     Ice_InputValues* values = is->values;
     Ice_Int count = Ice_InputStream_readSequence(is, 1), first = values->patchBegin;

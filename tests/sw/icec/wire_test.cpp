@@ -156,8 +156,8 @@ TEST(Stream, OptionalsOfEveryFormatAreSkipped) {
     }
 }
 
-// A peer may send the smallest possible size. The code subtracts from this size, which must not
-// wrap.
+// A peer may send the smallest possible size. The code subtracts from this size; the
+// result must not wrap.
 TEST(Stream, ASliceOfAnyWrongSizeIsMalformed) {
     for (uint32_t size : {0x80000000U, 0x80000003U, 0xFFFFFFFFU, 0U, 3U, 5U, 0x7FFFFFFFU}) {
         Bytes wire = {0x39, 1, 'x', 4, 0, 0, 0, // the last slice: a name, a size, and a table after

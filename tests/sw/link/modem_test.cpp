@@ -121,8 +121,8 @@ TEST_P(LinkOverModems, TheTraceOfTheExampleIsFlown) {
     EXPECT_GT(air_.counters().lost - lost, 100u);
 }
 
-// An idle link sends a PING after five seconds, which takes few bytes; without a reply, it repeats
-// the PING soon. The session must last for an hour under each of the published radio conditions
+// An idle link sends a PING of a few bytes after five seconds, and repeats the PING soon if no
+// reply arrives. The session must last for an hour under each of the published radio conditions
 // (RfWeather), and for another hour with 30 % packet loss.
 TEST_P(LinkOverModems, AnIdleSessionLastsInBadWeather) {
     a_.longestRestUs = b_.longestRestUs = 100'000;

@@ -37,9 +37,9 @@ std::string fileOf(const std::string& kind) {
     return RECORDED "/link-" + std::to_string(LINK_VERSION) + "-" + kind + ".txt";
 }
 
-// Returns the messages of a side. They are requests of the ground and replies of the vehicle (two
-// with a value and one with an exception), whose Ice heads are compressed, and other bytes, which
-// are sent unchanged.
+// Returns the messages of a side: requests of the ground, or replies of the vehicle (two with a
+// value and one with an exception), and other bytes. The Ice headers of requests and replies are
+// compressed; the other bytes are sent unchanged.
 std::vector<Bytes> messagesOf(char side) {
     std::vector<Bytes> messages;
     if (side == 'b')

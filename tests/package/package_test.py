@@ -163,10 +163,36 @@ class Cases(Script):
         self.has("cannot reach nohost.invalid:1: nohost.invalid: host not found$")
         self.use("icesoc-update", "missing", status=1)
         self.has("^update: missing: No such file or directory$")
+        self.use("icesoc-change-key", "--device", "modem", "--key", "missing", status=1)
+        self.has("^change_key: .*/missing: No such file or directory$")
         self.use("icesoc-provide-key", "--port", "/dev/null", "--open", status=1)
         self.has("^provide_key: [^(]*Inappropriate ioctl for device$")
         self.use("icesoc-fly", "--out", "/proc/missing", status=1)
         self.has("^icesoc-fly: cannot write /proc/missing: No such file or directory$")
+
+    def test_device(self):
+        """The programs of the ground station accept paths with spaces and colons, such as those in
+        /dev/serial/by-path."""
+        self.install("icesoc-ground", "icesoc-sim", "icesoc-slice2c")
+        port = "usb 0:1.0/my modem"
+        write("my keys/uav 1.key", "00112233445566778899aabbccddeeff\n")
+        os.chmod("my keys/uav 1.key", 0o600)
+        self.use("icesoc-pack-update", "image", self.prefix / "lib/icesoc/uav.elf", "7", "own.key",
+                 "new.update")
+        write("vehicles.conf", f"Vehicle.uav1=xbee-at -d \"{port}\" -a 1\nXBeeAT.Guard=20\n"
+              "XBeeAT.KeyFile=my keys/uav 1.key\n")
+        write("use.sh", f"mkdir -p 'usb 0:1.0'\nln -sf $1 '{port}'\n"
+              "export ICESOC_VEHICLES=vehicles.conf\n"
+              f"modem=\"--device '{port}' --key 'my keys/uav 1.key' --guard 20\"\n"
+              "icesoc-call keys.count\n"
+              "eval icesoc-call uav.isAlive 7 $modem\n"
+              "eval icesoc-change-key $modem\n"
+              "eval icesoc-update new.update $modem\n")
+        self.use("icesoc-sim", "--image", IMAGE, "--size", "96x64", "--guard", "20", "--out",
+                 "flight", "--key", "my keys/uav 1.key", "--", "sh", "use.sh", "{device}",
+                 status=None)
+        self.has("^1$", "^true$", "^change_key: vehicle 0x0001 and .*/uav 1.key have a new key",
+                 "^update: the vehicle has no object 'update'")
 
     def test_page(self):
         """Checks the gateway's page: its files, and a call like the one that the browser makes. The

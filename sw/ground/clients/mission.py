@@ -67,7 +67,7 @@ def parse_arguments():
                      "vehicles", "observer", "live"):
             setattr(args, name, flight[name])
         args.endpoint = "%s -d %s -a 0x0001 -s 0x0000" % (
-            "serial" if args.wire else "xbee-at", args.device)
+            "serial" if args.wire else "xbee-at", plugged.quoted(args.device))
     except KeyError as error:
         sys.exit("mission: '%s': expected a flight (./icesoc run writes it); the member %s is "
                  "missing" % (args.flight, error))
@@ -301,7 +301,7 @@ class Mission:
             self.communicators.append(communicator)
             for address in range(1, args.vehicles + 1):
                 vehicle = self.autopilot.VehiclePrx.uncheckedCast(communicator.stringToProxy(
-                    f"uav:xbee-at -d {device} -a 0x{address:04x} -s 0x00f0 "
+                    f"uav:xbee-at -d {plugged.quoted(device)} -a 0x{address:04x} -s 0x00f0 "
                     f"-t {self.timeout}"))
                 state = self.log.call("observer -> UAV", f"uav{address}.getFlightState()",
                                       vehicle.getFlightState)

@@ -15,15 +15,19 @@ def use_second_clock():
         os.environ["XBEEAT_CLOCK"] = clock + "2"
 
 
+def quoted(text):
+    """Returns a text in the quotes of ZeroC Ice. Without quotes, a space ends an argument of an
+    endpoint or a plugin, and a colon ends an endpoint."""
+    return '"%s"' % text.replace("\\", "\\\\").replace('"', '\\"')
+
+
 def initialize(settings, plugin, guard, key):
     """Creates and returns a communicator with the properties `settings`. plugin: folder that
     contains libxbeeat.so.37; empty or None means no radio. guard: guard time of the modem, ms. key:
     file with the key of the link; empty means no key."""
     if plugin:
         entry = os.path.join(plugin, "xbeeat") + ":createXBeeAT"
-        # The value is quoted, because Ice splits it at spaces, and the name of the folder may
-        # contain spaces.
-        settings = {"Ice.Plugin.XBeeAT": '"%s"' % entry.replace("\\", "\\\\").replace('"', '\\"'),
+        settings = {"Ice.Plugin.XBeeAT": quoted(entry),
                     "XBeeAT.Guard": str(guard),
                     "XBeeAT.KeyFile": key, **settings}
     data = Ice.InitializationData()

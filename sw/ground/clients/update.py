@@ -297,7 +297,8 @@ def main():
         plugin = args.plugin or ("" if args.proxy else places.plugin())
         communicator = plugged.initialize(settings, plugin, args.guard, args.key)
         first = images[0] if images else "update"
-        where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % (first, args.device)
+        where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -s 0x0000 -t 60000" % (
+            first, plugged.quoted(args.device))
         proxy = Update.FirmwarePrx.uncheckedCast(communicator.stringToProxy(where))
         for name, part in parts:
             # --proxy names the object of the first part; for other objects, the identity in this

@@ -231,8 +231,8 @@ def main():
         signals = Signals(args.map, args.probe)
         settings = {"Ice.Default.InvocationTimeout": "60000", "Ice.ACM.Close": "0"}
         communicator = plugged.initialize(settings, args.plugin, args.guard, args.key)
-        where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -t 60000" % (signals.identity,
-                                                                       args.device)
+        where = args.proxy or "%s:xbee-at -d %s -a 0x0001 -t 60000" % (
+            signals.identity, plugged.quoted(args.device))
         capture(Probes.ProbePrx.uncheckedCast(communicator.stringToProxy(where)), signals, args,
                 lambda text: print("probe: " + text, flush=True))
         return 0

@@ -35,7 +35,8 @@ options="-d /run/icesoc-modem -g 20 -l 127.0.0.1:11093 --page 127.0.0.1:11094"
 echo "ICESOC_OPTIONS=\"$options\"" >/etc/icesoc/uav1.conf
 chmod 640 /etc/icesoc/uav1.conf
 systemd-analyze verify --man=no icesoc-gateway@uav1.service
-systemctl start icesoc-gateway@uav1
+! systemctl enable --now icesoc-gateway@uav1 >log 2>&1 || fail "no error without a key"
+grep "Assertion failed" log
 ! systemctl is-active -q icesoc-gateway@uav1 || fail "the service runs without a key"
 
 step "Python, C++, icesoc-call and a page, by the service"
@@ -131,6 +132,8 @@ step "remove stops the service and keeps keys and settings, purge keeps keys"
 apt-get remove -y -qq icesoc-ground icesoc-sim icesoc-slice2c libicec-dev icesoc-hdl >/dev/null
 ! systemctl is-active -q icesoc-gateway@uav1 || fail "the service still runs"
 [ -s /etc/icesoc/uav1.key ] && [ -s /etc/icesoc/uav1.conf ] || fail "remove took keys or settings"
+[ -L /etc/systemd/system/multi-user.target.wants/icesoc-gateway@uav1.service ] ||
+    fail "remove disabled the service"
 apt-get purge -y -qq icesoc-ground >/dev/null # the other packages have no files left to purge
 [ "$(stat -c '%U %a' /etc/icesoc/uav1.key)" = "icesoc 600" ] || fail "purge took a key"
 [ "$(ls /etc/icesoc)" = uav1.key ] || fail "purge left settings: $(ls /etc/icesoc)"

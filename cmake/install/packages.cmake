@@ -5,7 +5,13 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME icesoc)
 set(CPACK_PACKAGE_VENDOR "The IceSoC authors")
 set(CPACK_PACKAGE_CONTACT "The IceSoC authors <packages@icesoc.example>")
+# ./icesoc package sets DEB_VERSION to the version of the commit. apt does not replace an installed
+# package by another one of the same version.
+set(DEB_VERSION "" CACHE STRING "version of the Debian packages; default: newest in CHANGELOG.md")
 set(CPACK_PACKAGE_VERSION ${ICESOC_VERSION})
+if(DEB_VERSION)
+  set(CPACK_PACKAGE_VERSION ${DEB_VERSION})
+endif()
 set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/packages)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
@@ -21,18 +27,20 @@ set(CPACK_DEBIAN_PACKAGE_PRIORITY optional)
 file(STRINGS /etc/os-release release REGEX "^VERSION_ID=" LIMIT_COUNT 1)
 string(REGEX MATCH "[0-9]+" release "${release}")
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1~deb${release})
+set(deb_version ${CPACK_PACKAGE_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})
 
 # icesoc_package(COMPONENT SUMMARY text DESCRIPTION text [SECTION utils] [ALL]
-#                [DEPENDS list] [RECOMMENDS list] [SCRIPTS file...])
+#                [DEPENDS list] [RECOMMENDS list] [BREAKS list] [SCRIPTS file...])
 macro(icesoc_package component)
-  cmake_parse_arguments(P "ALL" "SUMMARY;DESCRIPTION;SECTION;DEPENDS;RECOMMENDS" "SCRIPTS"
-    ${ARGN})
+  cmake_parse_arguments(P "ALL" "SUMMARY;DESCRIPTION;SECTION;DEPENDS;RECOMMENDS;BREAKS"
+    "SCRIPTS" ${ARGN})
   string(TOUPPER ${component} upper)
   set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${component})
   set(CPACK_DEBIAN_${upper}_DESCRIPTION "${P_SUMMARY}\n${P_DESCRIPTION}")
   set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${P_SECTION})
   set(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS "${P_DEPENDS}")
   set(CPACK_DEBIAN_${upper}_PACKAGE_RECOMMENDS "${P_RECOMMENDS}")
+  set(CPACK_DEBIAN_${upper}_PACKAGE_BREAKS "${P_BREAKS}")
   set(CPACK_DEBIAN_${upper}_PACKAGE_CONTROL_EXTRA ${P_SCRIPTS})
   set(CPACK_DEBIAN_${upper}_PACKAGE_SHLIBDEPS ON)
   if(P_ALL)
@@ -53,8 +61,7 @@ macro(icesoc_package component)
     DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${component} COMPONENT ${component})
   add_custom_command(OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/doc/${component}/changelog.Debian.gz
     COMMAND ${here}/debian/changelog.sh ${component}
-      ${ICESOC_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}
-      ${CMAKE_CURRENT_BINARY_DIR}/doc/${component}/changelog.Debian.gz
+      ${deb_version} ${CMAKE_CURRENT_BINARY_DIR}/doc/${component}/changelog.Debian.gz
     WORKING_DIRECTORY ${top} DEPENDS ${here}/debian/changelog.sh ${top}/CHANGELOG.md VERBATIM)
   list(APPEND documents ${CMAKE_CURRENT_BINARY_DIR}/doc/${component}/changelog.Debian.gz)
   if(EXISTS ${here}/debian/${component}.lintian)
@@ -82,7 +89,7 @@ icesoc_package(icesoc-ground SECTION comm
 over XBee modems. A gateway serves programs in any language. The package has
 the service of the gateway, commands for keys and updates, Slice files, and
 the Python module icesoc."
-  DEPENDS "icesoc-slice2c (= ${ICESOC_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}), python3, \
+  DEPENDS "icesoc-slice2c (= ${deb_version}), python3, \
 python3-zeroc-ice, python3-pil, python3-lz4, zeroc-ice-slice, adduser"
   SCRIPTS ${scripts}/postinst ${scripts}/prerm ${scripts}/postrm
     ${scripts}/shlibs ${scripts}/triggers)
@@ -97,13 +104,14 @@ icesoc_package(libicec-dev SECTION libdevel
   DESCRIPTION "IceC serves and calls ZeroC Ice objects from C. The package has static
 libraries for this machine, headers, and the sources for other machines, such
 as microcontrollers."
-  DEPENDS "libc6-dev" RECOMMENDS "icesoc-slice2c")
+  DEPENDS "libc6-dev" RECOMMENDS "icesoc-slice2c"
+  BREAKS "icesoc-slice2c (<< ${deb_version}), icesoc-slice2c (>> ${deb_version})")
 icesoc_package(icesoc-sim SECTION electronics
   SUMMARY "simulator of an IceSoC vehicle, with modems and air"
   DESCRIPTION "The simulator runs the FPGA's logic and the firmware of a vehicle with models
 of memory, modems and air. icesoc-fly flies the example mission with the
 programs of icesoc-ground."
-  DEPENDS "icesoc-ground (= ${ICESOC_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}), python3"
+  DEPENDS "icesoc-ground (= ${deb_version}), python3"
   RECOMMENDS "xplanet-images")
 icesoc_package(icesoc-hdl SECTION electronics ALL
   SUMMARY "Verilog blocks of IceSoC for other FPGA projects"

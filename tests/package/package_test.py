@@ -329,11 +329,15 @@ cc -std=c90 -ffunction-sections -fdata-sections -o by_pkg_config -Imade \\
             print(name, path.stat().st_size, "bytes")
         self.ask("dpkg-deb", "--info", found["icesoc-ground"])
         self.has("Depends: .*python3-zeroc-ice", "libzeroc-ice3.7", "postinst")
-        # Packages of different versions cannot be installed together, because each package depends
-        # on the same version of the others.
-        self.has(r"Depends: icesoc-slice2c \(= [0-9.]+-1~deb[0-9]+\)")
+        # The packages of programs for a vehicle and a ground station cannot be mixed with those of
+        # another version.
+        its = r"[0-9]+\.[0-9]+\.[0-9]+(\+git\.[0-9]{14}\.[0-9a-f]{12})?-1~deb[0-9]+\)"
+        self.has(rf"Depends: icesoc-slice2c \(= {its}")
         self.ask("dpkg-deb", "--info", found["icesoc-sim"])
-        self.has(r"Depends: icesoc-ground \(= [0-9.]+-1~deb[0-9]+\)")
+        self.has(rf"Depends: icesoc-ground \(= {its}")
+        # Generated code and IceC must have the same version.
+        self.ask("dpkg-deb", "--info", found["libicec-dev"])
+        self.has(rf"Breaks: icesoc-slice2c \(<< {its}, icesoc-slice2c \(>> {its}")
         self.ask("dpkg-deb", "--info", found["icesoc-hdl"])
         self.has("Architecture: all")
         self.ask("dpkg-deb", "--contents", found["icesoc-ground"])

@@ -15,6 +15,7 @@ import shutil
 import subprocess
 import sys
 import tarfile
+import time
 import xml.etree.ElementTree as ET
 import zipfile
 from pathlib import Path
@@ -416,14 +417,22 @@ target_include_directories(same PRIVATE ${{CMAKE_BINARY_DIR}}/gen ${{CMAKE_SOURC
 
     def test_versions(self):
         """If a commit has unreleased changes, its version consists of the last version and the
-        number of the commit. A released version belongs to one commit."""
+        time and hash of the commit, so that dpkg regards later commits as newer. A released version
+        belongs to one commit."""
         self.assertEqual(version.newest(), re.search(r"badge/version-([\d.]+)-",
                                                      (TREE / "README.md").read_text())[1])
         self.small("\n- third\n")
-        short = git("rev-parse HEAD")[:12]
+        seconds, short = int(git("show -s --format=%ct")), git("rev-parse HEAD")[:12]
+        when = time.strftime("%Y%m%d%H%M%S", time.gmtime(seconds))
+        number = f"1.2.3+git.{when}.{short}"
         self.release("out", "--only", "changes", tree=".")
-        self.has(rf"^IceSoC 1\.2\.3\+git\.{short}, not signed")
-        self.has("^- third", file=f"out/CHANGES-1.2.3+git.{short}.md")
+        self.has(f"^IceSoC {re.escape(number)}, not signed")
+        self.has("^- third", file=f"out/CHANGES-{number}.md")
+        self.assertEqual(version.of_commit("."), number)
+        later = version.of_text(Path("CHANGELOG.md").read_text(), "0" * 40, seconds + 1)
+        for older, newer in ("1.2.3-1", f"{number}-1"), (f"{number}-1", f"{later}-1"), (
+                f"{later}-1", "1.2.4-1"):
+            self.ask("dpkg", "--compare-versions", older, "lt", newer)
         self.small("")
         git("tag v1.2.3")
         self.release("out", "--only", "changes", tree=".")

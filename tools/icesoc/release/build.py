@@ -63,14 +63,13 @@ def read_commit(tree):
     return commit, seconds, files, {member.name for member in members if member.mode & 0o100}
 
 
-def number(tree, commit, files):
-    """Returns the version of a commit. If CHANGELOG.md has unreleased changes, the version consists
-    of the last version and the hash of the commit. Fails if the version is already released as
-    another commit."""
+def number(tree, commit, seconds, files):
+    """Returns the version of a commit. Fails if the version is already released as another
+    commit."""
     text = files["CHANGELOG.md"].decode()
     newest = version.newest(text)
     if version.unreleased(text):
-        return f"{newest}+git.{commit[:12]}"
+        return version.of_text(text, commit, seconds)
     tagged = output(["git", "-C", str(tree), "rev-parse", "-q", "--verify",
                      f"v{newest}^{{commit}}"], check=False).strip()
     if tagged and tagged != commit:
@@ -167,7 +166,7 @@ def build(tree, out, parts, key, folders=()):
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_bytes(data)
             file.chmod(0o755 if name in programs else 0o644)
-        release = Release(number(tree, commit, files), commit, seconds, files, programs,
+        release = Release(number(tree, commit, seconds, files), commit, seconds, files, programs,
                           Path(work), Path(tree), Path(out), list(folders))
         shutil.rmtree(out, ignore_errors=True)
         release.out.mkdir(parents=True)

@@ -5,9 +5,13 @@ written.
     tools/python -m icesoc.release.version     prints the version
 """
 import re
+import subprocess
+import time
+from pathlib import Path
 
 from icesoc import TREE
 from icesoc.util.errors import Stop
+from icesoc.util.process import output
 
 HEADING = re.compile(r"^## (\S+)[^\n]*\n(.*?)(?=^## |\Z)", re.M | re.S)
 
@@ -30,6 +34,25 @@ def newest(text=None):
 def unreleased(text=None):
     """Returns the changes since the newest version."""
     return dict(sections(text)).get("Unreleased", "")
+
+
+def of_text(text, commit, seconds):
+    """Returns the version of a commit with this changelog. If the changelog has unreleased changes,
+    the version consists of the last version and the commit's time and hash: dpkg regards it as
+    newer than the last version and than the versions of earlier commits. `seconds` is the time of
+    the commit."""
+    if not unreleased(text):
+        return newest(text)
+    when = time.strftime("%Y%m%d%H%M%S", time.gmtime(seconds))
+    return f"{newest(text)}+git.{when}.{commit[:12]}"
+
+
+def of_commit(tree=TREE):
+    """Returns the version of the tree's last commit. Without git, returns the newest version."""
+    text = (Path(tree) / "CHANGELOG.md").read_text(encoding="utf-8")
+    found = output(["git", "-C", str(tree), "log", "-1", "--format=%H %ct"], check=False,
+                   stderr=subprocess.DEVNULL).split()
+    return of_text(text, found[0], int(found[1])) if found else newest(text)
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from subprocess import DEVNULL
 from icesoc.cli.build_folder import BuildFolder
 from icesoc.cli.command import command
 from icesoc.cli.options import FOLDER, JOBS, SWITCH, Option
+from icesoc.release import version
 from icesoc.util.console import say
 from icesoc.util.process import logged, output as read, run
 
@@ -30,7 +31,10 @@ def package(values):
     docs/install.md describes them.
     """
     own = ["-DPORTABLE=ON", f"-DROOMS={ROOMS}"] if values.build == BUILD else []
-    build = BuildFolder(values.build, values).prepare(*own, packages=True)
+    number = version.of_commit()
+    build = BuildFolder(values.build, values).prepare(*own, f"-DDEB_VERSION={number}",
+                                                      packages=True)
+    build.set(DEB_VERSION=number)
     build.ninja("installable")
     output = Path(values.output).absolute()
     output.mkdir(parents=True, exist_ok=True)

@@ -3,10 +3,10 @@
 #
 # machine: installs the packages on an empty Debian with apt, and uses them like a user: a mission,
 # programs with stock ZeroC Ice in Python and C++ that use the plugin, icesoc-call, a C project with
-# CMake, and the simulation of a block. Run service.sh after this script. Run as root, on a machine
-# that is used only for this test.
-# Usage: machine.sh [FOLDER]    FOLDER contains *.deb and the files of tests/package; default: the
-# folder of this script
+# CMake, IceC as single files, and the simulation of a block. Run service.sh after this script. Run
+# as root, on a machine that is used only for this test.
+# Usage: machine.sh [FOLDER]    FOLDER contains *.deb, icec-*.tar.gz and the files of tests/package;
+# default: the folder of this script
 set -eu
 here=$(cd "${1:-.}" && pwd)
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C.UTF-8
@@ -55,7 +55,7 @@ user $simulate --out call.out -- sh call '{device}' | grep "^true"
 
 step "C++, by the plugin"
 apt-get install -y -qq --no-install-recommends g++ libzeroc-ice-dev cmake ninja-build pkg-config \
-    iverilog verilator make >/dev/null
+    iverilog verilator make gcc clang gcc-arm-none-eabi libnewlib-arm-none-eabi >/dev/null
 g++ -DICE_CPP11_MAPPING -o ping /usr/share/doc/icesoc-ground/examples/ping.cpp -lIce++11 -pthread
 user $simulate --out ping.out -- ./ping 'hwengine1:xbee-at -d {device} -a 1 -g 20' 1 >log ||
     { cat log && fail "no answer by the plugin"; }
@@ -64,17 +64,47 @@ grep "type: ::Autopilot" log
 step "a project by CMake, called by stock ZeroC Ice"
 user cmake -S "$here/project/server" -B build -G Ninja >/dev/null
 user ninja -C build >/dev/null
-user ./build/server 10001 >/dev/null &
-sleep 1
-user python3 -c "
+# answers PROGRAM PORT: starts a server, and calls it by stock ZeroC Ice.
+answers() {
+    rm -f server.log
+    user "$1" "$2" >server.log &
+    server=$!
+    until grep -q ready server.log; do
+        kill -0 $server || fail "$1 does not start"
+        sleep 0.1
+    done
+    user python3 -c "
 import Ice
 Ice.loadSlice('$here/project/server/Thing.ice')
 import M
 with Ice.initialize() as ic:
-    thing = M.ThingPrx.checkedCast(ic.stringToProxy('thing:tcp -h 127.0.0.1 -p 10001'))
+    thing = M.ThingPrx.checkedCast(ic.stringToProxy('thing:tcp -h 127.0.0.1 -p $2'))
     print('sum', thing.add(3, 4))
 " | grep "sum 7"
-kill $!
+    kill $server
+}
+answers ./build/server 10001
+
+step "IceC as single files, compiled by three compilers, called by stock ZeroC Ice"
+rm -rf icec-* made
+user tar -xzf "$here"/icec-*.tar.gz
+source=$(echo icec-*/src)
+strict="-std=c90 -pedantic -Wall -Wextra -Wconversion -Werror"
+for compiler in gcc clang "arm-none-eabi-gcc -mcpu=cortex-m3 -mthumb"; do
+    for file in "$source"/*.c; do
+        case $compiler,$file in arm*,*/icec_tcp.c) continue ;; esac # for POSIX systems
+        for level in -O0 -Os -O2; do
+            user $compiler $strict $level -c "$file" -o object.o
+        done
+    done
+    $compiler --version | head -n 1
+done
+user slice2c "$here/project/server/Thing.ice" --output-dir made
+sed 's/tcp_endpoint.h/icec_tcp.h/' "$here/project/server/server.c" >single.c
+user gcc $strict -ffunction-sections -fdata-sections -I"$source" -Imade single.c \
+    made/Thing_types.c made/Thing_server.c "$source/icec.c" "$source/icec_tcp.c" \
+    -Wl,--gc-sections -pthread -o single
+answers ./single 10002
 
 step "the bridge, in Icarus Verilog and in Verilator"
 export ICESOC_HDL=/usr/share/icesoc/hdl

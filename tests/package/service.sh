@@ -3,8 +3,9 @@
 #
 # service: uses the gateway's service on a machine that machine.sh has prepared. Python, C++,
 # icesoc-call and the gateway's page call a simulated vehicle through the service, with a key. Then
-# the modem disappears and returns while the service runs. Then the script upgrades the packages,
-# which must keep keys, permissions and settings and restart the service, and removes and purges the
+# the modem disappears and returns while the service runs. Then the script tries to install single
+# packages of another version, which apt must refuse, and upgrades all packages, which must keep
+# keys, permissions and settings and restart the service. Finally it removes and purges the
 # packages. Run as root, with systemd running (boot.sh). Usage:
 # service.sh [FOLDER]    FOLDER as for machine.sh
 set -eu
@@ -105,22 +106,30 @@ icesoc-call uav.isAlive 7 >log 2>&1 || no_answer "no answer after the modem has 
 journalctl --no-pager -o cat -u icesoc-gateway@uav1 >log
 grep "has disappeared" log && grep "is in use again" log || no_answer "the log does not name it"
 
-step "upgrade keeps keys, rights and settings, and restarts the service"
-state() { stat -c '%n %U:%G %a %Y' /etc/icesoc /etc/icesoc/*; sha256sum /etc/icesoc/*; }
-old=$(dpkg-query -W -f '${Version}' icesoc-ground)
+step "packages of two versions are refused"
+version() { dpkg-query -W -f '${Version}' "$1"; }
+old=$(version icesoc-ground)
 new=$(echo "$old" | sed 's/-/.99-/')
-chmod 710 /etc/icesoc # a change by the administrator, which an upgrade must keep
-before=$(state) user=$(id icesoc)
-pid=$(systemctl show -P MainPID icesoc-gateway@uav1)
 rm -rf newer && mkdir newer
 for deb in "$here"/*.deb; do
     dpkg-deb -R "$deb" tree
-    sed -i "s/$old/$new/" tree/DEBIAN/control
+    sed -i "s/$old/$new/g" tree/DEBIAN/control
     dpkg-deb -b tree newer >/dev/null
     rm -r tree
 done
+for package in icesoc-ground icesoc-sim icesoc-slice2c libicec-dev; do
+    ! apt-get install -y -qq --no-remove ./newer/${package}_*.deb >log 2>&1 ||
+        fail "apt installs another version of $package alone"
+    [ "$(version $package)" = "$old" ] || fail "$package has another version: $(version $package)"
+done
+
+step "upgrade keeps keys, rights and settings, and restarts the service"
+state() { stat -c '%n %U:%G %a %Y' /etc/icesoc /etc/icesoc/*; sha256sum /etc/icesoc/*; }
+chmod 710 /etc/icesoc # a change by the administrator, which an upgrade must keep
+before=$(state) user=$(id icesoc)
+pid=$(systemctl show -P MainPID icesoc-gateway@uav1)
 apt-get install -y -qq --no-install-recommends ./newer/*.deb >/dev/null
-[ "$(dpkg-query -W -f '${Version}' icesoc-ground)" = "$new" ] || fail "$new was not installed"
+[ "$(version icesoc-ground)" = "$new" ] || fail "$new was not installed"
 [ "$before" = "$(state)" ] || fail "the upgrade changed /etc/icesoc: $(state)"
 [ "$user" = "$(id icesoc)" ] || fail "the upgrade changed the user icesoc"
 after=$(systemctl show -P MainPID icesoc-gateway@uav1)

@@ -16,6 +16,7 @@ from pathlib import Path
 
 from icesoc.cli.command import command
 from icesoc.cli.options import FOLDER, INPUT_FOLDER, SWITCH, TEXT, Option, one_of
+from icesoc.release import build
 from icesoc.util.console import say
 from icesoc.util.errors import Stop
 from icesoc.util.process import output, run
@@ -37,8 +38,8 @@ mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd $3 && $2"
     Option("again", SWITCH, "reuse the existing systems, and update their clones to HEAD"),
     Option("steps", TEXT, "commands to run, separated by semicolons",
            "; ".join([*README, PACKAGES])),
-    Option("packages", INPUT_FOLDER, "only test the Debian packages in this folder, in a new "
-                                     "system of the given --release"),
+    Option("packages", INPUT_FOLDER, "only test the Debian packages in this folder, such as "
+                                     "build/release, in a new system of the given --release"),
     Option("folder", FOLDER, "folder for the systems and their logs; each system takes 8 GB",
            "/var/tmp/icesoc-fresh"),
     Option("list", SWITCH, "only print earlier results, each with its status and duration")],
@@ -94,8 +95,11 @@ def use_packages(root, release, values):
     there = machine / "srv/packages"  # the package files must be readable by all users
     shutil.rmtree(there, ignore_errors=True)
     shutil.copytree("tests/package", there)
-    for path in Path(folder).glob("*.deb"):
+    for path in Path(folder).glob(f"*~deb{RELEASES[release].split()[1]}_*.deb"):
         shutil.copy(path, there)
+    files = root.parent / f"{release}-icec"
+    build.build(Path.cwd(), files, ["icec"], "")
+    shutil.copy(next(files.glob("icec-*.tar.gz")), there)
     rows.append(do(machine, release, "sh machine.sh", "/srv/packages"))
     if not rows[-1]["status"]:
         rows.append(do(machine, release, "sh service.sh", "/srv/packages", booted=True))

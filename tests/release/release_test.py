@@ -314,6 +314,29 @@ add_subdirectory(library/zephyr)
         with self.assertRaises(jsonschema.ValidationError):
             jsonschema.Draft7Validator(schema).validate(bill | {"files": [{"fileName": "./a"}]})
 
+    def test_licences(self):
+        """The bill of materials states the licence of each Debian package: only icesoc-ground
+        contains parts under the licence of ZeroC Ice."""
+        sources = {name: (TREE / name).read_bytes() for name in ("LICENSE", "cmake/setup.sh")}
+        names = ["icesoc-ground", "icesoc-hdl", "icesoc-sim", "icesoc-slice2c", "libicec-dev"]
+        bill = json.loads(sbom.document("1.2.3", "0" * 40, 1764000000, sources,
+                                        {f"{name}_1.2.3-1~deb13_amd64.deb": "1" * 64
+                                         for name in names}))
+        found = {its["name"].partition("_")[0]: its for its in bill["packages"]}
+        self.assertEqual({name: found[name]["licenseDeclared"] for name in names}, {
+            "icesoc-ground": "MIT AND GPL-2.0-only", "icesoc-hdl": "MIT",
+            "icesoc-sim": "MIT AND (LGPL-3.0-only OR Artistic-2.0)", "icesoc-slice2c": "MIT",
+            "libicec-dev": "MIT"})
+        for name in names:
+            path = TREE / f"cmake/install/debian/{name}.copyright"
+            text = path.read_text() if path.exists() else ""
+            self.assertEqual("License: GPL-2" in text, "GPL-2" in found[name]["licenseDeclared"])
+        page = next(its for its in bill["packages"] if its["name"] == "npm-ice")
+        self.assertEqual(page["licenseDeclared"], "GPL-2.0-only")
+        self.assertIn({"spdxElementId": found["icesoc-ground"]["SPDXID"],
+                       "relationshipType": "CONTAINS", "relatedSpdxElement": page["SPDXID"]},
+                      bill["relationships"])
+
     def test_contracts(self):
         """The registers of a block are compatible with each recorded version that has the same
         major number. If RECORD is in the environment, missing versions are recorded."""

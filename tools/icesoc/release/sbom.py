@@ -2,9 +2,9 @@
 """sbom: writes the bill of materials of a release, in SPDX 2.3
 (https://spdx.github.io/spdx-spec/v2.3).
 
-It lists every file of the source archive with its licence, the other files of the release, and
-everything that the build needs: the Debian packages of cmake/setup.sh and the sources that
-icesoc.util.fetch downloads.
+It lists every file of the source archive with its licence, the other files of the release with
+their licences, and everything that the build needs: the Debian packages of cmake/setup.sh and the
+sources that icesoc.util.fetch downloads.
 """
 import hashlib
 import json
@@ -18,6 +18,12 @@ LICENCES = {
     "libzeroc-ice-dev": "GPL-2.0-only", "libsodium-dev": "ISC", "libmcpp-dev": "BSD-2-Clause",
     "libssl-dev": "Apache-2.0", "liblz4-dev": "BSD-2-Clause", "libfmt-dev": "MIT",
     "libcli11-dev": "BSD-3-Clause", "nlohmann-json3-dev": "MIT", "libgtest-dev": "BSD-3-Clause"}
+LICENCES |= dict.fromkeys(("python3-zeroc-ice", "zeroc-ice-compilers", "zeroc-ice-slice"),
+                          "GPL-2.0-only")
+# Licences of the Debian packages of a release, as in cmake/install/debian/*.copyright; all others
+# are MIT.
+OWN_LICENCES = {"icesoc-ground": "MIT AND GPL-2.0-only",
+                "icesoc-sim": "MIT AND (LGPL-3.0-only OR Artistic-2.0)"}
 AUTHORS = "Organization: The IceSoC authors"
 FETCHED = (("lz4", fetch.LZ4, "BSD-2-Clause"), ("libsodium", fetch.SODIUM, "ISC"))
 
@@ -71,12 +77,22 @@ def document(version, commit, seconds, sources, artifacts):
                    packageVerificationCode={"packageVerificationCodeValue": code},
                    licenseInfoFromFiles=sorted(found), hasFiles=[its["SPDXID"] for its in files])
     main["copyrightText"] = holder
-    packages, links = [main], [("SPDXRef-DOCUMENT", "DESCRIBES", main["SPDXID"])]
+    number, digest = fetch.ICEJS
+    page = package("npm-ice", number, "GPL-2.0-only",
+                   comment="Ice for JavaScript, for the page of the gateway",
+                   downloadLocation=f"https://registry.npmjs.org/ice/-/ice-{number}.tgz",
+                   checksums=[checksum("SHA256", digest)])
+    packages, links = [main, page], [("SPDXRef-DOCUMENT", "DESCRIBES", main["SPDXID"])]
     for name, digest in sorted(artifacts.items()):
-        its = package(name, version, "NOASSERTION", packageFileName=name,
+        component = name.partition("_")[0]
+        # The site contains scripts and styles of other projects.
+        licence = "NOASSERTION" if name.endswith("-site.tar.gz") else "MIT"
+        its = package(name, version, OWN_LICENCES.get(component, licence), packageFileName=name,
                       checksums=[checksum("SHA256", digest)])
         packages.append(its)
         links.append((its["SPDXID"], "GENERATED_FROM", main["SPDXID"]))
+        if component == "icesoc-ground":
+            links.append((its["SPDXID"], "CONTAINS", page["SPDXID"]))
     for name, purpose in debian(sources["cmake/setup.sh"].decode()):
         its = package(f"debian-{name}", "NOASSERTION", LICENCES.get(name, "NOASSERTION"),
                       comment=purpose)

@@ -7,9 +7,12 @@ Usage: site_test.py CASE WORK-FOLDER
 """
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
+from icesoc.cli.commands import docs
 from icesoc.site import build, doxygen_filter, hdl, symbol
 from icesoc.util.browser import Browser
+from icesoc.util.errors import Stop
 from script import TREE, Script, fresh, main, write
 
 WORK = Path(sys.argv[2])
@@ -35,6 +38,12 @@ endmodule
 
 
 class Cases(Script):
+    def test_missing(self):
+        """A missing package is reported by its name, before anything is rendered."""
+        sys.modules["furo"] = None  # hides an installed module
+        with self.assertRaisesRegex(Stop, "^docs: missing packages: (.*, )?furo(, .*)?; "):
+            docs.docs(SimpleNamespace(out=WORK))
+
     def test_hdl(self):
         """The purpose, parameters, ports, groups and clocks of a module are read from its file."""
         write(fresh(WORK) / "pair.v", VERILOG)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """docs: builds the documentation site, and follows the tutorial."""
+import importlib.util
 import os
 import shutil
 import subprocess
@@ -12,7 +13,9 @@ from icesoc.util.errors import Stop
 from icesoc.util.process import run, start, wait
 from icesoc.site import build, tutorial
 
+# programs and Python modules that render the site, each with its Debian package
 PROGRAMS = {"sphinx-build": "python3-sphinx", "doxygen": "doxygen"}
+MODULES = {"myst_parser": "python3-myst-parser", "furo": "furo", "breathe": "python3-breathe"}
 
 
 @command("docs", [Option("out", FOLDER, "output folder; the site is in its folder html",
@@ -29,6 +32,8 @@ def docs(values):
     page that no table of contents lists, is an error.
     """
     missing = [package for program, package in PROGRAMS.items() if not shutil.which(program)]
+    missing += [package for module, package in MODULES.items()
+                if importlib.util.find_spec(module) is None]
     if missing:
         raise Stop(f"docs: missing packages: {', '.join(missing)}; ./icesoc setup --tests "
                    "installs them", 2)

@@ -166,7 +166,7 @@ void Parser::parameters(Operation& o, const Declaration& owner) {
         p.isOut = acceptWord("out");
         p.metadata = metadata();
         if (isWord("out"))
-            fail("a type; 'out' stands before metadata");
+            fail("a type; write 'out' before the metadata");
         Optional tag = optional();
         Location begin = token().at;
         p.type = type();

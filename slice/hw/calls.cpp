@@ -175,8 +175,8 @@ private:
             addValue(words, type, name, c, isOut);
         unsigned first = 0;
         if (!wanted.empty() && !number(wanted, firstWord + 1, slotWords - 1, first))
-            error(at, "[\"hw:word:" + wanted + "\"]: words " + std::to_string(firstWord + 1) +
-                          ".." + std::to_string(slotWords - 1) + " can be chosen");
+            error(at, "[\"hw:word:" + wanted + "\"]: expected a word from " +
+                          std::to_string(firstWord + 1) + " to " + std::to_string(slotWords - 1));
         for (Word& w : chosen) {
             if (first)
                 w.number = first++;
@@ -195,7 +195,8 @@ private:
         unsigned count = stated > 0 ? static_cast<unsigned>(stated) : 0;
         unsigned limit = count ? count : mostElements;
         if (!most.empty() && !number(most, 1, limit, count))
-            return error(at, "[\"hw:max:" + most + "\"]: elements, 1.." + std::to_string(limit));
+            return error(at, "[\"hw:max:" + most + "\"]: expected 1 to " + std::to_string(limit) +
+                                 " elements");
         if (count == 0)
             return error(at, what + " is a sequence: add [\"hw:max:N\"], the largest number of "
                                     "elements in its DDR3 buffer");

@@ -135,8 +135,8 @@ private:
                                                   std::to_string(w.number) +
                                                   "; the last word of the slot is 15");
                 else if (w.number && !taken.emplace(w.number, w.name).second)
-                    error(call.operation->at, w.name + " wants word " + std::to_string(w.number) +
-                                                  ", which is " + taken[w.number] + "'s");
+                    error(call.operation->at, w.name + " needs word " + std::to_string(w.number) +
+                                                  ", which " + taken[w.number] + " already uses");
             }
             if (counts[0] + counts[1])
                 list += ", '" + call.operation->name + "' " + std::to_string(counts[0]) + " in " +
@@ -144,8 +144,8 @@ private:
         }
         constexpr unsigned most = room + pageWords * ((1u << mostPageBits) - 1);
         if (needed > most)
-            error(d_.at, "needs " + std::to_string(needed) + " words, a slot has " +
-                             std::to_string(most) + ": " + list);
+            error(d_.at, "needs " + std::to_string(needed) + " words, but a slot has " +
+                             std::to_string(most) + "; words used: " + list);
         if (hasErrors())
             return;
         unsigned next = firstWord;

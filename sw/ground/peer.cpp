@@ -27,7 +27,7 @@ constexpr U32 lookUs = 50000;
 
 void makePipe(int pipeEnds[2]) {
     if (pipe2(pipeEnds, O_CLOEXEC | O_NONBLOCK) != 0)
-        throw std::system_error(errno, std::generic_category(), "pipe");
+        throw std::system_error(errno, std::generic_category(), "cannot create a pipe");
 }
 
 Peer::Peer(Host& host, int address, const LinkKeys& keys)

@@ -41,7 +41,7 @@ public:
         : shared_(static_cast<Shared*>(mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE,
                                             MAP_SHARED | MAP_ANONYMOUS, -1, 0))) {
         if (shared_ == MAP_FAILED)
-            throw std::system_error(errno, std::generic_category(), "checkpoints");
+            throw std::system_error(errno, std::generic_category(), "no memory for checkpoints");
         shared_->first = shared_->active = getpid();
     }
     // In a woken process, the destructor must not end other processes. The first process ends them,
@@ -112,7 +112,7 @@ private:
         std::fflush(nullptr);
         const pid_t child = fork();
         if (child < 0)
-            throw std::system_error(errno, std::generic_category(), "a checkpoint");
+            throw std::system_error(errno, std::generic_category(), "cannot make a checkpoint");
         if (child == 0) {
             prctl(PR_SET_PDEATHSIG, SIGKILL);
             if (getppid() != parent)

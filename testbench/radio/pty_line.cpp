@@ -28,13 +28,14 @@ constexpr int patience = 20'000;
 void makeRaw(int fd) {
     termios2 settings{};
     if (ioctl(fd, TCGETS2, &settings) != 0)
-        throw std::system_error(errno, std::generic_category(), "pty: cannot read its settings");
+        throw std::system_error(errno, std::generic_category(),
+                                "cannot read the settings of a pty");
     settings.c_iflag &= ~(IGNBRK | BRKINT | PARMRK | ISTRIP | INLCR | IGNCR | ICRNL | IXON);
     settings.c_oflag &= ~OPOST;
     settings.c_lflag &= ~(ECHO | ECHONL | ICANON | ISIG | IEXTEN);
     settings.c_cflag = (settings.c_cflag & ~(CSIZE | PARENB)) | CS8;
     if (ioctl(fd, TCSETS2, &settings) != 0)
-        throw std::system_error(errno, std::generic_category(), "pty: cannot make it raw");
+        throw std::system_error(errno, std::generic_category(), "cannot switch a pty to raw mode");
 }
 
 } // namespace

@@ -78,7 +78,7 @@ void plantFaults(SocModel& soc, const std::vector<WireFault>& faults) {
         else if (fault.bank() >= 0)
             soc.wires().plant(fault), starts = starts && fault.bank() != memoryBank;
         else if (fault.wire != "CLK" && !soc.wires().plant(fault))
-            throw std::runtime_error("fault " + fault.text() + ": the models do not have it");
+            throw std::runtime_error("fault " + fault.text() + ": this simulator cannot inject it");
     }
     if (isMemoryFaulty)
         soc.memory().plant(lines);

@@ -140,7 +140,7 @@ private:
     void unlock(uint32_t key) {
         if (keyStep_ > 1 || key != keys[keyStep_]) {
             keyStep_ = 3; // the register is then locked until the next reset
-            throw WrongKey("a wrong key, or one too many: the flash stays locked until a reset");
+            throw WrongKey("a wrong key: the flash stays locked until a reset");
         }
         if (++keyStep_ == 2) {
             cr_ &= ~Lock;

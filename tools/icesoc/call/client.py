@@ -107,8 +107,8 @@ class Client:
             settings |= self.guarded(lambda: properties_in(self.options.config))
         if self.target.plugin and not os.path.exists(
                 os.path.join(self.target.plugin, "libxbeeat.so.37")):
-            raise Stop(f"'{self.target.plugin}': expected libxbeeat.so.37 in this folder; make "
-                       "run builds it", 2)
+            raise Stop(f"'{self.target.plugin}': expected libxbeeat.so.37 in this folder; "
+                       "./icesoc run builds it", 2)
         return self.guarded(lambda: plugged.initialize(
             settings, self.target.plugin, self.target.guard, self.target.key))
 

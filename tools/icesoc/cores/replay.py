@@ -134,8 +134,8 @@ def block(args, widths):
             wiring.append((name, {"clock": "clk", "reset": "rst", "resetn": "!rst"}[kind]))
         elif there not in widths:
             if port["direction"] == "input":
-                fail(f"the capture has no {there}: the probe's line needs {there}" +
-                     (f":{width}" if width > 1 else ""))
+                fail(f"the capture has no signal {there}: add {there}"
+                     + (f":{width}" if width > 1 else "") + " to the probe's line in ip/cores.list")
         elif widths[there] != width:
             fail(f"{there} has {widths[there]} bits in the capture, and {width} in {args.top}")
         else:

@@ -33,7 +33,7 @@ def rtl_of(o):
     """Returns the modules of the platform, of the cores and of the generated files, in this
     order."""
     if not o.generated.is_dir():
-        raise Stop(f"{o.generated} not found; run make build first")
+        raise Stop(f"{o.generated} not found; run ./icesoc build first")
     rooms = sorted(folder for room in ("hdl", "ip") for folder in (o.source / room).iterdir()
                    if folder.is_dir())
     folders = [o.source / "synth", o.source / "hdl", o.source / "bus", *rooms, o.generated]
@@ -81,7 +81,7 @@ def tell_cores(library, options, o, accepted, runs):
     chip = run.figures if run else accepted["designs"].get(WHOLE_CHIP, nothing)
     map = cores.read_map(o.generated / "map.regs.json")
     if not map:
-        raise Stop(f"{o.generated} has no map.regs.json; run make build first")
+        raise Stop(f"{o.generated} has no map.regs.json; run ./icesoc build first")
     try:
         slot = cores.slot_cost(library, options, map, True)
         print(cores.core_table(chip["costs"], map, slot, o.core,

@@ -71,8 +71,8 @@ U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords);
 U32 FSMC_streamRead(U32 address, U16* data, U32 halfwords);
 
 /* Reads and clears the bridge's error event. Returns FSMC_OK, or FSMC_BUS_ERROR after an error.
- * After an error, stores the place of the last access that failed in *where, unless `where` is 0:
- * slot * 16 + word, with bit 16 set for a write. */
+ * After an error, *where (unless `where` is 0) is slot * 16 + word of the last access that failed,
+ * with bit 16 set for a write. */
 FSMC_Status FSMC_checkError(U32* where);
 
 /* Settings for bridges that are built for another FSMC mode: contents of a bank's BCR, BTR and BWTR

@@ -59,7 +59,7 @@ typedef struct Link_Statistics {
     U32 framesSent, framesReceived; /* number of frames, of all kinds */
     U32 bytesSent, bytesReceived;   /* number of bytes on the air, including overhead */
     U32 fragmentsResent;            /* number of retransmissions of data fragments */
-    U32 acksSent;                   /* number of acknowledgements, alone or in a PIGGYBACK */
+    U32 acksSent;                   /* number of acknowledgements, also those in a PIGGYBACK */
     /* number of bytes skipped during the search for the next frame */
     U32 bytesSkipped;
     U32 duplicates;                     /* number of fragments that arrived more than once */

@@ -20,9 +20,9 @@ typedef char UAV_RoomForEveryServant[ICE_SERVANTS >= UAV_SERVANTS + MAP_CORES ? 
  * wakes UAV_waitFrame */
 static OS_EVENT *waiter, *work, *frameDone;
 static U32 framesDone, cornersFound;
-/* Number of accesses that got no response, and place of the last one; the place is only read by a
- * debugger. There is no response if the register does not exist, or if the core hangs until the
- * bridge times out. Only the interrupt routine writes these variables. */
+/* Number of accesses that got no response; slot and word of the last such access, as from
+ * FSMC_checkError, for a debugger. An access gets no response if the register does not exist, or if
+ * the core hangs until the bridge times out. Only the interrupt routine writes these variables. */
 static U32 busErrors, busErrorPlace;
 static U8 isStarted[MAP_CORES];
 static Hw_Contract contracts[MAP_CONTRACTS];

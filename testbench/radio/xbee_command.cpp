@@ -96,8 +96,8 @@ std::string XBee::order(const std::string& letters, uint64_t now) {
     return "OK\r";
 }
 
-// Executes one line. A line with several commands, such as ATDL2,WR,CN, gets a reply for each; AT
-// alone gets OK.
+// Executes one line. A line with several commands, such as ATDL2,WR,CN, gets a reply for each. The
+// line AT without a command gets OK.
 std::string XBee::execute(const std::string& line, uint64_t now) {
     if (line.size() < 2 || std::toupper(static_cast<unsigned char>(line[0])) != 'A' ||
         std::toupper(static_cast<unsigned char>(line[1])) != 'T')

@@ -33,8 +33,8 @@ public:
             std::this_thread::sleep_until(due);
             slept_ += Clock::now() - now;
         } else if (now - due > std::chrono::milliseconds(50)) {
-            // the simulation has been too slow; it does not catch up, but keeps the rate starting
-            // now
+            // The simulation has been too slow. It does not catch up; the rate is kept from this
+            // time on.
             anchor_ = now;
             anchorNs_ = simulatedNs;
         }

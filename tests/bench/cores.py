@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """cores: measures the throughput of cores in their block tests and compares it with their memory
-ports; also measures the duration of the first `ip-test` in a fresh clone, compared with Verilator
-alone.
+ports; also measures the duration of the first `make ip-test` in a fresh clone, compared with the
+time that Verilator itself takes.
 
     cores.py BUILD-FOLDER OUTPUT.json [--brief]
 
@@ -46,7 +46,7 @@ def seconds(*words):
 
 
 def first_test(build, brief):
-    """Measures two durations: the test of fir in a fresh clone, and Verilator alone, with the same
+    """Measures two durations: the test of fir in a fresh clone, and Verilator itself, with the same
     core and a minimal program. With --brief, runs the test in this build instead of in a clone."""
     source = Path(__file__).resolve().parents[2]
     with tempfile.TemporaryDirectory() as work:

@@ -156,7 +156,7 @@ template <class Module, unsigned ports> void latency(uint64_t cycles, uint64_t s
             mean[loaded] = static_cast<double>(c.latencySum) / static_cast<double>(c.reads);
         }
         std::string name = fmt::format("MCB, {} ports, read of {} bytes", ports, 8u << size);
-        figures.add(name + ", latency alone", mean[0], "clocks");
+        figures.add(name + ", latency while other ports are idle", mean[0], "clocks");
         figures.add(name + ", latency while other ports stream", mean[1], "clocks");
     }
 }

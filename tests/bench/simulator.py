@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """simulator: measures simulated clocks per second, as the best of three alternating runs. It
-measures the UAV alone (skipping quiet clocks, and evaluating each clock) and the replay of a
-mission (with the firmware's host build, and with the model of the Cortex-M3).
+measures the UAV without a ground station (with quiet clocks skipped, and with each clock
+evaluated) and the replay of a mission (with the firmware's host build, and with the model of the
+Cortex-M3).
 
     simulator.py SOURCE-FOLDER BUILD-FOLDER OUTPUT.json [--brief]
 """

@@ -89,7 +89,7 @@ endmodule
         for signal, place in (("n71_o", "ip/a/a.vhd:40"), ("n72_q[0]", "ip/a/a.vhd:51"),
                               ("n74_o", "ip/a/a.vhd:60"), ("(for) kept_o", "ip/a/a.vhd:40")):
             self.assertEqual(nets.place_of(n, signal), place)
-        # a signal for which GHDL gives no place in the VHDL
+        # a signal for which GHDL reports no line of the VHDL
         self.assertTrue(nets.place_of(n, "n73_o").endswith("/place.v:5"))
 
 

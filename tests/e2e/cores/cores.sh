@@ -105,8 +105,8 @@ traced() {
     "$source/tools/python" "$here/same.py" "$work/captured.vcd" "$work/trace.vcd" 500
 }
 [ "$chip" = NETLIST ] || traced # a netlist has other signal names
-# If the captured inputs are applied to the core alone, its outputs must be equal to the captured
-# outputs.
+# If the captured inputs are applied to a simulation of only the core, its outputs must be equal to
+# the captured outputs.
 "$source/tools/python" -m icesoc.cores.replay "$work/probe.vcd" \
     --scope u_sample_verilog --top sample_verilog \
     --out "$work/replay" -I "$work/build/gen" -I "$source/bus" \

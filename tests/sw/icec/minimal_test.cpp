@@ -64,7 +64,7 @@ TEST_F(Minimal, StringsThatAreNoProxiesSaySo) {
                      1, 1,   1,   0x50, 0x4C, 7,   0, 0, 0, 1, 1, 0}));
 }
 
-// Takes the place of a communicator's peer, with prepared messages. The communicator has opened
+// Acts as the peer of a communicator, and sends prepared messages. The communicator has opened
 // connection 0.
 class MinimalPeer : public ::testing::Test {
 protected:

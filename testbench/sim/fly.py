@@ -19,6 +19,9 @@ REFERENCE = PREFIX / "libexec/icesoc/vision-reference"
 # Fields of the flight description that this program does not offer, because only programs of the
 # source tree use them.
 OTHER = {"app", "port", "live", "update", "clk_hz", "probe"}
+# Descriptions that differ from those of the source tree, which contains boards.
+TEXTS = {"board": "folder made by ./icesoc board make, whose wires are flown; the vehicle runs the "
+                  "ARM binary"}
 CONFIG = Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config") / "icesoc"
 
 
@@ -37,7 +40,7 @@ def arguments(known):
         if name in OTHER:
             continue
         kind, default = field.get("type", "string"), field["default"]
-        text = field["description"].replace("%", "%%")
+        text = TEXTS.get(name, field["description"]).replace("%", "%%")
         if name == "out":
             default = "icesoc-flight"
         if default and "default" not in text:
@@ -51,14 +54,17 @@ def arguments(known):
 def demo_key(name):
     """Returns the path of this user's key file; creates the file at first use."""
     path = CONFIG / name
-    CONFIG.mkdir(parents=True, exist_ok=True)
     try:
+        CONFIG.mkdir(parents=True, exist_ok=True)
         with open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
             file.write(secrets.token_hex(16) + "\n")
         print(f"icesoc-fly: created a demo key, {path}; --key FILE selects another key, --open "
               "flies without a key")
     except FileExistsError:
         pass
+    except OSError as error:
+        sys.exit(f"icesoc-fly: cannot write {error.filename}: {error.strerror}; --key selects an "
+                 "existing key, --open flies without a key")
     return str(path)
 
 
@@ -67,6 +73,9 @@ def main():
     flight = {name: field["default"] for name, field in known.items()} | arguments(known)
     if flight["open"] and flight["key"]:
         sys.exit("icesoc-fly: --open and --key exclude each other: --open flies without a key")
+    if flight["image"] == known["image"]["default"] and not os.path.exists(flight["image"]):
+        sys.exit(f"icesoc-fly: {flight['image']}: No such file or directory: install "
+                 "xplanet-images, or select a picture with --image")
     if not flight["open"]:
         flight["key"] = flight["key"] or demo_key("demo.key")
         if flight["vehicles"] > 1:

@@ -15,7 +15,7 @@ import sys
 import time
 from pathlib import Path
 
-from script import TREE, Script, fresh, main, write
+from script import TREE, Script, edit, fresh, main, write
 
 BUILD = Path(sys.argv[3]).resolve()
 HERE = Path(__file__).resolve().parent
@@ -97,6 +97,14 @@ class Cases(Script):
             self.assertTrue((self.out / cpu / "after.png").stat().st_size)
         key = Path(self.env["HOME"], ".config/icesoc/demo.key")
         self.assertEqual(key.stat().st_mode & 0o777, 0o600)
+        self.use("icesoc-fly", status=1, env={"HOME": "/proc/missing"})
+        self.has("^icesoc-fly: cannot write /proc/missing: No such file or directory; --key ")
+        edit(self.prefix / "share/icesoc/flight.schema.json", IMAGE, "/missing.jpg")
+        self.use("icesoc-fly", status=1)
+        self.has("^icesoc-fly: /missing.jpg: No such file or directory: install xplanet-images, "
+                 "or select a picture with --image$")
+        self.use("icesoc-fly", "--help")
+        self.has("^  --board BOARD +folder made by ./icesoc board make")
 
     def test_gateway(self):
         """A user's program calls a core through the plugin, then through the gateway."""

@@ -31,6 +31,14 @@ list(REMOVE_DUPLICATES CHIP_CORES)
 # connections: four for a ground station, four for a second ground station, and four for another
 # vehicle.
 set(ARM_DEFINES ICE_CONNECTIONS=12)
+# The FSMC bridge of the chip, and the driver's settings for it (docs/fsmc.md).
+set(BRIDGE async CACHE STRING "FSMC bridge: async, or sync for a bridge that samples its pins")
+if(NOT BRIDGE MATCHES "^(async|sync)$")
+  message(FATAL_ERROR "BRIDGE=${BRIDGE}: expected async or sync")
+endif()
+if(BRIDGE STREQUAL sync)
+  list(APPEND ARM_DEFINES FSMC_SYNC)
+endif()
 set(header ${CMAKE_SOURCE_DIR}/sw/vehicle/uav_tasks.h)
 set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header})
 file(STRINGS ${header} servants REGEX "^#define UAV_SERVANTS ")

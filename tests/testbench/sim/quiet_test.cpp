@@ -99,10 +99,10 @@ Flight fly(const Plan& plan, bool slow) {
     uint64_t compared = 0; // since when
     UavMachine machine(soc, [&] {
         if (ground.validated && !compared && ground.replies.size() >= plan.comparedFrom) {
+            soc.evaluateAll(slow); // first evaluates clocks that are not finished
             compared = soc.now();
             f.clocks -= soc.cycles();
             f.evaluated -= soc.evaluated();
-            soc.evaluateAll(slow);
         } else if (compared ? soc.now() > compared + plan.compareNs
                             : soc.now() > comparedNs() / 10) {
             soc.evaluateAll(false);

@@ -28,6 +28,9 @@ DESCRIPTORS = 64  # file descriptors per process; the program of the ground stat
 NETLIST = Option("netlist", SWITCH, "fly the netlist synthesised by Yosys, at 2 MHz with every "
                                     "clock evaluated")
 NETLIST_HZ = 2000000
+BRIDGE = Option("bridge", one_of("async", "sync"), "FSMC bridge of the simulated chip; sync: the "
+                                                   "bridge that samples its pins (docs/fsmc.md), "
+                                                   "built in build/sync", "async")
 SHOW = Option("show", one_of("auto", "yes", "no"),
               "open the page in a browser; auto: only if the command runs in a terminal and there "
               "is a display",
@@ -35,7 +38,7 @@ SHOW = Option("show", one_of("auto", "yes", "no"),
 DEBUGGED = [option for option in flight.FIELDS if option.name in ("image", "size", "seed")]
 
 
-@command("run", [*flight.OPTIONS, SHOW, NETLIST, FAMILY, BUILD, JOBS], make="run",
+@command("run", [*flight.OPTIONS, SHOW, NETLIST, FAMILY, BRIDGE, BUILD, JOBS], make="run",
          brief="run --size 96x64 --guard 20 --out build/brief/run",
          long=("run --netlist --size 96x64 --guard 20 --patience 3000 --out build/netlist/run",
                "run --netlist --family ecp5 --size 96x64 --guard 20 --patience 3000 "
@@ -54,12 +57,18 @@ def fly_mission(values):
     if descriptors < DESCRIPTORS:
         raise Stop(f"limit of file descriptors: expected at least {DESCRIPTORS}, got "
                    f"{descriptors}; raise it by ulimit -n {DESCRIPTORS}")
+    if values.netlist and values.bridge == "sync":
+        raise Stop("NETLIST=1 and BRIDGE=sync: expected at most one of the two, because netlists "
+                   "are only made of the chip with the other bridge", 2)
     flight.complete(values)
     flight.check_chip(values, BuildFolder(values.build, values))
     build = BuildFolder(values.build, values).prepare()
     if values.netlist:
         values.clk_hz = min(values.clk_hz, NETLIST_HZ)
         chip, build = build, netlists(values)
+        build.follow(chip)
+    elif values.bridge == "sync" and build.cached("BRIDGE") != "sync":
+        chip, build = build, BuildFolder("build/sync", values).prepare("-DBRIDGE=sync")
         build.follow(chip)
     if not build.built:
         build.set(CLK_HZ=str(values.clk_hz))
@@ -240,7 +249,7 @@ def replay(values):
     say("building the simulator that writes waveforms (build/trace) ...")
     trace = BuildFolder("build/trace", values)
     trace.configure("-DTRACE=ON")
-    trace.follow(build, CLK_HZ=build.cached("CLK_HZ"))
+    trace.follow(build, CLK_HZ=build.cached("CLK_HZ"), BRIDGE=build.cached("BRIDGE") or "async")
     trace.ninja("icesoc-sim")
     Path(values.out).mkdir(parents=True, exist_ok=True)
     wave = Path(values.out) / "wave.fst"

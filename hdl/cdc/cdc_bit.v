@@ -37,6 +37,7 @@ module cdc_bit #(
 `ifdef VERILATOR
     `include "cdc_random.vh"
     reg  [WIDTH-1:0] bit_was;
+    initial bit_was = INITIAL;
     wire [WIDTH-1:0] moved = bit_async_i ^ bit_was;
     always @(posedge clk_i) begin
         bit_was  <= bit_async_i;

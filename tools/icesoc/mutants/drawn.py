@@ -61,6 +61,11 @@ class Proof:
         self.environment = {**os.environ, **dict(entry.split("=", 1) for entry in given)}
         self.work = out / self.name
 
+    def is_in_tree(self):
+        """Returns whether the tree has the module's file, which is otherwise generated."""
+        return any(next(pathlib.Path(self.tree, folder).glob(f"**/{self.module}.v"), None)
+                   for folder in ("bus", "hdl", "ip"))
+
     def run(self, folder, mutant, seconds=None):
         """Runs prove.sh; the Yosys commands `mutant` run after the files are read and before the
         proof. Returns exit status and output of prove.sh."""
@@ -281,9 +286,11 @@ def main():
     if shown.returncode:
         sys.exit(f"mutants: --build: expected a build folder, got '{options.build}'; run "
                  "`make build` first")
-    proofs = [Proof(test, out / "drawn") for test in json.loads(shown.stdout)["tests"]]
-    # Proofs of several modules together are left out.
-    proofs = [proof for proof in proofs if not proof.module.endswith("_proof")]
+    proofs = [Proof(test, out / "drawn") for test in json.loads(shown.stdout)["tests"]
+              if any(word.endswith("/prove.sh") for word in test["command"])]
+    # Proofs of several modules together, and of generated modules, are left out.
+    proofs = [proof for proof in proofs
+              if not proof.module.endswith("_proof") and proof.is_in_tree()]
     if not proofs:
         sys.exit(f"mutants: no proof has a name that begins with {options.block}: "
                  "ctest -N -L formal lists them")

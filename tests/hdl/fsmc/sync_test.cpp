@@ -6,8 +6,8 @@
 #include "VFsmcBridge.h"
 #include "VFsmcSyncBridge.h"
 #include "VFsmcSyncBridgeMuxed.h"
+#include "any_bridge.h"
 #include "pin_delays.h"
-#include "traffic.h"
 #include <cstdio>
 
 namespace {
@@ -36,20 +36,7 @@ const Mode muxedModes[] = {
     {"muxed, extended", {FSMC_MODE_D, FSMC_MODE_D, 0, 1, 1, 1, 1, slow, slow}},
 };
 
-class SyncBridge : public ::testing::Test {
-protected:
-    void SetUp() override {
-        RecordProperty("seed", static_cast<int>(testSeed()));
-        ASSERT_EQ(b_.init(), FSMC_OK); // uses the driver's settings (FSMC_SYNC)
-        doorbell();                    // waits for the last write of init(), which is posted
-    }
-    static uint32_t at(uint32_t word) { return control + 4 * word; }
-    // Reads a register. When this access ends, all earlier writes have reached the memory.
-    void doorbell() { b_.master.read32(at(0)); }
-
-    BridgeBench<VFsmcSyncBridge> b_{testSeed()};
-    FsmcMaster& fsmc_ = b_.master;
-};
+using SyncBridge = AnyBridge<VFsmcSyncBridge>;
 
 template <class Bridge> void trafficIn(const Mode& mode, unsigned hclk, unsigned clk) {
     SCOPED_TRACE(std::string("mode ") + mode.name + ", HCLK : clock = " + std::to_string(hclk) +
@@ -83,52 +70,24 @@ TEST_F(SyncBridge, MemoryEqualsAReferenceWithAllWidths) {
 }
 
 TEST_F(SyncBridge, ADoorbellMakesWritesVisibleAndReadsFresh) {
-    fsmc_.write16(ddr + 0x100, 0xBEEF);
-    doorbell();
-    EXPECT_EQ(b_.memory.byte(0x100), 0xEF);
-    EXPECT_EQ(fsmc_.read16(ddr + 0x100), 0xBEEF);
-    b_.memory.setByte(0x100, 0x11); // another master
-    doorbell();
-    EXPECT_EQ(fsmc_.read16(ddr + 0x100), 0xBE11);
+    doorbellMakesWritesVisibleAndReadsFresh();
 }
 
 TEST_F(SyncBridge, AnErrorOfTheSlaveIsReportedWithItsPlace) {
-    b_.slave.firstError = 500;
-    EXPECT_EQ(fsmc_.read32(at(700)), 0u);
-    EXPECT_EQ(b_.errors, 1u);
-    EXPECT_EQ(b_.errorAddr, 700u);
-    EXPECT_FALSE(b_.errorWrite);
-    fsmc_.write32(at(800), 1);
-    doorbell();
-    EXPECT_EQ(b_.errors, 2u);
-    EXPECT_EQ(b_.errorAddr, 800u);
-    EXPECT_TRUE(b_.errorWrite);
+    errorOfTheSlaveIsReportedWithItsPlace();
 }
 
 TEST_F(SyncBridge, AHungSlaveEndsInAnErrorAndTheBridgeGoesOn) {
-    b_.slave.hung = true;
-    fsmc_.read16(at(33));
-    EXPECT_EQ(b_.errors, 1u);
-    EXPECT_EQ(b_.errorAddr, 33u);
-    b_.slave.hung = false;
-    fsmc_.write32(at(34), 0x12345678);
-    EXPECT_EQ(fsmc_.read32(at(34)), 0x12345678u);
-    EXPECT_EQ(b_.errors, 1u);
+    hungSlaveEndsInAnError();
 }
 
 TEST_F(SyncBridge, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
-    b_.memory.setByte(0x40, 0x77);
-    b_.memory.hold(true);
-    fsmc_.read16(ddr + 0x40);
-    EXPECT_EQ(b_.errors, 1u);
-    EXPECT_EQ(b_.errorAddr, 0x3FFu);
-    EXPECT_FALSE(b_.errorWrite);
+    readOfAHungMemoryEndsInAnError();
     for (unsigned i = 0; b_.errors == 1 && i < 32; ++i)
         fsmc_.write16(ddr + 0x1000 + 8 * i, static_cast<uint16_t>(0xA000 + i));
     EXPECT_EQ(b_.errors, 2u) << "a write that finds no room";
     EXPECT_TRUE(b_.errorWrite);
-    b_.memory.hold(false);
-    EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0x77) << "a late answer is not taken for another one";
+    memoryWorksAgain();
     EXPECT_EQ(fsmc_.read16(ddr + 0x1000), 0xA000);
 }
 

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""bringup_test: checks that `board bringup` reads the output of the self-test, even if the output
-is damaged or ends too early, and writes the report as JSON and as a page."""
+"""bringup_test: checks that `./icesoc board bringup` reads the output of the self-test, even if
+the output is damaged or ends too early, and writes the report as JSON and as a page."""
 import html.parser
 import json
 import os

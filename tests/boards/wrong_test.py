@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""wrong_test: checks that `board check` rejects boards that cannot work, with the correct message
-and no other. Each line of WRONG contains a change to the kit and the expected message."""
+"""wrong_test: checks that `./icesoc board check` rejects boards that cannot work, with the correct
+message and no other. Each line of WRONG contains a change to the kit and the expected message."""
 import copy
 import sys
 import unittest

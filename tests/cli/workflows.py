@@ -135,8 +135,8 @@ class Cases(Script):
         self.carried_out(tree, ICESOC_TREE=str(tree), NAME="^tree[.]pages$")
 
     def test_repository(self):
-        """The repository is written by `core new`. Its core has the same name as a core that is
-        already built."""
+        """The repository is written by `./icesoc core new`. Its core has the same name as a core
+        that is already built."""
         work = fresh(WORK)
         icesoc, mine = work / "icesoc", work / "mine"
         icesoc.mkdir()

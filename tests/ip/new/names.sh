@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # names: source-folder work-folder slice2c
-# Tests that `core new` and `core remove` reject wrong names without changing the tree. This is a
-# shell script because each case is a command and its output.
+# Tests that `./icesoc core new` and `core remove` reject wrong names without changing the tree.
+# This is a shell script because each case is a command and its output.
 set -eu
 source=$1 ip=$1/ip work=$2 slice2c=$3
 rm -rf "$work"

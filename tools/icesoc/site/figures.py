@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """figures: the figures that pages and pictures repeat, each with its source.
 
-The sources are docs/figures.md (written by `bench`), synth/baseline.json (written by `synth
-accept`), and the pictures: the text that a page shows is in its picture's PNG file, and the picture
-of the mission contains what `make run` printed. `build figures` writes the figures into the pages,
-and `make test NAME=tree.figures` compares them.
+The sources are docs/figures.md (written by `./icesoc bench`), synth/baseline.json (written by
+`./icesoc synth accept`), and the pictures: the text that a page shows is in its picture's PNG file,
+and the picture of the mission contains what `make run` printed. `./icesoc build figures` writes the
+figures into the pages, and `make test NAME=tree.figures` compares them.
 
     figures TREE    prints a line for each figure that differs; exit status 1 if there is one
 """

@@ -236,8 +236,11 @@ module fsmc_bridge_proof #(
                 !\u_fsmc_bridge.busy , |rooms,
                 \u_fsmc_bridge.u_fsmc_registers.done_ne ,
                 \u_fsmc_bridge.u_fsmc_registers.done_noe };
+            // the two inputs of the first bit of `rooms`
+            wire [1:0] parts = {\u_fsmc_bridge.roomy , !\u_fsmc_bridge.wr_async };
             reg  [7:0] was_levels = 8'd0;
             reg  [2:0] was_rooms = 3'd0;
+            reg  [1:0] was_parts = 2'd0;
             reg        was_rst = 1'b1, was_drops = 1'b0, was_writes = 1'b0, was_room = 1'b0,
                 was_more = 1'b0, dropped = 1'b0;
             function ends_wait(input [7:0] l, input ne2, input noe_n);
@@ -254,6 +257,7 @@ module fsmc_bridge_proof #(
                 {noe_n_i, nwe_n_i} == {was_noe, was_nwe};
             always @(posedge step) begin
                 {was_levels, was_rooms, was_rst} <= {levels, rooms, rst};
+                was_parts <= parts;
                 // The following assumptions are proven elsewhere. fsmc_memory: while the address is
                 // stable, only a write or a register access discards data. fsmc_post: only a write
                 // uses room, and room for three halfwords leaves room for two in the next clock.
@@ -272,9 +276,12 @@ module fsmc_bridge_proof #(
             always @* if (past) begin
                 assert (rst || !selected || nwait_n == ends_wait(levels, ne2_i, noe_n_i));
                 // The OR of `rooms` does not glitch, for the same reason.
-                if (still && ne1_i && noe_n_i)
+                if (still && ne1_i && noe_n_i) begin
                     assert ((rooms & ~was_rooms) == 3'd0 || (was_rooms & ~rooms) == 3'd0 ||
                             (rooms & was_rooms) != 3'd0);
+                    assert (parts != ~was_parts || ^parts == 1'b0 ||
+                            (rooms[1:0] & was_rooms[1:0]) != 2'd0);
+                end
                 if (still)
                     assert (rise == 8'd0 || fall == 8'd0 || ends_wait(both, ne2_i, noe_n_i) ==
                             ends_wait(either, ne2_i, noe_n_i));

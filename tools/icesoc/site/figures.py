@@ -35,10 +35,13 @@ PLACES = {
         "{flown.sites} ({flown.low} to {flown.high}) |",
         "| slices, estimated (range) | 772 | {table1.slices} ({table1.less} to {table1.more}) | "
         "{flown.slices} ({flown.less} to {flown.more}) |",
-        "(`make test NAME=CallBytes`) | {air.key}; {air.clear} | "
-        "MAVLink 2: {mav.key}; {mav.clear} |",
+        "with authentication (`make test NAME=CallBytes`) | {air.key} | "
+        "MAVLink 2, signed: {mav.key} |",
+        "without authentication (`make test NAME=CallBytes`) | {air.clear} | "
+        "MAVLink 2: {mav.clear} |",
         "| 0 of {hostile} |",
-        "| 0 of {firmware}; 0 of {bitstream} |",
+        "a firmware update (`make bench`) | 0 of {firmware} |",
+        "a bitstream update (`make bench`) | 0 of {bitstream} |",
         "| FSMC | 1116 | {minimal.fsmc} | {full.fsmc} |",
         "| radio | 1795 | {minimal.radio} | {full.radio} |",
         "| link | 1307 | {minimal.link} | {full.link} |",

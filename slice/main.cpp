@@ -183,9 +183,10 @@ public:
             std::string at = unit.file + ":" + std::to_string(d->at.line);
             auto [other, isFirst] = definitions_.emplace(cName(*d), at);
             if (!isFirst && other->second != at)
-                diagnostics.error(d->at, "'" + d->id() + "' becomes '" + other->first +
-                                             "' in C, as " + other->second +
-                                             " does; both go into one program: rename one of them");
+                diagnostics.error(d->at, "'" + d->id() + "' and the declaration at " +
+                                             other->second + " would both be named '" +
+                                             other->first + "' in C; both go into one program: "
+                                                            "rename one of them");
         }
     }
 

@@ -49,9 +49,9 @@ public:
         auto [it, isNew] = names_.emplace(c, slice);
         bool isTaken = isRuntimeName(c) && slice != "::Ice::Identity";
         if (((!isNew && it->second != slice) || isTaken) && said_.insert(slice).second)
-            diagnostics_.error(at, "'" + slice + "' becomes '" + c + "' in C, as " +
-                                       (isTaken ? "a name of IceC's" : "'" + it->second + "'") +
-                                       " does");
+            diagnostics_.error(at, "'" + slice + "' and " +
+                                       (isTaken ? "a name in IceC" : "'" + it->second + "'") +
+                                       " would both be named '" + c + "' in C");
     }
     void add(const Declaration& d) {
         std::string c = cName(d), id = d.id();
@@ -128,9 +128,10 @@ private:
         std::string c = cEnumerator(d, e.name), id = d.id() + "::" + e.name;
         auto [it, isNew] = names_.emplace(c, id);
         if (!isNew && it->second != id)
-            diagnostics_.error(e.at, "'" + id + "' becomes '" + c + "' in C, as '" + it->second +
-                                         "' in another file does; [\"c:scoped\"] before the enum "
-                                         "adds the name of the enum");
+            diagnostics_.error(e.at, "'" + id + "' and '" + it->second +
+                                         "' (in another file) would both be named '" + c +
+                                         "' in C; [\"c:scoped\"] before the enum adds the name "
+                                         "of the enum");
     }
 
     const Unit& unit_;

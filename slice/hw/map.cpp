@@ -288,8 +288,8 @@ std::vector<Block> mapHardware(const Unit& unit, Diagnostics& diagnostics) {
         blocks.back().source = std::filesystem::path(unit.file).stem().string();
         auto [it, isNew] = names.emplace(blocks.back().name, d.get());
         if (!isNew)
-            diagnostics.error(d->at, "'" + d->id() + "' becomes '" + it->first +
-                                         "' in hardware, as '" + it->second->id() + "' does");
+            diagnostics.error(d->at, "'" + d->id() + "' and '" + it->second->id() +
+                                         "' would both be named '" + it->first + "' in hardware");
     }
     if (blocks.empty() && diagnostics.errors() == 0)
         diagnostics.error({diagnostics.intern(unit.file), 1, 1},

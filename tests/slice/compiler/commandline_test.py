@@ -104,8 +104,8 @@ class Cases(Script):
             self.assertIn("cannot write", said.stderr)
         # In files of one program, two different names must not become the same name in C.
         one = "--one-program one/fir.ice"
-        self.slice2c(f"{one} one/crc.ice", 1, "crc.ice:2:31: error: '::Cores::Bytes' becomes "
-                     "'Cores_Bytes' in C, as one/fir.ice:1 does")
+        self.slice2c(f"{one} one/crc.ice", 1, "crc.ice:2:31: error: '::Cores::Bytes' and the "
+                     "declaration at one/fir.ice:1 would both be named 'Cores_Bytes' in C")
         self.slice2c(f"{one} one/other/fir.ice", 1,
                      "file 'fir.ice' has the same name as one/fir.ice; both go")
         self.slice2c(f"{one} -Ione one/user.ice")

@@ -75,7 +75,7 @@ refused 'wrong.rdl:1: error: arrays are not' 'addrmap a { reg { field {} b; } x[
 refused 'parameters are not part of the flat subset' \
     'addrmap a { reg t #(longint N = 1) { field {} b; }; };'
 refused 'expected a number, got N' 'addrmap a { reg { field {} b[N:0]; } x; };'
-refused "got 'the end'" 'addrmap a { reg { field {} b; } x;'
+refused 'expected more text, got the end of the text' 'addrmap a { reg { field {} b; } x;'
 refused 'x: expected a word from 0 to 15, got 16' 'addrmap a { reg { field {} b; } x @ 0x34; };'
 refused 'x has no field' 'addrmap a { reg { } x; };'
 refused 'x.b is at bits 39 to 0' 'addrmap a { reg { field {} b[40]; } x; };'

@@ -52,7 +52,8 @@ printf '#include <b.ice>\n #  include "c/d.ice"\n' >"$work/a.ice"
 refused 'a.ice includes b.ice c/d.ice: expected a Slice file without' fir --lang verilog \
     --ice "$work/a.ice"
 echo 'module M { interface Fir { void f(); }; };' >"$work/a.ice"
-refused 'expected an interface in hardware' fir --lang verilog --ice "$work/a.ice"
+refused 'no core could be generated because of the errors above' fir --lang verilog \
+    --ice "$work/a.ice"
 echo 'module M { [":hw"] interface Fir { void f(string s); }; };' >"$work/a.ice"
 refused "^$work/a.ice:1:" fir --lang verilog --ice "$work/a.ice"
 echo 'module M { [":hw"] interface Iir { void f(); }; };' >"$work/a.ice"

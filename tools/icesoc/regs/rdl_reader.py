@@ -113,16 +113,20 @@ class Reader:
     def fail(self, text, line=None):
         raise Wrong(f"{line or self.line}: error: {text}")
 
+    def expected(self, what):
+        token = self.peek()
+        self.fail(f"expected {what}, got " + (f"'{token}'" if token else "the end of the text"))
+
     def take(self, wanted=None):
         token = self.peek()
         if not token or (wanted and token != wanted):
-            self.fail(f"expected '{wanted or 'more'}', got '{token or 'the end'}'")
+            self.expected(f"'{wanted}'" if wanted else "more text")
         self.at += 1
         return token
 
     def take_name(self):
         if self.at >= len(self.tokens) or self.tokens[self.at][0] != "name":
-            self.fail(f"expected a name, got '{self.peek() or 'the end'}'")
+            self.expected("a name")
         problem = rdl_properties.name_problem(self.peek())
         if problem:
             self.fail(problem)

@@ -67,7 +67,7 @@ def write_own(build, name, lang, ice, folder):
     work = folder.parent
     if run([build / "slice/slice2c", f"-I{Path(ice).absolute().parent}", ice, "--output-dir",
             work / "c", "--hw-regs", work / "regs", f"--hw-new-{lang}", work / "new"], check=False):
-        raise Stop(f"{ice}: expected an interface in hardware, got the errors above")
+        raise Stop(f"{ice}: no core could be generated because of the errors above")
     cores = sorted(path.name[:-len(".regs.json")] for path in (work / "regs").iterdir())
     if cores != [name]:
         raise Stop(f"{ice}: expected one interface with [\":hw\"], named {name}; got "
@@ -315,8 +315,9 @@ def traced(values):
 def wave(values):
     """write the waveform of one test for GTKWave, build/wave/NAME.fst
 
-    The save file NAME.gtkw lists the ports, then internal signals. For a core in VHDL, `vhdl.NAME`
-    writes GHDL's waveform, which has the names and types of the source."""
+    The save file NAME.gtkw lists the ports, then internal signals. For a core in VHDL,
+    `vhdl.NAME` in place of the core's name selects GHDL's waveform, which has the names and types
+    of the source."""
     what = values.ip
     if not what or not (values.test or what.startswith("vhdl.")):
         raise Stop("core wave: expected a core or test program, and a test: ./icesoc core "

@@ -3,7 +3,7 @@
 
 Exit statuses of a call that fails: 2 wrong arguments; 3 the operation threw an exception that its
 throws clause declares; 4 no answer (no connection, time-out); 5 the vehicle has no such object,
-facet or operation; 6 the operation refused the call without a reason.
+facet or operation; 6 the operation refused the call and gave no reason.
 """
 import os
 import queue

@@ -26,7 +26,7 @@ The vehicle is one of ~/.config/icesoc/vehicles.conf or /etc/icesoc/vehicles.con
 name it. Arguments follow by position, or as NAME=VALUE: JSON for structures and sequences, @FILE
 for bytes and pictures. They are checked against Slice before anything is sent. Exit status: 2
 wrong arguments, 3 the operation threw an exception, 4 no answer, 5 no such object or operation, 6
-refused without a reason."""
+the operation refused the call and gave no reason."""
 EXAMPLES = ["call --list hwengine1", "call hwengine1.setParameterA 24",
             "call uav.isAlive 7 --repeat 100 --vehicle uav2",
             "call fir.filter '[100, 200, 300]' --gateway gateway:10000",

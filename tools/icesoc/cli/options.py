@@ -36,7 +36,7 @@ class Option:
     variable: str = ""  # name as a make variable
     # False: the option is only for tests of this project, and the help does not list it
     listed: bool = True
-    completer: typing.Callable = None  # of argcomplete
+    completer: typing.Callable = None  # completer for argcomplete
     # function that takes the values of all options and returns the known names (choices.py)
     choices: typing.Callable = None
     has_name: typing.Callable = None  # function that returns whether a value is valid although it

@@ -65,9 +65,9 @@ def board_check(values):
     """report the errors of a board description
 
     NAME is the name of a board in boards/, or a file board.toml. The command checks the functions
-    of pins, voltages of banks and signals, and clock inputs. It reports pins that are used twice or
-    that a module uses itself, inputs without a driver, and missing facts. Exit status 1: an error
-    was found."""
+    of pins, voltages of banks and signals, and clock inputs. It reports pins that are used twice,
+    pins that the FPGA module or the microcontroller board already uses internally, inputs without a
+    driver, and missing facts. Exit status 1: an error was found."""
     board = read(values.name)
     if found := check.problems(board):
         raise Stop("\n".join([f"board check: {len(found)} problems in {board.path}",
@@ -84,8 +84,9 @@ def board_check(values):
 def board_make(values):
     """generate the files of a board: constraints, pins, wiring, parts
 
-    Also writes the settings of OpenOCD and a page. Nothing is written for a board with errors or
-    missing facts; ./icesoc board check lists these errors and facts."""
+    Also writes a configuration file for OpenOCD, and a page that describes the board. Nothing is
+    written for a board with errors or missing facts; ./icesoc board check lists these errors and
+    facts."""
     board = read(values.name)
     if values.docs:
         made = make.write(documents(board), PAGES)

@@ -263,7 +263,8 @@ def call(options):
 
     The arguments are checked against the Slice definition before anything is sent. Exit status: 2
     wrong arguments, 3 the operation threw an exception, 4 no answer, 5 no such object or operation,
-    6 the operation refused the call without a reason. docs/call.md explains arguments and targets.
+    6 the operation refused the call and gave no reason. docs/call.md explains arguments and
+    targets.
     """
     words = options.call
     if options.page:

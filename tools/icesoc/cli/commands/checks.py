@@ -221,7 +221,8 @@ def faults(values):
 
 
 @command("check soak", [
-    Option("minutes", MINUTES, "CPU time of the whole test", 4.0),
+    Option("minutes", MINUTES, "CPU time of the test, and simulated time of the flight with ten "
+                               "vehicles", 4.0),
     Option("fuzzed", COUNT,
            "number of bytes of noise sent to the modem controller; the link layer and the ground "
            "station's radio engine get ten times as many",
@@ -236,8 +237,8 @@ def soak(values):
 
     Spends a quarter of the CPU time on tests of the link layer, a quarter on the link layer under
     attack, and half on calls between stock Ice, which uses the plugin, and IceC on the chip's RTL.
-    In addition, ten vehicles and two ground stations fly for --minutes of simulated time, which
-    adds a twentieth to the CPU time.
+    In addition, ten vehicles and two ground stations fly. The simulated time of this flight also
+    equals --minutes; the flight adds a twentieth to the CPU time.
     """
     build = configured(values, "soak", "test_chip_soak", "test_ground_engine", "test_modem_soak",
                        "test_link")

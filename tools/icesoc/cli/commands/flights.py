@@ -25,8 +25,8 @@ FROM = Option("from", SECONDS, "start of the waveform, simulated time")
 TO = Option("to", SECONDS, "end of the waveform, simulated time")
 DESCRIPTORS = 64  # file descriptors per process; the program of the ground station needs about
                   # thirty
-NETLIST = Option("netlist", SWITCH, "fly the netlist synthesised by Yosys, at 2 MHz with every "
-                                    "clock evaluated")
+NETLIST = Option("netlist", SWITCH, "fly the netlist synthesised by Yosys; the chip runs at 2 "
+                                    "MHz, and no idle clock cycles are skipped")
 NETLIST_HZ = 2000000
 BRIDGE = Option("bridge", one_of("async", "sync"), "FSMC bridge of the simulated chip; sync: the "
                                                    "bridge that samples its pins (docs/fsmc.md), "

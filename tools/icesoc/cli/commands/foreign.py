@@ -126,7 +126,7 @@ def examples(values):
     that cannot be downloaded is skipped. Together with two cores of this tree they form a chip,
     which is built and flown three times, each time with its cores in another order. Cores in
     SystemVerilog that Yosys cannot read fly in a second chip, which is not synthesised. Exit
-    status 77: no core could be downloaded, or a core that --cores names could not.
+    status 77: no core could be downloaded, or a core given by --cores could not be downloaded.
     """
     listed = json.loads(Path("examples/foreign/cores.json").read_text())
     known = {name for source in listed.values() for name in source["cores"]}

@@ -34,7 +34,7 @@ mount --rbind /sys "$1/sys" && exec chroot "$1" /bin/sh -c "cd $3 && $2"
 
 
 @command("check fresh", [
-    Option("release", one_of(*RELEASES), "Debian release, bookworm or trixie; default: both", ""),
+    Option("release", one_of(*RELEASES), "limit the test to one Debian release", ""),
     Option("again", SWITCH, "reuse the existing systems, and update their clones to HEAD"),
     Option("steps", TEXT, "commands to run, separated by semicolons",
            "; ".join([*README, PACKAGES])),
@@ -138,8 +138,9 @@ def put_tree(root):
 
 
 def do(root, release, step, folder="/root/icesoc", booted=False):
-    """Runs one step in a folder of the machine, and prints the last lines of its output. `booted`:
-    with systemd running."""
+    """Runs one step in a folder of the test system, and prints the last lines of the step's
+    output. If `booted` is true, the test system is booted with systemd; otherwise the step runs in
+    a chroot."""
     words = re.findall(r"[\w.]+", step)
     log = Path("-".join([str(root), *words]) + ".log")
     place = {"HOME": "/root", "PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "TERM": "dumb"}

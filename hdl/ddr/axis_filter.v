@@ -276,8 +276,8 @@ module axis_filter #(
         assert (!word_valid ||
                 (word_last == (f_left == 1) &&
                  f_size == (word_last ? left >> $clog2(KEEP) : 8 / KEEP)));
-        // Splitting: all beats of a word are sent, and the word is taken together with its last
-        // beat.
+        // Splitting: all beats of a word are sent. The word is removed from the input in the clock
+        // in which its last beat is sent.
         assert (beat == f_sent && m_axis_tvalid_o == word_valid);
         if (word_valid) begin
             assert (f_sent < f_size && word_ready == (m_axis_tready_i && f_sent + 4'd1 == f_size));

@@ -95,8 +95,8 @@ module fsmc_sync_bridge #(
     wire [24:0] address;
     generate
         if (MUXED != 0) begin : g_muxed
-            // `pins_was` and nadv_n were sampled at the pins in the same clock. Therefore `low`
-            // keeps the address: the value of the pins in the last clock in which NADV was low.
+            // `pins_was` and nadv_n are samples of the pins from the same clock. `low` therefore
+            // holds the value of the pins in the last clock with NADV low, which is the address.
             wire       nadv_n;
             reg [15:0] low, pins_was;
             cdc_bit #(.INITIAL(1'b1)) u_nadv (

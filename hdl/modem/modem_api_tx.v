@@ -57,8 +57,8 @@ module modem_api_tx (
     end
 
 `ifdef FORMAL
-    // Proves that every frame has a correct length and a correct checksum, and that without frames
-    // only the packet is sent.
+    // Proves that every frame has a correct length and a correct checksum. While api_i is 0, no
+    // frame is built: only the bytes of the packet are sent, unchanged.
     reg past = 1'b0;
     initial assume (rst_i);
     reg [7:0] total = 8'd0; // sum of all bytes after the length, including the checksum

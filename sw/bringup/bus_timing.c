@@ -17,7 +17,7 @@
 #include "timing.h"
 
 #define BLOCK_HALFWORDS 32U
-#define READ_SETUP 40U /* read set-up time of the FSMC, minus one HCLK period, 0.1 ns */
+#define READ_SETUP 40U /* read set-up time of the FSMC minus one HCLK period, in units of 0.1 ns */
 #define DRIVER_ADDSET 2U
 #define MOST_ADDSET 12U
 
@@ -31,7 +31,7 @@ static const Point points[] = {{3, 120}, {3, 110}, {3, 100}, {3, 90}, {4, 120}, 
 #define POINTS (sizeof points / sizeof points[0])
 #define DRIVER_POINT 4U
 
-static U32 budget(const Point* p) { /* 0.1 ns */
+static U32 budget(const Point* p) { /* in units of 0.1 ns */
     return (p->datast - 1U) * 10000UL / p->mhz - READ_SETUP;
 }
 

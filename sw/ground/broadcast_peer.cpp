@@ -11,7 +11,7 @@ namespace XBeeAT {
 BroadcastPeer::BroadcastPeer(Host& host, const LinkKeys& keys)
     : Peer(host, everybody, keys), broadcast_(host.settings, keys_) {}
 
-// Passes on the next message of a program. If the program has closed its end of the connection,
+// Passes on the next message of a program. If the program has closed its side of the connection,
 // keeps the connection until the program's calls have been sent.
 bool BroadcastPeer::send(int channel, U32 now) {
     ProgramConnection& program = programs_[channel];

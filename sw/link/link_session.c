@@ -118,8 +118,8 @@ static int onPiggyback(Link_Session* session, const U8* frame, U32 early) {
     U32 flags = early | LINK_FIRST | LINK_LAST | LINK_CHANNEL(frame[2]);
     if (LINK_KIND_OF(frame) == LINK_KIND_PIGGYBACK_ASK)
         flags |= LINK_ACK_NOW;
-    /* A peer whose program has not accepted a message yet sends no PIGGYBACK. The sender of a
-     * PIGGYBACK therefore has room for the whole window. */
+    /* A peer sends no PIGGYBACK while it still stores received messages or fragments. The sender
+     * of a PIGGYBACK can therefore store the fragments of a whole window. */
     if (link_onAck(sender, payload[0], sender->fullCredit, 0, 0))
         LINK_NOTE_ALIVE(&session->liveness);
     return link_onData(&session->receiver, frame[1], flags, payload + 1, LINK_LENGTH(frame) - 1U);

@@ -26,14 +26,14 @@ public:
         // variable uav_guardMs (uav.h) after each start, as a debugger would do. A program without
         // this variable is not changed.
         uint16_t guardMs = 0;
-        // Contents of the flash. If it is empty, the flash contains the program. Otherwise the
-        // program file is only used for its symbols.
+        // Contents of the flash. If this vector is empty, the flash is loaded from the program
+        // file. Otherwise the program file is only used for its symbols.
         std::vector<uint8_t> flash = {};
-        // Key of the link, 16 bytes, stored in the vehicle as by its factory. If it is empty, the
-        // vehicle accepts a link without a key.
+        // Key of the link, 16 bytes, stored in the vehicle as by its factory. If this vector is
+        // empty, the vehicle accepts a link without a key.
         std::vector<uint8_t> key = {};
         uint64_t seed = 1; // seed of the random number generator
-        // Contents of the FPGA's configuration flash. If it is empty, the FPGA needs no
+        // Contents of the FPGA's configuration flash. If this vector is empty, the FPGA needs no
         // configuration.
         std::vector<uint8_t> fpgaFlash = {};
         bool isWired = false; // true if the jumper of PB1 is set (board.h)

@@ -139,7 +139,7 @@ class Cases(Script):
         self.draw(status=2)
         self.has("^SURVIVED .*formal.pair .*hdl/small/pair.v:[56] ", "^pair .* [1-9] the same$",
                  "below 95 %: pair$")
-        # in line 4, each mutant changes nothing or is detected by the proof
+        # each mutant of line 4 of the module is equivalent to the module, or the proof detects it
         self.lacks("^SURVIVED .*pair.v:4 ")
         missed = json.loads(Path("build/mutants/drawn.json").read_text())["survived"]
         self.the_model_carries(missed, pair)

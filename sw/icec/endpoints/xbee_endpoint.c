@@ -190,7 +190,7 @@ static int hasEnded(const XBeeATEndpoint* self, int connection) {
     return (self->events & EVENT(ICE_EVENT_CLOSED, connection)) || self->offered != connection;
 }
 
-/* Ends a connection because the link has no room for a message on it. */
+/* Ends a connection because the link has no room for a message of this connection. */
 static void giveUp(XBeeATEndpoint* self, int connection) {
     (void)Link_closeChannel(self->links[PEER_OF(connection)], CHANNEL_OF(connection));
     XBeeATEndpoint_onChannel(self, connection, 0);

@@ -12,7 +12,7 @@
 
 namespace {
 
-// The program's end of a connection; reading and writing do not block.
+// The program's side of a connection; reading and writing do not block.
 class Program {
 public:
     explicit Program(int fd) : fd_(fd) {}

@@ -41,7 +41,7 @@ void expect(bool condition) {
         std::abort();
 }
 
-// The program's end of a connection; it reads the output of the engine in pieces of any size.
+// The program's side of a connection. The program reads the engine's output in pieces of any size.
 class Program {
 public:
     ~Program() { leave(); }

@@ -238,7 +238,8 @@ TEST(Ddr3Timing, BurstsInAnOpenRowFollowEachOtherByTccd) {
 TEST(Ddr3Timing, AnotherRowOfTheBankWaitsForPrechargeAndActivate) {
     Ddr3Timing device(mt41j64m16);
     uint64_t first = device.access(100, true, 0); // the row is activated at clock 100
-    // the precharge waits for tRAS, which is longer than tRCD + tRTP: 100 + 15, then tRP 6, tRCD 6
+    // precharge at clock 100 + tRAS (15), because tRAS is longer than tRCD + tRTP; then tRP (6) and
+    // tRCD (6)
     EXPECT_EQ(device.access(first + 1, true, rowStep), 100u + 15 + 6 + 6);
 }
 

@@ -35,7 +35,7 @@ ROOT = str(pathlib.Path(__file__).resolve().parents[3])
 STRING = re.compile(r'"((?:[^"\\]|\\.)+)"')
 WRITES = re.compile(
     "O_(WRONLY|RDWR|CREAT|TRUNC)|(rename|unlink|link|mkdir|rmdir|chmod|utime)")
-# Caches of the system that each installation of a package rewrites
+# System caches, which are rewritten whenever any package is installed
 CACHES = re.compile(r"^/etc/ld\.so\.cache$|^/var/(cache|lib/dpkg)/|/__pycache__(/|$)")
 TRACING = ("strace", "-f", "--seccomp-bpf", "-qq", "-y", "-e", "signal=none", "-e", "trace=%file")
 

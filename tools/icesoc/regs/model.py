@@ -140,7 +140,8 @@ class Register:
         return [p for p in self.parts if self.is_pulse(p)]
 
     def written_bits(self, part):
-        """Returns whether the field has an output with the written value, which the core stores."""
+        """Returns whether the field has an output that carries the written value; the core itself
+        must store this value."""
         return (part.access != "ro" and self.storage == "core" and bool(part.name)
                 and not self.is_pulse(part))
 

@@ -157,8 +157,8 @@ def cost_table(library, row, depth=2):
 
 
 def path_table(plan, row, count=5):
-    """Returns a table of the longest paths, taken from the order of the netlist whose clock is
-    reported."""
+    """Returns a table of the longest paths. If a design is mapped several times, each time with
+    its cells in another order, these are the paths of the mapping whose clock is reported."""
     mhz = plan.chip["mhz"]
     return Table([f"longest paths, estimated, at {clock_text(row.figures['mhz'])} MHz", "to",
                   "levels", "ns (-3)", "ns (-2)", f"of {mhz:g} MHz"],
@@ -169,8 +169,8 @@ def path_table(plan, row, count=5):
 
 
 def pads_table(row):
-    """Returns a table of the longest path at each pad, slowest first, with its range after
-    routing."""
+    """Returns a table with the longest path at each pad, slowest first, and the range in which
+    the delay of this path may be after routing."""
     return Table(["paths of pads, estimated", "from", "to", "levels", "ns (-3)", "ns (-2)",
                   "routed (-2)"],
                  [[p["kind"], p["from"], f"{p['to']} {p['pin']}", p["levels"], f"{p['ns']:.2f}",

@@ -452,6 +452,8 @@ target_include_directories(same PRIVATE ${{CMAKE_BINARY_DIR}}/gen ${{CMAKE_SOURC
         self.has(f"^IceSoC {re.escape(number)}, not signed")
         self.has("^- third", file=f"out/CHANGES-{number}.md")
         self.assertEqual(version.of_commit("."), number)
+        write("unpacked/CHANGELOG.md", SMALL.format("\n- third\n"))  # belongs to no commit
+        self.assertEqual(version.of_commit("unpacked"), "1.2.3")
         later = version.of_text(Path("CHANGELOG.md").read_text(), "0" * 40, seconds + 1)
         for older, newer in ("1.2.3-1", f"{number}-1"), (f"{number}-1", f"{later}-1"), (
                 f"{later}-1", "1.2.4-1"):

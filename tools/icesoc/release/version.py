@@ -48,8 +48,11 @@ def of_text(text, commit, seconds):
 
 
 def of_commit(tree=TREE):
-    """Returns the version of the tree's last commit. Without git, returns the newest version."""
+    """Returns the version of the tree's last commit. If the tree is not a repository, for example an
+    unpacked release, returns the newest version."""
     text = (Path(tree) / "CHANGELOG.md").read_text(encoding="utf-8")
+    if not (Path(tree) / ".git").exists():
+        return newest(text)
     found = output(["git", "-C", str(tree), "log", "-1", "--format=%H %ct"], check=False,
                    stderr=subprocess.DEVNULL).split()
     return of_text(text, found[0], int(found[1])) if found else newest(text)

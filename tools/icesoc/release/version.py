@@ -48,8 +48,8 @@ def of_text(text, commit, seconds):
 
 
 def of_commit(tree=TREE):
-    """Returns the version of the tree's last commit. If the tree is not a repository, for example an
-    unpacked release, returns the newest version."""
+    """Returns the version of the tree's last commit. If the tree is not a repository, for instance
+    an unpacked release, returns the newest version."""
     text = (Path(tree) / "CHANGELOG.md").read_text(encoding="utf-8")
     if not (Path(tree) / ".git").exists():
         return newest(text)

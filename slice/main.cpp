@@ -185,8 +185,9 @@ public:
             if (!isFirst && other->second != at)
                 diagnostics.error(d->at, "'" + d->id() + "' and the declaration at " +
                                              other->second + " would both be named '" +
-                                             other->first + "' in C; both go into one program: "
-                                                            "rename one of them");
+                                             other->first +
+                                             "' in C; both go into one program: "
+                                             "rename one of them");
         }
     }
 

@@ -17,7 +17,7 @@
 #include "timing.h"
 
 #define BLOCK_HALFWORDS 32U
-#define READ_SETUP 40U /* read set-up time of the FSMC minus one HCLK period, in units of 0.1 ns */
+#define READ_SETUP 40U /* read set-up time of the FSMC minus one HCLK period, in 0.1 ns */
 #define DRIVER_ADDSET 2U
 #define MOST_ADDSET 12U
 

@@ -65,7 +65,7 @@ module soc #(
 
     // A flip-flop drives the reset of all blocks, so that no combinational path leads from the
     // reset pin through their logic. A simulator would have to evaluate such a path at each change
-    // of an input, which would make it 1.07 times slower.
+    // of an input, and would be 1.07 times slower.
     wire rst;
     cdc_reset u_rst (.clk_i(clk_i), .rst_async_i(rst_i), .rst_o(rst));
 

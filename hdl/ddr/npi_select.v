@@ -88,7 +88,7 @@ module npi_select #(
 
 `ifdef FORMAL
     // Proves that there is at most one grant per clock, that only requesters get grants, and that
-    // they get them within the bounds above.
+    // each requester gets its grant within the bounds above.
     wire [PORTS-1:0] f_later = later, f_served = served; // for npi_arbiter_proof
     reg past = 1'b0;
     initial assume (rst_i);

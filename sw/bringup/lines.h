@@ -73,8 +73,8 @@ U32 Lines_find(void);
 /* Returns 1 if the line is one of the three lines of the channel in use. These lines need no test,
  * because the tester answers over them. */
 int Lines_isChannels(U32 line);
-/* Sends the tester the levels that it must drive, and returns in `answer` the levels that the
- * tester has read before it drives them. Returns 0 if the tester does not answer. */
+/* Sends the tester the levels that it must drive. Sets `answer` to the levels that the tester has
+ * read at its pins before it drives the new levels. Returns 0 if the tester does not answer. */
 int Lines_exchange(Answer* answer);
 
 /* Steps of the test. `found` is the result of Lines_find: one bit for each channel that works; 0 if

@@ -28,7 +28,7 @@ bool makePair(int ends[2]) {
     return true;
 }
 
-// Returns whether the program has closed its end and has left no bytes to read.
+// Returns whether the program has closed its side and has left no bytes to read.
 bool hasLeft(int fd) {
     pollfd end{fd, POLLRDHUP, 0};
     char byte;

@@ -182,7 +182,7 @@ U32 ProgramConnection::beat(U32 nowUs) {
     if (since < limit)
         return limit - since;
     pollfd end{fd_, POLLRDHUP, 0};
-    // the program has read everything and has not closed its end
+    // the program has read everything and has not closed its side
     if (in_.empty() && poll(&end, 1, 0) == 0) {
         const U32 activeAt = activeAt_;
         (void)giveHead(IceHeader::Validate, nowUs);

@@ -32,9 +32,9 @@ public:
     ProgramConnection& operator=(const ProgramConnection&) = delete;
 
     bool is(State state) const { return state_ == state; }
-    // want and accept take the program's socket, which must be non-blocking; the destructor closes
-    // it. `name` is used in log lines. A program that accepts a connection is a server. The first
-    // ValidateConnection that it sends is part of the connection's set-up; later ones are
+    // want and accept take the program's socket, which must be non-blocking. The destructor closes
+    // the socket. `name` is used in log lines. A program that accepts a connection is a server. The
+    // first ValidateConnection that it sends is part of the connection's set-up; later ones are
     // heartbeats. A message is late if the link has not accepted it within `lateUs`.
     static constexpr U32 never = 2000000000;
     void want(int fd, const std::string& name, U32 lateUs = never);

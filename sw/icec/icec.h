@@ -124,7 +124,7 @@ Ice_Status Ice_Reply_end(Ice_Reply* reply, Ice_Status status);
 
 /* ---- object adapters ---- */
 
-/* Adds a servant. `identity` is "name" or "category/name"; only the pointer to it is stored.
+/* Adds a servant. `identity` is "name" or "category/name"; the text is not copied.
  * Returns ICE_LIMIT if another servant has this identity or if ICE_SERVANTS servants exist, and
  * ICE_PARSE if the identity is malformed. */
 Ice_Status Ice_ObjectAdapter_add(Ice_ObjectAdapterPtr adapter, Ice_ObjectPtr servant,

@@ -9,10 +9,10 @@
 #include "base.h"
 #include "link_port.h"
 
-/* Traffic that one end of the link sends: this side (`own`) or the peer (`peers`). */
+/* Traffic that one side of the link sends: this side (`own`) or the peer (`peers`). */
 typedef struct Link_Traffic {
     U32 before;  /* total of bytes at the start of the current span of time */
-    U8 isStream; /* 1: this end sends a stream */
+    U8 isStream; /* 1: this side sends a stream */
 } Link_Traffic;
 
 typedef struct Link_Backoff {

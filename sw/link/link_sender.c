@@ -280,8 +280,8 @@ static int markAcked(Link_Sender* sender, U32 advance, const U8* bitmap, U32 siz
         isNew = 1;
         if (f->tries != 1U && elapsed < sender->srtt - sender->srtt / 4U) {
             /* The time since the newest transmission is too short for a round trip, so the
-             * acknowledgement answers an earlier transmission. If the radio reports losses, it
-             * answers the first transmission, because the peer has become slower. */
+             * acknowledgement answers an earlier transmission. If the radio reports
+             * losses, it is the first transmission, because the peer has become slower. */
             elapsed = sender->pacing->env.now - f->firstAt;
             if (sender->pacing->mostWaiting && !sender->pacing->backoff.own.isStream &&
                 elapsed < LINK_RTO_FIRST)

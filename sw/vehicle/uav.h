@@ -14,8 +14,8 @@
     0x000FFF80U /* width and height of the frame, two 32-bit words, written by the camera */
 
 /* AES key of the modem: 16 bytes, which must stay valid. 0 (the initial value) disables encryption
- * by the modem. The key is read when the tasks start. The keys of the link are independent of it
- * (uav_keys.h). */
+ * by the modem. The key is read when the tasks start. The keys of the link (uav_keys.h) are
+ * independent of the modem's key. */
 extern const U8* uav_modemKey;
 
 /* guard time that the modem has at the start, ms. 0 (the initial value) means the factory setting,

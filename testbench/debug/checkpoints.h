@@ -57,7 +57,7 @@ public:
 
     // Forks a frozen copy, unless a copy at or after this place exists or the maximum number of
     // copies is reached. In the process that continues, returns nothing. In a copy that is woken
-    // later, returns the order for it.
+    // later, returns the order that this copy has received.
     std::optional<Order> freeze(uint64_t place) {
         Shared& s = *shared_;
         if (s.count == mostCopies || (s.count && s.copies[s.count - 1].place >= place))

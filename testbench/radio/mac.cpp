@@ -95,7 +95,7 @@ void Mac::failed(uint64_t now, uint64_t ready, Fate fate) {
 
 void Mac::ended(uint64_t now, const RfPacket& arrived, RfOutcome outcome, bool isAnswered) {
     const bool isLost = outcome == RfOutcome::Lost || outcome == RfOutcome::Nobody;
-    // if Lost was drawn for the whole packet, it means that all tries have failed
+    // if Lost was drawn for the whole packet, all of its tries have failed
     const bool isDrawnLost = drawn_ == RfOutcome::Lost;
     if (packet_.acknowledged && !isAnswered && !isDrawnLost && (triesLeft_ || roundsLeft_)) {
         if (!isLost)

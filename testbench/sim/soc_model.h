@@ -151,8 +151,7 @@ private:
     // number of skipped clocks that are not yet added to the chip's counters
     uint64_t owed_ = 0;
     uint64_t resting_ = 0; // number of future clocks in which the platform need not be evaluated
-    // number of clocks in which the platform was skipped, and that are not yet added to its
-    // counters
+    // number of skipped clocks of the platform that are not yet added to the platform's counters
     uint64_t rested_ = 0;
     uint64_t evaluated_ = 0;
     BoardWires wires_;

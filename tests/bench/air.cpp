@@ -90,8 +90,8 @@ public:
 
 Figures figures("The radio link on a half-duplex air with the modems' own limits.");
 
-// Sends for `seconds`. If `both` is true, both ends send, otherwise only the first one. Returns the
-// number of bytes per second that arrive at the two ends together.
+// Sends for `seconds`. If `both` is true, both sides send, otherwise only the first side. Returns
+// the total number of bytes per second that the two sides receive.
 double flow(AirPair& w, bool both, uint64_t seconds) {
     const uint64_t start = w.now;
     w.until(

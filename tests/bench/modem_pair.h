@@ -84,7 +84,7 @@ inline XBee::Options modemOptions(unsigned address, bool encrypts = false,
     return o;
 }
 
-// One end: a modem and its links, one for each peer. As in the engine, the link that has used the
+// One side: a modem and its links, one for each peer. As in the engine, the link that has used the
 // least air time sends first. A derived class handles the messages, and calls Link_setKey and
 // Link_start.
 class ModemEnd {

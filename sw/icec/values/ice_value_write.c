@@ -70,7 +70,7 @@ static void writeType(Ice_OutputStreamPtr os, Ice_String id, Ice_Int compactId) 
 }
 
 /* Writes preserved slices. Slices of an exception have no flags for the kind of their type, because
- * it is always a string. */
+ * this type is always a string. */
 static void writeUnknown(Ice_OutputStreamPtr os, const Ice_UnknownSlice* slice,
                          Ice_Bool isException) {
     Ice_OutputValues* values = os->values;

@@ -252,8 +252,8 @@ TEST_F(Tcp, ARequestThatIsTooLongIsAnsweredWithTheLimitsName) {
     EXPECT_TRUE(ping(peer)) << "the connection must remain open";
 }
 
-// If a message exceeds a limit and cannot be answered, its sender notices this by the end of the
-// connection, as with stock Ice.
+// If a message exceeds a limit and cannot be answered, its sender notices this because the
+// connection is closed, as with stock Ice.
 TEST_F(Tcp, WhatIsRefusedWithoutAnAnswerIsLoggedAndEndsTheConnection) {
     ::testing::internal::CaptureStderr();
     serve();

@@ -30,7 +30,7 @@ enum class Bug {
     HelloEndsTheSession,
     HelloMakesASession, // a HELLO begins a session, without a CONFIRM
     ConfirmIsNotAuthentic,
-    OwnNonceIsTaken,  // a nonce of this side is accepted as the peer's, if it is reflected
+    OwnNonceIsTaken,  // if an attacker returns a nonce of this side, it counts as the peer's
     NonceServesTwice, // no new nonce is drawn when a session begins
     UnconfirmedCalls, // a side makes calls although its peer may not have begun the session yet
     OldDataIsTaken,   // the number of an earlier data frame is accepted again

@@ -130,7 +130,7 @@ TEST_F(Heads, MoreHeadsThanThereAreSlots) {
 // If a peer violates the rules, both sides start a new session and continue.
 TEST_F(Heads, ATokenThatMakesNoSenseEndsTheSession) {
     send(a, b, {0x41}); // crosses unchanged
-    // A now does not use tokens, so it sends this byte unchanged.
+    // side A now uses no tokens, so A sends this byte unchanged
     a.link()->session.handshake.present.features = 0;
     b.start();
     a.send(0, {0xE0}, 99);

@@ -189,7 +189,7 @@ TEST_P(Attacked, WhoOnlyReplaysDoesNotKeepASessionAlive) {
     ASSERT_TRUE(connect());
     ASSERT_TRUE(traffic(10, 60'000'000));
     until([&] { return listen(), false; }, 6'000'000); // long enough to record a PING
-    setWeather({1, 0, 0});                             // A disappears: its packets are lost
+    setWeather({1, 0, 0});                             // side A disappears: its packets are lost
     ASSERT_TRUE(until(
         [&] {
             for (const Heard& heard : recorded_)

@@ -29,7 +29,8 @@ XBee::Options quick(std::map<std::string, uint32_t> more, const std::string& key
     return options;
 }
 
-// A link end that stores its messages. The function `send` sends its frames and returns 0.
+// One side of a link, which stores its messages. The function `send` sends the frames of this side
+// and returns 0.
 class MessageLink : public LinkEnd {
 public:
     explicit MessageLink(std::function<int(const U8*, U32)> send, uint32_t seed)
@@ -149,7 +150,7 @@ protected:
             ASSERT_EQ(Link_send(farPeer_.link(), 0, message.data(), 700, tag), LINK_OK);
         ASSERT_TRUE(
             talk([&] { return farPeer_.received.size() == 5 && nearPeer_.received.size() == 5; },
-                 // a long limit, because the packets of the far end contain parts of two frames
+                 // a long limit, because the packets of the far side contain parts of two frames
                  20000));
         talk([] { return false; }, 100);
         EXPECT_EQ(nearPeer_.received[4], message);

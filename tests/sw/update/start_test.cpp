@@ -338,8 +338,8 @@ TEST_F(FpgaStart, ABitstreamThatHangsTheFpgaGoesAtOnce) {
     EXPECT_TRUE(is(SLOTS_REFUSED));
 }
 
-// Without DONE, the firmware would need four tries, 16 s, to find out whether the FPGA hangs; but
-// it sees that this FPGA no longer reads its flash.
+// Without DONE, the firmware would need four tries (16 s) to find out whether the FPGA hangs. Here
+// the firmware knows the result earlier, because it sees that the FPGA no longer reads its flash.
 TEST_F(FpgaStart, ABoardWithoutDoneStartsSoonAndItsFpgaRuns) {
     chip.fpga.isDoneWired = false;
     chip.powerOn();

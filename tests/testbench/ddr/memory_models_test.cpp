@@ -103,8 +103,8 @@ TEST_F(Mcb, AWriteWaitsForTheDataOfTheReadBefore) {
     };
     (void)clocksUntilEmpty(true); // opens the row for the accesses below
     // Times in memory clocks since the first command of the read. The last of the four bursts has
-    // its command at 12, and its data ends at 12 + 6 + 4, so the write starts at 25. Without the
-    // read, the write would start at 4, one clock of the design later.
+    // its command at 12, and its data ends after CL (6) and burst (4), so the write starts at 25.
+    // Without the read, the write would start at 4, one clock of the design later.
     EXPECT_EQ(clocksUntilEmpty(true), clocksUntilEmpty(false) + (25 - 4) / 4);
 }
 

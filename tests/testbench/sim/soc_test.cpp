@@ -71,8 +71,8 @@ TEST_F(Soc, ThePageRegisterReachesTheUpperHalf) {
     EXPECT_EQ(fsmc_.read16(ddr + 0x40), 0);
 }
 
-// Sets each address line by itself, and each data line to both levels, which detects a line that is
-// cut or connected to another one. The memory has 128 MiB.
+// Sets each address line by itself, and each data line to both levels. This detects a line that is
+// cut, or connected to another line. The memory has 128 MiB.
 TEST_F(Soc, EveryLineToTheMemoryIsConnected) {
     uint32_t page = 0;
     auto place = [&](uint32_t address) {

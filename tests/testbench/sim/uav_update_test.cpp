@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// uav_update_test: tests an update of the firmware's host build over the air; memory of this
-// process is its flash.
+// uav_update_test: tests an update of the firmware's host build over the air. A part of the
+// memory of this process serves as the vehicle's flash.
 
 #include "ground.h"
 #include "keys.h"

@@ -17,8 +17,8 @@ MOST_LISTED = 20  # greatest number of names in a message
 
 @dataclasses.dataclass
 class Kind:
-    """A kind of value. `read` converts a text to a value, and raises ValueError if it is
-    invalid."""
+    """A kind of value. `read` converts a text to a value, and raises ValueError if the text
+    is invalid."""
     read: typing.Callable
     expected: str  # end of the message "LOSS: expected ...": the valid values
     schema: dict = None  # JSON schema of the value in flight.json

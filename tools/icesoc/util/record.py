@@ -104,7 +104,7 @@ class Record:
 
 
 def load(path):
-    """Returns the record that a file describes. Raises ValueError if it is invalid."""
+    """Returns the record that a file describes. Raises ValueError if the file is invalid."""
     with open(path, "rb") as file:
         try:
             return Record(tomllib.load(file))

@@ -171,8 +171,9 @@ private:
             std::string owner = p.call ? p.call->operation->name : "the wrapper";
             auto [it, isNew] = owners.emplace(p.name.substr(0, p.name.size() - 2), owner);
             if (!isNew)
-                error(p.call->operation->at, "'" + owner + "' needs the port '" + it->first +
-                                                 "', as '" + it->second + "' does");
+                error(p.call->operation->at, "two ports would be named '" + it->first +
+                                                 "': one for '" + owner + "', one for '" +
+                                                 it->second + "'");
         }
     }
 

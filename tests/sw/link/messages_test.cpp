@@ -39,10 +39,10 @@ TEST_P(CallBytes, ACallAndItsReplyTakeFewerThanMavlink) {
     RecordProperty("bytes", static_cast<int>(took[1]));
     RecordProperty("mavlink", static_cast<int>(mavlink));
     EXPECT_LT(took[0], mavlink);
-    // bytes: 5 + 3 for the request, 5 + 1 for the reply, 1 for the acknowledgement in the reply,
-    // and 6 for the last acknowledgement
+    // bytes (a frame has 5 bytes in addition to its content): 5 + 3 for the request, 5 + 1 for the
+    // reply, 1 for the acknowledgement in the reply, and 6 for the last acknowledgement
     EXPECT_EQ(took[1], 21 + 3 * (tag - LINK_CRC));
-    // bytes: 5 + 3 for the request, and 6 for the acknowledgement
+    // bytes: 5 + 3 (frame and content) for the request, and 6 for the acknowledgement
     EXPECT_EQ(took[3], 14 + 2 * (tag - LINK_CRC));
 }
 
@@ -82,8 +82,8 @@ TEST_F(Heads, CallsInARowCarryEachOthersAcknowledgements) {
     for (uint32_t id = 2; id < 52; ++id)
         call(id);
     settle();
-    // A call takes 9 + 7 bytes, because each request also contains the acknowledgement of the reply
-    // before it.
+    // A request takes 9 bytes and a reply 7 bytes, because each of them also contains the
+    // acknowledgement of the message before it.
     EXPECT_LE(bytes() - before, 50u * 16u + 6u);
 }
 

@@ -65,6 +65,7 @@ PLACES = {
         "They take {flown.sites} LUT sites ({flown.low} to {flown.high}), {flown.ff} flip-flops "
         "and {flown.slices} slices ({flown.less} to {flown.more})",
         "four cores takes {soc.lut} LUTs, {soc.ff} flip-flops and {soc.dsp} DSP blocks",
+        "blocks of Table I is {table1.mhz} MHz",
         "the chip's is {soc.slowest} to {soc.fastest} MHz (median {soc.mhz})"],
     "docs/hw-mapping.md": ["({soc.lut} LUTs, {soc.ff} flip-flops)"],
     PICTURE.format("utilisation"): [
@@ -181,10 +182,22 @@ def differences(tree, places=None):
         yield f"README.md: expected the output of make run that {MISSION} contains, found another"
 
 
+def figures_of_pictures(tree):
+    """Returns the figures that the texts of the pictures contain."""
+    found = {}
+    for place, texts in PLACES.items():
+        if place.endswith(".png"):
+            contained = content(tree, place)
+            for regular, names in map(pattern, texts):
+                if match := regular.search(contained):
+                    found |= zip(names, (shown.replace(",", "") for shown in match.groups()))
+    return found
+
+
 def correct(tree, given=None):
-    """Writes figures into the pages: the figures in `given`, then those that have a source.
-    Pictures are not changed."""
-    known = {**values(tree), **(given or {})}
+    """Writes figures into the pages: the figures in `given`, those that have a source, and for a
+    figure with neither, the value in a picture. Pictures are not changed."""
+    known = {**figures_of_pictures(tree), **values(tree), **(given or {})}
     readme = Path(tree, "README.md")
     was = readme.read_text()
     now = TRANSCRIPT.sub(lambda found: content(tree, MISSION) or found[0], was)

@@ -76,6 +76,7 @@ def build_figures(values):
             run(["./icesoc", "bench"])
         elif step == "synth":
             run(["./icesoc", "synth", "accept"])
+            run(["./icesoc", "synth", "report"])  # the page for the pictures
         elif step == "regress":
             regress_with_fault()
         elif step == "pictures":

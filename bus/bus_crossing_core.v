@@ -46,9 +46,11 @@ module bus_crossing_core (
     // known: an access has ended; done: an access ended in the last clock
     reg        known = 1'b0, done = 1'b0;
     reg [32:0] answer;                    // error and data of the access that ended last
+    reg        irq_was = 1'b0;            // interrupt of the core in the last clock
     wire       completes = core_valid_o && core_ready_i;
     always @(posedge clk_i) begin
         past  <= 1'b1;
+        irq_was <= core_irq_i;
         open  <= begins_i || (open && !ended_o);
         done  <= busy && (completes || rst_i);
         known <= known || (busy && (completes || rst_i));
@@ -66,6 +68,7 @@ module bus_crossing_core (
         // until the next access ends.
         assert (!known || answer_o == answer);
         assert (known || !ended_o);
+        assert (irq_o == irq_was);
         cover (ended_o && !answer_o[32] && answer_o[31:0] == 32'd5);
         cover (ended_o && answer_o[32] && past);
         cover (known && begins_i);

@@ -123,7 +123,10 @@ module npi_select #(
             waited <= waited + 6'd1;
         if (past && !rst_i) begin
             assert ((grant & (grant - 1'b1)) == 0);   // at most one grant
-            assert ((grant & ~asking) == 0);          // only a requester gets a grant
+            assert ((grant & ~req_i) == 0);           // only a requester gets a grant
+            assert ((grant & ack_o) == 0);            // each request gets one grant
+            assert ((grant & ~asking) == 0);
+            assert (ack_o == ($past(rst_i) ? {PORTS{1'b0}} : $past(grant)));
             // if a port requests, no cycle passes without a grant
             assert (|grant == (enable_i && |asking));
             assert (!any_o || grant == choice_o);

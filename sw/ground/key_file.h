@@ -24,7 +24,7 @@ using LinkKey = std::array<unsigned char, 16>;
 using LinkKeys = std::vector<LinkKey>;
 
 // Returns the content of a secret's file or pipe (/dev/fd/3). Throws std::runtime_error, with
-// advice, if it cannot be read, belongs to another user, or is accessible to others.
+// advice, if the file cannot be read, belongs to another user, or is accessible to others.
 std::string readSecret(const std::string& path);
 
 class KeyFile {

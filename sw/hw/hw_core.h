@@ -70,7 +70,7 @@ typedef struct Hw_Core {
 } Hw_Core;
 
 /* Initialises a core: resets the core, and clears and enables its events. `id` is the expected
- * value of word ID; if it differs, returns HW_WRONG_CORE. */
+ * value of word ID; returns HW_WRONG_CORE if the word has another value. */
 Hw_Status Hw_Core_init(Hw_Core* self, U32 slot, U32 id, const Hw_Port* port, void* context);
 /* Handles all events of the slot until its interrupt line is low; called by the interrupt routine
  * or by a task. */

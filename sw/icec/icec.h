@@ -118,8 +118,8 @@ void Ice_Current_later(const Ice_Current* current, Ice_Reply* reply);
  * afterwards. */
 Ice_OutputStreamPtr Ice_Reply_begin(Ice_Reply* reply);
 /* Sends the reply. With ICE_OK and ICE_USER_EXCEPTION, the reply contains the bytes of the stream;
- * with any other status, it reports this failure. Returns ICE_CONNECTION_LOST if the caller has
- * disconnected. */
+ * with any other status, the reply reports this failure. Returns ICE_CONNECTION_LOST if the caller
+ * has disconnected. */
 Ice_Status Ice_Reply_end(Ice_Reply* reply, Ice_Status status);
 
 /* ---- object adapters ---- */

@@ -115,7 +115,7 @@
 #define LINK_HEARD_QUARTERS 7U
 
 /* Additional wait after a short packet. With a shorter wait, the modem could join this packet with
- * the next packet, because it has not sent the short packet yet. */
+ * the next packet, because the modem would not have sent the short packet yet. */
 #define LINK_SHORT_MARGIN 1500U
 
 /* largest number of packets that wait for a result of the radio, for all links of the radio

@@ -80,7 +80,7 @@ typedef enum Link_Kind {
 #define LINK_KEY_EPOCH(key) ((key) >> 29)
 #define LINK_EPOCH_KEY(epoch) ((U32)(epoch) << 29)
 #define LINK_NO_SEED 0xFFFFU
-/* answer to a HELLO-ACK with a key. It has the number of RST, which is not used with a key. */
+/* with a key: answer to a HELLO-ACK. It has the number of RST, which is only used without a key. */
 #define LINK_KIND_CONFIRM LINK_KIND_RST
 #define LINK_IS_PIGGYBACK(kind) ((U32)(kind) - (U32)LINK_KIND_PIGGYBACK <= 1U)
 #define LINK_IS_HANDSHAKE(kind) ((U32)(kind) - (U32)LINK_KIND_HELLO <= 2U)

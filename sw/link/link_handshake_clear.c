@@ -22,7 +22,7 @@ static int expect(Link_Handshake* handshake, const U8* frame, U32 attempt, Link_
 
 static void onHello(Link_Handshake* handshake, const U8* peerNonce, U32 features) {
     const Link_Identity* of = &handshake->present;
-    /* A repeated HELLO means that the answer was lost. It therefore gets the same answer again. */
+    /* A repeated HELLO means that the answer was lost. The answer is therefore sent again. */
     if (handshake->state != LINK_STATE_UP || link_get32(peerNonce) != link_get32(of->peerNonce)) {
         of = &handshake->candidate;
         link_makeCandidate(handshake, peerNonce, features);

@@ -15,8 +15,8 @@
 /* request with a cached header. Bit 4: 1 if the request id is the next one of the channel, 0 if the
  * request is oneway. Bits 3..0: index of the header in the cache. */
 #define TOKEN_REQUEST 0x80U
-/* request with a new header. Bits 1..0: 0 if it is oneway, 1 if the request id is the next one, 2
- * if the id follows. After that: length of the header, and the header. */
+/* request with a new header. Bits 1..0: 0 if the request is oneway, 1 if the request id is the next
+ * one, 2 if the id follows. After that: length of the header, and the header. */
 #define TOKEN_LITERAL 0xA0U
 /* reply. Bit 1: 1 if the request id follows, 0 if it is the next one. Bit 0: 1 if status and body
  * follow unchanged. */

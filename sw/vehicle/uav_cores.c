@@ -28,8 +28,8 @@ static U8 isStarted[MAP_CORES];
 static Hw_Contract contracts[MAP_CONTRACTS];
 static Hw_Chip chip;
 
-/* Waits for an event of a core. Only the task that serves calls waits here. After the wait, it
- * checks whether the event belongs to its operation. */
+/* Waits for an event of a core. Only the task that serves calls waits here. After the wait,
+ * the task checks whether the event belongs to its operation. */
 static int waitEvent(void* context, U32 operation, U32 ms) {
     INT8U error;
     (void)context;

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-// Returns the contents of a file. Throws std::runtime_error if it cannot be read.
+// Returns the contents of a file. Throws std::runtime_error if the file cannot be read.
 inline std::string readFile(const std::filesystem::path& file) {
     std::ifstream in(file, std::ios::binary);
     if (!in)

@@ -74,7 +74,7 @@ void CortexM3::setSynchronous(uint32_t address, unsigned number, uint32_t cfsrBi
     uc_emu_stop(uc_);
 }
 
-// Checks an instruction before it is executed. Returns false if it faults.
+// Checks an instruction before it is executed. Returns false if the instruction faults.
 bool CortexM3::mayExecute(uint32_t address, const Instruction& i) {
     if (i.base != Instruction::noBase && (reg(i.base) & i.alignment)) {
         setSynchronous(address, UsageFault, SystemControl::unaligned,

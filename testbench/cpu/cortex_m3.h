@@ -104,8 +104,8 @@ public:
     uint64_t lastStop() const { return boundaries_[0]; }
     // Makes run() return before the next instruction; called by the bus or by a listener.
     void stop() { stopAsked_ = attention_ = true; }
-    // Requests a reset from outside the processor, for example by a watchdog. It takes effect
-    // before the next instruction.
+    // Requests a reset from outside the processor, for example by a watchdog. The reset takes
+    // effect before the next instruction.
     void requestReset() { resetAsked_ = attention_ = true; }
 
     // Sets the level of an interrupt line; called by the bus.

@@ -65,8 +65,8 @@ uint64_t RfChannel::delayNs(uint64_t now) const {
     return weather.trace ? weather.trace->at(now).delayNs : weather.delayNs;
 }
 
-// Draws the signal strength of one transmission. Returns true if it is below the sensitivity of the
-// receiver.
+// Draws the signal strength of one transmission. Returns true if the signal is below the
+// sensitivity of the receiver.
 bool RfChannel::faded(RfPacket& packet) {
     if (weather.distance <= 0)
         return false;

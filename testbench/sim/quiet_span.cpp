@@ -31,7 +31,7 @@ constexpr uint64_t margin = 2; // number of clocks before an event that are alwa
 // number of clocks after a carry of the phase in which the tick of this carry may still have
 // effects
 constexpr uint64_t settling = 8;
-// number of clocks for which only the platform is skipped, at first; it grows later
+// number of clocks for which only the platform is skipped, at first; this number grows later
 constexpr uint64_t least = 8;
 constexpr unsigned longest = 32; // largest number of clocks between two comparisons of a busy chip
 // number of comparisons of a busy chip between two records of the cores that have changed

@@ -24,7 +24,7 @@ public:
 
     explicit Wires(std::vector<std::string> names);
 
-    // Plants a fault. Throws std::runtime_error if it names an unknown net.
+    // Plants a fault. Throws std::runtime_error if the fault names an unknown net.
     void plant(const WireFault& fault);
     unsigned net(const std::string& name) const;
     size_t count() const { return names_.size(); }

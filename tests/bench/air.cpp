@@ -203,7 +203,8 @@ void roundTrips(Mode mode) {
         const U32 check = mode == Keyed || size <= LINK_UNCHECKED ? 0 : LINK_CHECK;
         const U32 frames = size + check + overhead > packet ? 2 : 1;
         const U32 onLine = size + check + frames * overhead;
-        // The reply is one byte longer than the call, because it also contains the acknowledgement.
+        // The reply is one byte longer than the call, because the reply also contains the
+        // acknowledgement.
         const double floor = floorMs(onLine, onLine + 1, mode == Encrypted);
         figures.add("round trip of " + std::to_string(size) + " bytes " + names[mode], median, "ms",
                     floor);

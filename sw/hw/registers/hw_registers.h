@@ -27,7 +27,7 @@ typedef struct Hw_Registers_Core {
 } Hw_Registers_Core;
 
 /* Initialises a servant: clears and masks the events of the slot. `id` is the expected value of the
- * word ID; if it differs, returns HW_WRONG_CORE. */
+ * word ID; returns HW_WRONG_CORE if the word has another value. */
 Hw_Status Hw_Registers_Core_init(Hw_Registers_Core* self, U32 slot, U32 id,
                                  const Hw_Register* table, Ice_Int count, const Hw_Port* port,
                                  void* context);

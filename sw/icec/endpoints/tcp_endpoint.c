@@ -71,7 +71,7 @@ static Ice_Int frontSize(TcpEndpoint_Connection* c) {
         return -1;
     if (size <= ICE_MESSAGE_MAX && !isCompressed)
         return size <= c->have ? size : 0;
-    if (c->have < ICEC_HEADER + 4) /* a refusal contains the request id, so it waits for the id */
+    if (c->have < ICEC_HEADER + 4) /* the request id, which a refusal contains, is not there yet */
         return 0;
     return TcpEndpoint_refuse(c, size) ? 0 : -1;
 }

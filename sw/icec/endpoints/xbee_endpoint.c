@@ -16,8 +16,8 @@
  * than 27 s, the time without acknowledgement of a fragment after which the session ends with all
  * its connections. Two replies of 8 KB take 4 s if three of ten packets are lost. */
 #define RETRIES 1000
-/* number of attempts to send to a peer other than the first ground station; it is smaller, because
- * messages to the first ground station wait during these attempts */
+/* number of attempts to send to a peer other than the first ground station; smaller than RETRIES,
+ * because messages to the first ground station wait during these attempts */
 #define OTHER_RETRIES 100
 
 /* Beginning of an encoded endpoint: type, encapsulation of 13 bytes, encoding 1.1. */

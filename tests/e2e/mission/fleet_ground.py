@@ -42,8 +42,8 @@ VEHICLES, NEXT = 3, "7" * 32
 
 
 def words_of(m, image, name, begin, end):
-    """Returns the command that starts the simulator with several vehicles. They are called
-    continuously, and each has its own key."""
+    """Returns the command that starts the simulator with several vehicles. The vehicles
+    are called continuously, and each has its own key."""
     keys, isRival = {}, name == "rival ground"
     for file, digits in (("fleet", "123"), ("observer", "456")):
         lines = [f"0x{at:04x} {digit * 32}" for at, digit in enumerate(digits, 1)]

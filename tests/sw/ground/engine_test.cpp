@@ -310,8 +310,8 @@ TEST_F(EngineTest, ARefusedCommandIsToldAsWhatItIs) {
     EXPECT_FALSE(log_.has("no modem answers"));
 }
 
-// If the vehicle starts before the ground's program, its frames arrive from the modem between the
-// modem's replies; they may contain carriage returns.
+// If the vehicle starts before the ground's program, the vehicle's frames arrive between the
+// replies of the modem. These frames may contain carriage returns.
 TEST_F(EngineTest, TheModemIsSetUpWhileTheUavSends) {
     uint64_t commands = 0;
     rig_.with([&] {

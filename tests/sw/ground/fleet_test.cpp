@@ -87,7 +87,8 @@ protected:
         rig_.with([&] { rig_.step = nullptr; });
     }
     // Adds a vehicle. It answers a message with the first bytes of the message, followed by its own
-    // address. `place` is its index in `vehicles_` if another vehicle has the same address.
+    // address. `place` is the vehicle's index in `vehicles_` if another vehicle has the same
+    // address.
     void fly(int address, const LinkKeys& keys = {}, int place = 0) {
         rig_.with([&] {
             auto& v = vehicles_[place ? place : address];

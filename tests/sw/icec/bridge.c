@@ -24,8 +24,8 @@ static char* keep(char** room, Ice_String text) {
     return kept;
 }
 
-/* Makes the proxy with which a request continues on the other side. It has the identity, facet,
- * encoding, mode and context of the request. */
+/* Makes the proxy with which a request continues on the other side. The proxy has the identity,
+ * facet, encoding, mode and context of the request. */
 static Ice_Status aim(const Ice_Current* current, Ice_ObjectPrxPtr far) {
     static Ice_ContextEntry context[CONTEXT + 1];
     static char texts[4096];

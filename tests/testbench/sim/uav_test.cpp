@@ -77,8 +77,8 @@ public:
         });
         soc.reset(true);
     }
-    // Both ground stations call at the same time. The observer disappears during a call. It returns
-    // first with the pilot's key, then with its own key.
+    // Both ground stations call at the same time. The observer disappears during a call. The
+    // observer returns first with the pilot's key, then with its own key.
     Script flight() {
         const auto vanish = [this] {
             since_ = soc.now();

@@ -44,8 +44,8 @@ class Events:
         return mapping.of(interface, "Prx").uncheckedCast(proxy)
 
     def open(self):
-        """Returns the object adapter for calls by the vehicle. They arrive at the endpoints of the
-        target, or over the connection that this program has opened."""
+        """Returns the object adapter for calls by the vehicle. These calls arrive at the endpoints
+        of the target, or over the connection that this program has opened."""
         if not self.adapter:
             target, communicator = self.client.target, self.client.communicator
             if target.callbacks:

@@ -84,7 +84,7 @@ def of_settings(values):
 
 
 def of(values):
-    """Returns the target that the options name. Without such an option, it is the flight in
+    """Returns the target that the options name. Without such an option, the target is the flight in
     progress; without a flight, a vehicle in the installed settings."""
     given = [name for name in ("flight", "device", "gateway", "locator") if getattr(values, name)]
     if len(given) > 1:

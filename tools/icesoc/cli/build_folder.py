@@ -18,7 +18,7 @@ ROOMS_OF_PROGRAMS = "bus;slice;sw;hdl;ip;testbench;tests"
 
 
 def writable(folder, otherwise):
-    """Creates a folder. Fails if it is not writable; `otherwise` advises what to do."""
+    """Creates a folder. Fails if the folder is not writable; `otherwise` advises what to do."""
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
     except OSError:

@@ -164,8 +164,9 @@ def packages_first(files):
 
 
 def filled(file, defines):
-    """Returns the text of a file, with two changes. It begins with definitions of the macros
-    `defines`. Paths in $readmemh are absolute, because a simulation may run in any folder."""
+    """Returns the text of a file, with two changes. The result begins with definitions of the
+    macros `defines`. Paths in $readmemh are absolute, because a simulation may run in any
+    folder."""
     def path(m):
         there = os.path.join(os.path.dirname(file), m.group(1))
         return f'"{there}"' if os.path.isfile(there) else m.group()

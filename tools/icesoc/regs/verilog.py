@@ -23,8 +23,8 @@ def number(value, width):
 
 
 def padded(parts, width=32, indent=0):
-    """Returns a concatenation of (lsb, width, expression) parts, with zeros between them. It has
-    several lines if one line with `indent` columns in front would be too long."""
+    """Returns a concatenation of (lsb, width, expression) parts, with zeros between them. The
+    result has several lines if one line with `indent` columns in front would be too long."""
     texts, top = [], width
     for lsb, wide, text in sorted(parts, reverse=True):
         if lsb + wide < top:
@@ -115,8 +115,8 @@ def declared(port, is_last):
 
 def commented(line, group, doc, mark):
     """Returns the lines of a port: the title of the group if the port begins one, the port, and the
-    port's comment. The comment follows the port on the same line, or stands before the port if it
-    is too long."""
+    port's comment. The comment follows the port on the same line, or precedes the port if the
+    comment is too long."""
     doc, before = plain(doc), "    " + mark
     lines = wrapped(group, before, before) if group else []
     if doc and len(line) + 1 + len(mark) + len(doc) > COLUMNS:

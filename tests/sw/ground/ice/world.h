@@ -58,8 +58,8 @@ public:
             stop();
         close(out_);
     }
-    // Returns the port that the server prints between these words, or -1 if it ended without
-    // printing it.
+    // Returns the port that the server prints between these words, or -1 if the server ended
+    // without printing a port.
     int port(const std::string& before = "gateway: port ", const std::string& after = " leads") {
         if (!hear(before))
             return -1;

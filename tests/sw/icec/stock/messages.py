@@ -276,7 +276,7 @@ class Server:
 
     def ask(self, data, timeout):
         """Sends messages. Returns the replies and the number of executed operations. timeout:
-        longest wait for each reply, s; it begins when the messages have been handled."""
+        longest wait for each reply, s; the wait begins when the messages have been handled."""
         before = self.executed
         s = self.connect()
         s.sendall(data)

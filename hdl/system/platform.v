@@ -92,12 +92,17 @@ module platform #(
     wire        npi_wr_almost_full, npi_wr_flush, npi_rd_pop, npi_rd_empty, npi_rd_flush;
     wire        npi_init_done;
 
-    // The macro FSMC_SYNC_BRIDGE selects the bridge that samples its pins (docs/fsmc.md).
+    // The macro FSMC_SYNC_BRIDGE selects the bridge that samples its pins (docs/fsmc.md). The macro
+    // FSMC_MUXED builds the bridge for a board whose data pins also carry the address.
 `ifdef FSMC_SYNC_BRIDGE
-    fsmc_sync_bridge u_fsmc_bridge (
+    fsmc_sync_bridge
 `else
-    fsmc_bridge u_fsmc_bridge (
+    fsmc_bridge
 `endif
+`ifdef FSMC_MUXED
+    #(.MUXED(1))
+`endif
+    u_fsmc_bridge (
         .clk_i(clk_i), .rst_i(rst_i),
         .fsmc_a_i(fsmc_a_i), .fsmc_d_i(fsmc_d_i), .fsmc_d_o(fsmc_d_o), .fsmc_d_oe_o(fsmc_d_oe_o),
         .fsmc_ne_n_i(fsmc_ne_n_i), .fsmc_noe_n_i(fsmc_noe_n_i), .fsmc_nwe_n_i(fsmc_nwe_n_i),

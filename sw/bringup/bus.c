@@ -3,6 +3,7 @@
  * bus: accesses to the bus, and the tests of registers, writes, interrupt and modem.
  */
 #include "bus.h"
+#include "board_pins.h"
 #include "bringup.h"
 #include "console.h"
 #include "lines.h"
@@ -18,19 +19,26 @@
 #define BTR(bank) REG(0xA0000004UL + 8UL * (bank))
 #define BWTR(bank) REG(0xA0000104UL + 8UL * (bank))
 #define BCR_ON 0x1091UL /* enabled, 16 bits wide, reserved bit 7 set, writes allowed */
+#define BCR_MUXED 0x6UL /* multiplexed, PSRAM */
 #define BCR_EXTMOD (1UL << 14)
 #define BCR_ASYNCWAIT (1UL << 15)
-#define BUSTURN (1UL << 16)
+#define BUSTURN(n) ((n) << 16)
 #define WINDOW_MASK ((1UL << MAP_DDR_WINDOW_LOG2) - 1UL)
 
-static const Bus_Timing slow = {15, 255, 0, 0};
+static const Bus_Timing slow = {15, 255, 0, 0, 15};
 static U32 page;
 
 void Bus_set(U32 bank, const Bus_Timing* t) {
-    U32 time = t->addset | t->datast << 8 | BUSTURN;
+#if BOARD_MUXED
+    /* NOE always falls after the address phase, so mode A is not needed. */
+    BTR(bank) = t->addset | t->addhld << 4 | t->datast << 8 | BUSTURN(2UL);
+    BCR(bank) = BCR_ON | BCR_MUXED | (t->waits ? BCR_ASYNCWAIT : 0);
+#else
+    U32 time = t->addset | t->datast << 8 | BUSTURN(1UL);
     BTR(bank) = time;
     BWTR(bank) = time;
     BCR(bank) = BCR_ON | (t->isModeA ? BCR_EXTMOD : 0) | (t->waits ? BCR_ASYNCWAIT : 0);
+#endif
 }
 
 void Bus_setSlow(void) {
@@ -143,6 +151,9 @@ static void reportBits(U32 first, U32 count, U32 bits, const char* kind, const c
                         "this line with line_tester; both ends of the wire");
 }
 
+/* lowest address line that a register does not need and that has a wire */
+#define FIRST_BEYOND (BOARD_MUXED ? 16U : 11U)
+
 void Bus_testData(void) {
     U32 i, wrong = 0, value;
     Report_step("data", "a register keeps each bit; registers that no slot has are refused");
@@ -156,7 +167,7 @@ void Bus_testData(void) {
     /* An access to an address beyond the slots must read 0 and report an error; this tests each of
      * these address lines. */
     wrong = 0;
-    for (i = 11; i < 25U; ++i) {
+    for (i = FIRST_BEYOND; i < 25U; ++i) {
         Bus_write(MAP_SLOT_SYSTEM, SYSTEM_EVENT, SYSTEM_EVENT_BUS_ERROR_MASK);
         if (REG(MAP_CONTROL_WINDOW + (2UL << i)) != 0 ||
             !(Bus_read(MAP_SLOT_SYSTEM, SYSTEM_EVENT) & SYSTEM_EVENT_BUS_ERROR_MASK))

@@ -29,6 +29,7 @@ typedef struct Bus_Timing {
     U32 addset, datast; /* HCLK cycles */
     int isModeA;        /* 1 if NOE falls after the address phase */
     int waits;          /* 1 if the access waits for NWAIT */
+    U32 addhld;         /* HCLK cycles, at least 1; only used with BOARD_MUXED */
 } Bus_Timing;
 
 void Bus_set(U32 bank, const Bus_Timing* timing);

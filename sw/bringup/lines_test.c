@@ -306,8 +306,11 @@ static void testShift(void) {
         fate[i] = MOVED;
         arrives[i] = NONE;
     }
-    Report_fail("A0", "A24", "shifted", "each address line arrives at the next number",
-                "that A0 goes to A0: with 16 bits of data, A0 is the address of a halfword");
+    Report_fail(BOARD_MUXED ? "A16" : "A0", "A24", "shifted",
+                "each address line arrives at the next number",
+                BOARD_MUXED ? "that A16 goes to A16"
+                            : "that A0 goes to A0: with 16 bits of data, A0 is the address of a"
+                              " halfword");
 }
 
 /* Finds lines that the FPGA drives and that arrive at the microcontroller's pin of another line. */

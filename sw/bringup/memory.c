@@ -37,7 +37,7 @@ static const char* numbered(const char* text, U32 number) {
 
 /* Reads once with NWAIT. If the memory never answers, this read ends with an error. */
 static int isCalibrated(void) {
-    static const Bus_Timing patient = {15, 60, 0, 1};
+    static const Bus_Timing patient = {15, 60, 0, 1, 15};
     U32 event;
     Bus_write(MAP_SLOT_SYSTEM, SYSTEM_EVENT, SYSTEM_EVENT_BUS_ERROR_MASK);
     (void)Bus_read(MAP_SLOT_SYSTEM, SYSTEM_EVENT);

@@ -39,7 +39,14 @@
 /* Settings of FSMC_init: mode 1 with NWAIT, which is active low. NWAIT is valid less than 16 ns
  * after the pins change; with ADDSET 2, this is before the data phase begins. DATAST 4 is the
  * smallest value that NWAIT permits (docs/fsmc.md). */
-#ifndef FSMC_SYNC
+#ifdef FSMC_MUXED
+/* FSMC_MUXED: the data pins also carry the low half of the address (parameter MUXED of the bridge).
+ * Type PSRAM, because the FSMC drives the byte lanes only for memories. DATAST 6: NOE falls after
+ * the address phase, and NWAIT follows it within 16 ns. BUSTURN 2: the chip releases the data pins
+ * before the FSMC drives the next address. Streams also use NWAIT. */
+#define BCR_VALUE (BCR_ALWAYS | BCR_MUXEN | BCR_MTYP_PSRAM | BCR_ASYNCWAIT)
+#define BTR_VALUE (BTR_ADDSET(2) | BTR_ADDHLD(2) | BTR_DATAST(6) | BTR_BUSTURN(2))
+#elif !defined(FSMC_SYNC)
 #define BCR_VALUE (BCR_ALWAYS | BCR_ASYNCWAIT)
 #define BTR_VALUE (BTR_ADDSET(2) | BTR_DATAST(4) | BTR_BUSTURN(1))
 #else
@@ -175,7 +182,7 @@ void FSMC_setHclk(U32 hz) {
 }
 
 static void setBank(int fast) {
-#ifdef FSMC_SYNC
+#if defined(FSMC_SYNC) || defined(FSMC_MUXED)
     (void)fast;
 #else
     if (fast) {

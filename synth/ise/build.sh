@@ -8,10 +8,11 @@
 #   soc.edf      from `make synth-edif`
 #   mig-folder   user_design of a MIG core called "mig": its rtl/*.v and par/mig.ucf are used
 #   *.ucf        build/main/gen/core_pins.ucf, and your board's (./icesoc board make NAME)
-#   --xst        XST also synthesises soc, from the folder `verilog` (soc.edf is unused)
+#   --xst        XST also synthesises soc, from the folder `verilog` (soc.edf is unused); needed for
+#                a board with multiplexed address and data
 set -eu
 usage() {
-    sed -n 's/^# \{0,1\}//; 6,11p' "$0"
+    sed -n 's/^# \{0,1\}//; 6,12p' "$0"
     exit "$1"
 }
 part=xc6slx16-2-csg324 whole='' xst_includes=''
@@ -42,6 +43,13 @@ done
         "leave --xst out" >&2
     exit 2
 }
+muxed=''
+! grep -q 'PERIOD "fsmc_nadv"' "$5" || muxed=1
+[ -z "$muxed" ] || [ -n "$whole" ] || {
+    echo "build: $5 belongs to a board with multiplexed address and data: add --xst, because" \
+        "soc.edf contains the bridge for other boards" >&2
+    exit 2
+}
 mkdir -p "$output"
 "$source/../../tools/python" -m icesoc.synth.merge_ucf "$mig/par/mig.ucf" "$source/chip.ucf" \
     "$4" "$5" >"$output/all.ucf"
@@ -53,6 +61,8 @@ for file in "$source/chip.v" "$mig"/rtl/*.v "$mig"/rtl/*/*.v; do
 done
 if [ -n "$whole" ]; then
     xst_includes="-vlgincdir $soc"
+    [ -z "$muxed" ] || xst_includes="$xst_includes
+-define {FSMC_MUXED}"
     for file in "$soc"/*.v; do echo "verilog work \"$file\"" >>chip.prj; done
 fi
 cat >chip.xcf <<XCF

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// modem: measures the simulated time for setting up the modem, with several guard times and several
-// initial baud rates: by the modem controller (from CONFIGURE to CONFIGURED), and by the engine on
-// the ground.
+// modem: measures the simulated time for setting up the modem, with several guard times, several
+// initial baud rates and each kind of modem: by the modem controller (from CONFIGURE to
+// CONFIGURED), and by the engine on the ground.
 
 #include "VModem.h"
 #include "bench.h"
@@ -21,13 +21,14 @@ namespace {
 constexpr uint64_t clkNs = 500;
 
 // Returns how long the controller takes to set up the modem, ms; 0 if the set-up failed.
-double setUpMs(uint32_t guardMs, uint32_t bd) {
+double setUpMs(const char* profile, uint32_t guardMs, uint32_t bd) {
     Bench<VModem> bench;
     BusMaster<VModem> bus(bench);
     NpiMemory<VModem> memory(bench, 0, 1);
     RfChannel air(1);
     UartPins pins;
     XBee::Options options;
+    options.profile = profile;
     options.set = {{"GT", guardMs}, {"BD", bd}};
     XBee modem(pins, air, options);
     bool txd = true;
@@ -57,10 +58,11 @@ double setUpMs(uint32_t guardMs, uint32_t bd) {
 
 // Returns the time in which the ground program sets up the modem over a pty, ms. Simulated time
 // also passes while the program waits.
-double groundSetUpMs(uint32_t guardMs, uint32_t bd) {
+double groundSetUpMs(const char* profile, uint32_t guardMs, uint32_t bd) {
     RfChannel air(1);
     PtyLine pty;
     XBee::Options options;
+    options.profile = profile;
     options.set = {{"GT", guardMs}, {"BD", bd}};
     XBee modem(pty, air, options);
     XBeeAT::Settings settings;
@@ -92,6 +94,7 @@ int main(int argc, char** argv) {
         struct Case {
             const char* name;
             uint32_t guardMs, bd;
+            const char* profile = "s1"; // kind of modem (xbee_profile.h)
         };
         const Case cases[] = {
             {"set-up, modem with factory settings (9600 baud), guard time 1000 ms", 1000, 3},
@@ -99,17 +102,22 @@ int main(int argc, char** argv) {
             {"set-up, modem with factory settings (9600 baud), guard time 20 ms", 20, 3},
             {"set-up, modem already at the target rate, guard time 20 ms", 20, 7},
             {"set-up, modem at 1200 baud (the last rate but one that is tried), guard time 20 ms",
-             20, 0}};
+             20, 0},
+            {"set-up, S2C with factory settings (9600 baud), guard time 1000 ms", 1000, 3, "s2c"},
+            {"set-up, S2C already at the target rate, guard time 1000 ms", 1000, 7, "s2c"},
+            {"set-up, XBee 3 with factory settings (9600 baud), guard time 1000 ms", 1000, 3,
+             "xb3"},
+            {"set-up, XBee 3 already at the target rate, guard time 1000 ms", 1000, 7, "xb3"}};
         struct Side {
             const char* name;
-            double (*measure)(uint32_t, uint32_t);
+            double (*measure)(const char*, uint32_t, uint32_t);
         };
         const Side sides[] = {{"controller", setUpMs}, {"ground", groundSetUpMs}};
         for (const Side& side : sides)
             for (const Case& c : cases) {
                 if (figures.brief && (c.guardMs > 20 || c.bd != 7))
                     continue;
-                double ms = side.measure(c.guardMs, c.bd);
+                double ms = side.measure(c.profile, c.guardMs, c.bd);
                 // The limit is the two guard times that the modem's manual demands; the commands
                 // and the search for the baud rate take additional time.
                 double floor = 2.0 * c.guardMs;

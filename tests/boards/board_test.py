@@ -12,8 +12,10 @@ from pathlib import Path
 
 from icesoc import TREE
 from icesoc.board import check, firmware, make, model, picture, signals, ucf, wiring
+from icesoc.cli import flight
 from icesoc.cli.commands.board import PAGES, documents
 from icesoc.regs.model import Wrong
+from icesoc.util.errors import Stop
 
 KIT = model.find("nucleo-qmtech")
 MUXED = model.find("nucleo-qmtech-muxed")
@@ -72,6 +74,29 @@ class Boards(unittest.TestCase):
         for net in KIT.nets:
             if net.get("fpga"):
                 self.assertEqual(dict(places)[net.signal.port], net.get("fpga"))
+
+    def test_only_a_multiplexed_board_needs_a_separate_build(self):
+        with tempfile.TemporaryDirectory() as folder:
+            make.write(make.for_build(MUXED), folder)
+            self.assertEqual(flight.kit(folder), "nucleo-qmtech-muxed")
+            self.assertEqual(flight.kit(folder, "my/board.toml"), "my/board.toml")
+            self.assertIn("#define BOARD_MUXED 1\n", (Path(folder) / "board_pins.h").read_text())
+            make.write(make.for_build(KIT), folder)
+            self.assertEqual(flight.kit(folder, "my/board.toml"), "")
+            self.assertIn("#define BOARD_MUXED 0\n", (Path(folder) / "board_pins.h").read_text())
+        self.assertEqual(flight.kit(""), "")
+        with self.assertRaises(Stop):
+            flight.kit("no/such/folder")
+
+    def test_the_build_learns_how_address_and_data_are_connected(self):
+        for board, expected in ((KIT, "separate"), (MUXED, "multiplexed")):
+            said = subprocess.run([sys.executable, "-m", "icesoc.board.make", board.path],
+                                  check=True, text=True, stdout=subprocess.PIPE).stdout
+            self.assertEqual(said, expected + "\n")
+
+    def test_only_a_multiplexed_board_constrains_the_edge_of_nadv(self):
+        self.assertIn('PERIOD "fsmc_nadv"', ucf.constraints(MUXED))
+        self.assertNotIn('"fsmc_nadv"', ucf.constraints(KIT))
 
     def test_the_firmwares_table_switches_each_fsmc_pin_and_keeps_the_debugger(self):
         ports = firmware.ports(MUXED)

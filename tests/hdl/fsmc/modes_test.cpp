@@ -6,7 +6,10 @@
 #include "VFsmcBridge.h"
 #include "VFsmcBridgeMuxed.h"
 #include "VFsmcBridgeWaitHigh.h"
+#include "costs.h"
+#include "pin_delays.h"
 #include "traffic.h"
+#include <vector>
 
 using namespace fsmc;
 
@@ -32,7 +35,11 @@ const Mode plainModes[] = {
     {"D", {FSMC_MODE_D, FSMC_MODE_D, 0, 0, 1, 0, 1, {2, 2, 4}, {2, 2, 4}}},
     {"read A, write D", {FSMC_MODE_A, FSMC_MODE_D, 0, 0, 1, 0, 1, {2, 1, 4}, {1, 3, 4}}},
 };
+// The driver's settings (BTR_VALUE in sw/fsmc/fsmc.c) without and with a multiplexed address.
+constexpr FSMC_Bank driverBank = {FSMC_MODE_1, {}, 0, 0, 1, 0, 1, {2, 1, 4}, {}};
+constexpr FSMC_Bank muxedBank = {FSMC_MODE_1, {}, 1, 1, 1, 0, 2, {2, 2, 6}, {}};
 const Mode muxedModes[] = {
+    {"muxed, driver", muxedBank},
     {"muxed NOR", {FSMC_MODE_2, {}, 0, 1, 1, 0, 1, {2, 2, 4}, {}}},
     {"muxed PSRAM", {FSMC_MODE_1, {}, 1, 1, 1, 0, 2, {1, 1, 5}, {}}},
     {"muxed, extended", {FSMC_MODE_D, FSMC_MODE_D, 0, 1, 1, 0, 1, {3, 1, 4}, {1, 1, 4}}},
@@ -64,6 +71,51 @@ TEST(Modes, MultiplexedAddressAndData) {
     for (const Mode& mode : muxedModes)
         for (auto [hclk, clk] : {std::pair(120, 100), {1000, 997}, {60, 100}})
             trafficIn<VFsmcBridgeMuxed>(mode, hclk, clk);
+}
+
+// Pins with the delays and the skew of the STM32, the board and the FPGA, in each corner.
+TEST(Modes, MultiplexedAddressAndDataWithLatePins) {
+    for (unsigned corner = 0; corner < std::size(fsmcCorners); ++corner)
+        for (const bool looksTwice : {false, true}) {
+            const FsmcCorner delays = cornerOf(corner, 120);
+            SCOPED_TRACE(std::string(delays.name) + ", SEED=" + std::to_string(testSeed()));
+            BridgeBench<VFsmcBridgeMuxed> b(testSeed(), 0.5, 120, 100);
+            b.keepEvents();
+            b.delay(delays, testSeed() + corner, looksTwice);
+            b.master.pauseWrites(looksTwice);
+            ASSERT_EQ(b.init(muxedBank), FSMC_OK);
+            traffic(b, testSeed(), 400);
+            EXPECT_EQ(b.slave.words[b.slave.clearWord], 0u) << "no access was late";
+            if (HasFailure())
+                return;
+        }
+}
+
+// The cost in time of a multiplexed address, at 120 MHz, with the driver's settings. Blocks: with
+// a multiplexed address, they are copied with NWAIT; otherwise they are streamed without it.
+TEST(MuxedCost, AnAccessTakesAtMostFiveHclkMore) {
+    const auto plain = costs<VFsmcBridge>(driverBank);
+    const auto muxed = costs<VFsmcBridgeMuxed>(muxedBank);
+    showCosts("multiplexed", plain, muxed);
+    for (unsigned i = 0; i < 4; ++i) {
+        const unsigned accesses = i < 2 ? 1 : 2; // a register word takes two accesses
+        EXPECT_LE(muxed[i], plain[i] + 5 * accesses) << costNames[i];
+    }
+    BridgeBench<VFsmcBridge> b(testSeed(), 0, 120, 100);
+    b.keepEvents();
+    ASSERT_EQ(b.init(), FSMC_OK);
+    FSMC_setHclk(120'000'000);
+    std::vector<U16> data(2048);
+    const char* const names[] = {"write_block", "read_block"};
+    for (unsigned i = 0; i < 2; ++i) {
+        const uint64_t start = b.master.hclks();
+        const U32 repeated =
+            i ? FSMC_streamRead(0, data.data(), 2048) : FSMC_streamWrite(0, data.data(), 2048);
+        EXPECT_EQ(repeated, 0u);
+        const double streamed = static_cast<double>(b.master.hclks() - start) / 2048;
+        std::printf("%s: %.1f HCLK, multiplexed %.1f\n", names[i], streamed, muxed[i]);
+        EXPECT_LT(streamed, muxed[i]);
+    }
 }
 
 TEST(Modes, NwaitActiveHighAndTheLargestBuffers) {

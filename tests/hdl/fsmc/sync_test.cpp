@@ -7,8 +7,8 @@
 #include "VFsmcSyncBridge.h"
 #include "VFsmcSyncBridgeMuxed.h"
 #include "any_bridge.h"
+#include "costs.h"
 #include "pin_delays.h"
-#include <cstdio>
 
 namespace {
 
@@ -144,36 +144,15 @@ TEST_F(SyncBridge, AProcessorThatIgnoresNwaitIsReported) {
     EXPECT_EQ(fsmc_.read16(ddr + 0x200), 0x1357);
 }
 
-// Returns the number of HCLK cycles for each of four accesses: writing a halfword, reading the next
-// halfword of a sequence, writing a word of a register, reading a word of a register.
-template <class Bridge> std::array<double, 4> costs(const FSMC_Bank& bank) {
-    BridgeBench<Bridge> b(testSeed(), 0, 120, 100);
-    EXPECT_EQ(b.init(bank), FSMC_OK);
-    constexpr unsigned count = 2000;
-    auto cost = [&](auto&& access) {
-        const uint64_t start = b.master.hclks();
-        for (unsigned i = 0; i < count; ++i)
-            access(i);
-        return static_cast<double>(b.master.hclks() - start) / count;
-    };
-    return {cost([&](unsigned i) { b.master.write16(ddr + 2 * i, 1); }),
-            cost([&](unsigned i) { b.master.read16(ddr + 2 * i); }),
-            cost([&](unsigned i) { b.master.write32(control + 4 * (64 + i % 900), i); }),
-            cost([&](unsigned i) { b.master.read32(control + 4 * (64 + i % 900)); })};
-}
-
 // The cost in time of the synchronous bridge, at 120 MHz, with the settings of the driver.
 TEST(SyncCost, AnAccessTakesLessThanThreeTimesAsLong) {
     constexpr FSMC_Timing driver = {2, 1, 4}, sync = {6, 1, 5};
     const auto plain = costs<VFsmcBridge>({FSMC_MODE_1, {}, 0, 0, 1, 0, 1, driver, {}});
     const auto slower =
         costs<VFsmcSyncBridge>({FSMC_MODE_A, FSMC_MODE_A, 0, 0, 1, 0, 1, sync, sync});
-    const char* const names[] = {"write_memory", "read_memory", "write_register", "read_register"};
-    for (unsigned i = 0; i < 4; ++i) {
-        RecordProperty(names[i], std::to_string(plain[i]) + " " + std::to_string(slower[i]));
-        std::printf("%s: %.1f HCLK, synchronous bridge %.1f\n", names[i], plain[i], slower[i]);
-        EXPECT_LT(slower[i], 3 * plain[i]) << names[i];
-    }
+    showCosts("synchronous bridge", plain, slower);
+    for (unsigned i = 0; i < 4; ++i)
+        EXPECT_LT(slower[i], 3 * plain[i]) << costNames[i];
 }
 
 // Pins with the delays and the skew of the STM32, the board and the FPGA, in each corner.

@@ -34,6 +34,8 @@ std::string swapped(const std::string& text, const std::string& a, const std::st
 
 struct Board {
     std::string wires = textOf("board.wires"), ucf = textOf("board.ucf");
+    // Returns whether the data lines also carry the low half of the address.
+    bool isMuxed() const { return wires.find("\nmuxed 1\n") != std::string::npos; }
 };
 
 // Flies on a board with faults until a call has been answered, the firmware has stopped trying, or
@@ -84,7 +86,7 @@ TEST(BoardWires, AreStraightWhenTheFirmwaresTableHasSwitchedThePins) {
     EXPECT_EQ(wires.oscillatorHz(), 8'000'000u);
     EXPECT_TRUE(wires.areOthersStraight());
     EXPECT_EQ(wires.modem(), "xb3");
-    EXPECT_FALSE(wires.isMuxed());
+    EXPECT_EQ(wires.isMuxed(), kit.isMuxed());
 }
 
 TEST(BoardWires, ASwappedPairExchangesItsLevels) {
@@ -128,7 +130,12 @@ const WrongBoard wrongBoards[] = {
     {"TwoDataWiresInEachOthersPlaces",
      [](Board& board) { board.wires = swapped(board.wires, " E12 ", " E13 "); }},
     {"TwoAddressPlacesSwappedInTheConstraints", // swaps the locations of A0 and A1
-     [](Board& board) { board.ucf = swapped(board.ucf, "\"K15\"", "\"K16\""); }},
+     [](Board& board) {
+         if (board.isMuxed()) // A0 and A1 are on the data lines D0 and D1
+             board.ucf = swapped(board.ucf, "\"E12\"", "\"E13\"");
+         else
+             board.ucf = swapped(board.ucf, "\"K15\"", "\"K16\"");
+     }},
     {"ASignalOnAnotherAlternateFunction",
      [](Board& board) { board.wires = with(board.wires, "PD4 12 FSMC_NOE", "PD4 11 FSMC_NOE"); }},
     {"ABankWithoutSupply",
@@ -179,12 +186,23 @@ const FaultyBoard faultyBoards[] = {{"D3:open", false},
                                     {"MODEM_RXD-MODEM_TXD:swapped", false},
                                     {"MODEM:none", false},
                                     {"IRQ:pull0", true},
+                                    {"NADV:open", true},
                                     {"CLK:off=2%", true}};
 
 class FaultFlights : public testing::TestWithParam<FaultyBoard> {};
 INSTANTIATE_TEST_SUITE_P(With, FaultFlights, testing::ValuesIn(faultyBoards), [](const auto& each) {
     return std::regex_replace(std::string(each.param.fault), std::regex("[^A-Za-z0-9]+"), "_");
 });
+
+// Returns whether a call is answered on the kit's board, in spite of the fault. On a multiplexed
+// board, the flight needs NADV, and only address lines that carry zeros in this flight can be
+// shifted. On the other board, NADV has no wire.
+bool isExpectedToAnswer(const FaultyBoard& board) {
+    const std::string fault = board.fault;
+    if (!Board().isMuxed())
+        return board.answers;
+    return fault != "NADV:open" && (fault == "A:shifted" || board.answers);
+}
 
 // Tests that each flight ends as expected. If an access waits for ever, an error ends the flight.
 TEST_P(FaultFlights, EndAsTheFaultMakesThem) {
@@ -195,7 +213,7 @@ TEST_P(FaultFlights, EndAsTheFaultMakesThem) {
         EXPECT_NE(std::string(e.what()).find("NWAIT has been active for"), std::string::npos)
             << e.what();
     }
-    EXPECT_EQ(isAnswered, GetParam().answers);
+    EXPECT_EQ(isAnswered, isExpectedToAnswer(GetParam()));
 }
 
 // Flies the mission with the kit's pins and each modem: the controller sets the modem up by AT

@@ -98,7 +98,7 @@ TEST(Bringup, NamesEachPairOfNeighboursThatIsSwapped) {
 
 TEST(Bringup, NamesPairsThatAreNoNeighbours) {
     for (const std::string pair :
-         {"NWAIT-IRQ", "NE1-NWE", "NOE-NWE", "D0-IRQ", "A0-NWAIT", "NE2-NBL0"})
+         {"NWAIT-IRQ", "NE1-NWE", "NOE-NWE", "D0-IRQ", "A16-NWAIT", "NE2-NBL0"})
         expectNamed(wires, pair + ":swapped", pair + " swapped");
     for (const std::string pair : {"NWAIT-IRQ", "D15-A24", "D0-NWAIT", "NE1-NBL0"})
         expectNamed(wires, pair + ":short", pair + " short");
@@ -141,7 +141,7 @@ TEST(Bringup, NamesAnotherMemoryOnTheBus) {
 }
 
 TEST(Bringup, NamesAddressLinesThatAreShifted) {
-    expectNamed(all, "A:shifted", "A0-A24 shifted");
+    expectNamed(all, "A:shifted", BOARD_MUXED ? "A16-A24 shifted" : "A0-A24 shifted");
 }
 
 TEST(Bringup, NamesABankWithoutSupply) {
@@ -233,6 +233,10 @@ TEST(Bringup, NamesALateStrobe) {
     expectNamedWithChip(bus, "NWE:late=12ns", "NWE late");
     for (const std::string line : {"NOE", "NE1", "NE2", "NWAIT"})
         expectNamedWithChip(memory | timing, line + ":late=20ns", line + " late");
+#if BOARD_MUXED
+    for (const std::string late : {"20", "40"})
+        expectNamedWithChip(memory | timing, "NADV:late=" + late + "ns", "NADV late");
+#endif
 }
 
 // Tests only some of the data and address lines, because each test of a board with the chip takes

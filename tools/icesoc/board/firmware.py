@@ -59,6 +59,8 @@ def header(board: Board):
         f"#define BOARD_HSE_HZ {mcu['hse_hz']}UL",
         f"#define BOARD_HSE_ON {START[mcu.get('hse', 'crystal')]}",
         f"#define BOARD_FPGA_HZ {board.facts['fpga']['clock_hz']}UL",
+        "/* 1 if the data pins also carry address bits 15..0, otherwise 0. */",
+        f"#define BOARD_MUXED {int(board.muxed)}",
         "",
         "/* Ports (0: A) and pins of the FPGA's interrupt, and of the jumper of Board_isWired. */"]
     for name, macro in (("IRQ", "IRQ"), ("JUMPER_WIRED", "WIRED")):

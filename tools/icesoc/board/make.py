@@ -2,7 +2,8 @@
 """make: writes the generated files of a board into a folder.
 
 CMake: python -m icesoc.board.make BOARD.toml FOLDER writes board_pins.h, board.ucf, board.wires
-and board_wires.inc. `./icesoc board make NAME` writes all files."""
+and board_wires.inc. Without FOLDER, it prints how the board connects the FSMC: `multiplexed` or
+`separate` address and data. `./icesoc board make NAME` writes all files."""
 import sys
 from pathlib import Path
 
@@ -41,6 +42,9 @@ def write(files, folder):
 def main():
     try:
         board = model.read(sys.argv[1])
+        if len(sys.argv) == 2:
+            print("multiplexed" if board.muxed else "separate")
+            return
         write(for_build(board), sys.argv[2])
     except Wrong as e:
         sys.exit(str(e))

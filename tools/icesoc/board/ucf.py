@@ -7,6 +7,17 @@ I/O standards."""
 from icesoc.board.check import multiplier
 from icesoc.board.model import Board
 
+# With a multiplexed address, NADV's rising edge stores the address, which the data pins carry from
+# 8 ns before this edge to 14 ns after it (HCLK 120 MHz, ADDSET 2, ADDHLD 2, and the delays in
+# testbench/fsmc/pin_delays.h). The groups soc_clk and fsmc_nwe are those of synth/ise/chip.ucf.
+MUXED = """
+# The address on the data pins, stored when NADV rises.
+NET "fsmc_nadv_n_i" TNM_NET = "fsmc_nadv";
+TIMESPEC "TS_fsmc_nadv" = PERIOD "fsmc_nadv" 33 ns HIGH 50%;
+TIMEGRP "fsmc_stored" = PADS("fsmc_d_io<*>" : "fsmc_ne_n_i<*>");
+TIMEGRP "fsmc_stored" OFFSET = IN 8 ns VALID 22 ns BEFORE "fsmc_nadv_n_i" RISING;
+TIMESPEC "TS_nadv_to_clk" = FROM "fsmc_nadv" TO "soc_clk" 10 ns DATAPATHONLY;
+TIMESPEC "TS_nadv_to_nwe" = FROM "fsmc_nadv" TO "fsmc_nwe" 10 ns DATAPATHONLY;"""
 PULLS = {"up": "PULLUP", "down": "PULLDOWN"}
 
 
@@ -36,6 +47,8 @@ def constraints(board: Board):
                   'NET "sys_clk_i" TNM_NET = "sys_clk";',
                   f'TIMESPEC "TS_sys_clk" = PERIOD "sys_clk" {1e9 / fpga["clock_hz"]:g} ns '
                   'HIGH 50%;']
+    if board.muxed:
+        lines.append(MUXED)
     bank = None
     known = board.parts["fpga"]
     placed = [net for net in board.nets if net.get("fpga") and net.signal.port]

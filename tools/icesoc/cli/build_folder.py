@@ -14,6 +14,7 @@ from icesoc.util.lock import lock
 from icesoc.util.ninja import run_ninja
 from icesoc.util.process import output, run, tool
 
+DEFAULT_BOARD = "nucleo-qmtech"
 ROOMS_OF_PROGRAMS = "bus;slice;sw;hdl;ip;testbench;tests"
 
 
@@ -137,6 +138,21 @@ class BuildFolder:
         if other.cached("CORES"):
             variables["CORES"] = other.cached("CORES")
         self.set(**variables)
+
+    def for_board(self, name):
+        """Returns the build folder with the simulator and the firmware of a board: the name of a
+        folder of boards/, or a file board.toml. It is this folder if it was configured for the
+        board; otherwise it is another folder with the same chip."""
+        path = Path(name)
+        if name == (self.cached("BOARD") or DEFAULT_BOARD):
+            return self
+        is_file = path.suffix == ".toml"
+        other = BuildFolder(f"build/board_{path.absolute().parent.name if is_file else name}", self)
+        other.built = False
+        other.configure(f"-DBOARD={path.absolute() if is_file else name}",
+                        f"-DROOMS={ROOMS_OF_PROGRAMS}")
+        other.follow(self, CLK_HZ=self.cached("CLK_HZ") or "100000000")
+        return other
 
     def alone(self):
         """Locks the folder, because two commands that configure or build it would disturb each

@@ -226,6 +226,7 @@ def take_board(values):
     wires into OUT/board."""
     if (values.board or values.fault) and "cpu" not in values.given:
         values.cpu = "m3"
+    values.described = values.board if values.board.endswith(".toml") else ""
     if not values.board or (Path(values.board) / "board.wires").is_file():
         return
     try:
@@ -235,6 +236,18 @@ def take_board(values):
         raise Stop(f"--board: {reason_of(error)}", 2) from None
     if board.modem and "modem" not in values.given:
         values.modem = board.modem
+
+
+def kit(folder, described=""):
+    """Returns the board for which the simulator and the firmware must be built: the name or the
+    file of a multiplexed board, because its bridge and its firmware differ. Returns an empty text
+    for other boards. `folder` is made by board make, `described` is the board's file if known."""
+    try:
+        text = (Path(folder) / "board.wires").read_text() if folder else ""
+    except OSError as error:
+        raise Stop(f"--board: cannot read {folder}/board.wires: {error.strerror}", 2) from None
+    found = re.match(r"# Wires of ([^:]+):", text) if "\nmuxed 1\n" in text else None
+    return described or found[1] if found else ""
 
 
 def check_chip(values, build):

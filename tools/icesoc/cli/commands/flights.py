@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """flights: commands that fly the mission, repeat and debug a flight, send new firmware, make keys,
 and fly for hours."""
+import json
 import os
 import re
 import resource
@@ -61,6 +62,10 @@ def fly_mission(values):
         raise Stop("NETLIST=1 and BRIDGE=sync: expected at most one of the two, because netlists "
                    "are only made of the chip with the other bridge", 2)
     flight.complete(values)
+    board = flight.kit(values.board, values.described)
+    if board and (values.netlist or values.bridge == "sync"):
+        raise Stop(f"--board {board}: expected a board without multiplexed address and data, because"
+                   " --netlist and --bridge sync fly only with such a board", 2)
     flight.check_chip(values, BuildFolder(values.build, values))
     build = BuildFolder(values.build, values).prepare()
     if values.netlist:
@@ -74,6 +79,7 @@ def fly_mission(values):
         build.set(CLK_HZ=str(values.clk_hz))
     build.ninja("mission", *(["firmware_minimal"] if values.app == "minimal" else []),
                 *(["gateway", "slice2c", "page_ice"] if values.live or opens(values) else []))
+    values.chip = with_board(build, board, *["firmware_minimal"] * (values.app == "minimal"))
     flight.take_key(values, build)
     flight.take_observers_key(values)
     busy = (f"another flight is in progress in {values.out}; give this flight a separate folder: "
@@ -84,19 +90,30 @@ def fly_mission(values):
         return fly(values, build, held)
 
 
-def simulator(values, build, held, options, ground):
+def with_board(build, board, *firmware):
+    """Returns the build folder that contains the simulator and the firmware of a board, after
+    building them; an empty name stands for the board of `build`."""
+    if not board:
+        return build
+    say(f"building the simulator and the firmware of the board {board} ...")
+    chip = build.for_board(board)
+    chip.ninja("icesoc-sim", "firmware_uav", "firmware_loader", *firmware)
+    return chip
+
+
+def simulator(values, held, options, ground):
     """Starts the simulator, which starts the program of the ground station as its child. In the
     command of this program, the simulator replaces words such as {out}."""
-    flight.write(values, build)
-    return start([build / "testbench/sim/icesoc-sim", "--flight", Path(values.out) / "flight.json",
-                  *options, "--", "/usr/bin/python3", *ground], pass_fds=[held],
-                 env={"PROBE": values.probe})
+    flight.write(values, values.chip)
+    return start([values.chip / "testbench/sim/icesoc-sim", "--flight",
+                  Path(values.out) / "flight.json", *options, "--", "/usr/bin/python3", *ground],
+                 pass_fds=[held], env={"PROBE": values.probe})
 
 
 def minimal(values, build, held):
     """Flies the minimal program of Table II with its ground program."""
     return wait(
-        simulator(values, build, held, [], [
+        simulator(values, held, [], [
             "sw/minimal/ground.py", "{device}", "--frame", "{frame}", "--reference",
             build / "testbench/sim/vision-reference",
             f"--Ice.Plugin.XBeeAT={build.folder}/ground/xbeeat:createXBeeAT",
@@ -110,7 +127,8 @@ def update(values, build, held):
     keys.rescue(build.folder)
     signing = keys.folder() / "update.key"  # private key, created when it is first needed
     if not (out / "flash.bin").exists():
-        run([pack, "vehicle", build / "firmware/loader.elf", flight.firmware(values, build), 1,
+        chip = values.chip
+        run([pack, "vehicle", chip / "firmware/loader.elf", flight.firmware(values, chip), 1,
              signing, out / "flash.bin"])
     # a test bitstream replaces the golden bitstream, which only ISE could make
     if not (out / "fpga.bin").exists():
@@ -120,7 +138,7 @@ def update(values, build, held):
     run([pack, kind, values.update, int(time.time()), signing, out / "new.update"])
     values.cpu = "m3"
     return wait(
-        simulator(values, build, held,
+        simulator(values, held,
                   ["--flash", out / "flash.bin", "--fpga-flash", out / "fpga.bin"], [
                       "sw/ground/clients/update.py", "{out}/new.update", "--device", "{device}",
                       "--status", "{status}", "--plugin", build / "ground", "--slice",
@@ -153,7 +171,7 @@ def mission(values, build, held):
         raise Stop(status=trial)
     if trial:
         warn(f"the page's trial was ended by signal {trial - 128}; the mission continues")
-    sim = simulator(values, build, held, [], [
+    sim = simulator(values, held, [], [
         "sw/ground/clients/mission.py", "{out}/flight.json", "--device", "{device}", "--frame",
         "{frame}", "--status", "{status}", "--plugin", build / "ground", "--slice",
         "sw/vehicle/Autopilot.ice", "--reference", build / "testbench/sim/vision-reference",
@@ -239,17 +257,21 @@ def replay(values):
                    "seconds, such as FROM=1.5 TO=1.6", 2)
     build = BuildFolder(values.build, values).prepare()
     with open(Path(values.replay) / "flight.jsonl") as recorded:
-        hz = re.search(r'"clkHz": *(\d+)', recorded.readline())
+        head = recorded.readline()
+    hz = re.search(r'"clkHz": *(\d+)', head)
+    folder = re.search(r'"board": *("[^"]*")', head)
     if hz and not build.built:
         build.set(CLK_HZ=hz[1])
     build.ninja("mission")
+    chip = with_board(build, flight.kit(json.loads(folder[1])) if folder else "")
     words = ["--replay", values.replay, "--out", values.out]
     if not span:
-        return run([build / "testbench/sim/icesoc-sim", *words], check=False)
+        return run([chip / "testbench/sim/icesoc-sim", *words], check=False)
     say("building the simulator that writes waveforms (build/trace) ...")
     trace = BuildFolder("build/trace", values)
     trace.configure("-DTRACE=ON")
-    trace.follow(build, CLK_HZ=build.cached("CLK_HZ"), BRIDGE=build.cached("BRIDGE") or "async")
+    trace.follow(build, CLK_HZ=build.cached("CLK_HZ"), BOARD=chip.cached("BOARD"),
+                 BRIDGE=build.cached("BRIDGE") or "async")
     trace.ninja("icesoc-sim")
     Path(values.out).mkdir(parents=True, exist_ok=True)
     wave = Path(values.out) / "wave.fst"

@@ -100,6 +100,8 @@ WRONG = {
         "net MODEM_CTS: the input has no driver: expected 'modem', or 'pull' for a fixed level"]),
     "a strobe that only a pull holds": (net("NOE", mcu=None, pull="up"), [
         "net NOE: the input has no driver: a pull holds it for ever"]),
+    "a multiplexed board whose NADV only a pull holds": (put("fsmc", "muxed", True), [
+        "net NADV: the input has no driver: a pull holds it for ever"]),
     "5 V on a ball": (net("CORE_I0", level=5.0), [
         "net CORE_I0: 5 V on C9, which takes 3.6 V at most; use a level shifter or a divider"]),
     "a modem at 5 V": (put("", "supplies", [{"name": "5V", "volts": 5.0, "source": "CN11",

@@ -35,12 +35,12 @@ def complete(board: Board):
         if re.fullmatch(r"A\d+", name) and name in seen and int(name[1:]) >= board.address_lines:
             yield f"net {name}: expected no net with fsmc.address_lines = {board.address_lines}"
     for net in board.nets:
-        yield from ends(net)
+        yield from ends(net, board.muxed)
 
 
-def ends(net: Net):
+def ends(net: Net, muxed):
     """Finds ends that a signal needs but its net lacks, and ends of a net that its signal does not
-    have."""
+    have. `muxed`: the board's data lines also carry the address."""
     signal = net.signal
     has = {end for end in ("mcu", "fpga", "modem", "to") if net.get(end)}
     if signal.port and "fpga" not in has:
@@ -61,7 +61,8 @@ def ends(net: Net):
     if driver not in has and not net.get("pull"):
         yield (f"{who(net)}: the input has no driver: expected '{driver}', or 'pull' for a fixed "
                "level")
-    if net.get("pull") and net.name in ("NWE", "NOE", "NE1", "NE2", "D0") and driver not in has:
+    moving = ["NWE", "NOE", "NE1", "NE2", "D0", *["NADV"] * muxed]
+    if net.get("pull") and net.name in moving and driver not in has:
         yield f"{who(net)}: the input has no driver: a pull holds it for ever"
 
 

@@ -64,8 +64,8 @@ def fly_mission(values):
     flight.complete(values)
     board = flight.kit(values.board, values.described)
     if board and (values.netlist or values.bridge == "sync"):
-        raise Stop(f"--board {board}: expected a board without multiplexed address and data, because"
-                   " --netlist and --bridge sync fly only with such a board", 2)
+        raise Stop(f"--board {board}: expected a board without multiplexed address and data, "
+                   "because --netlist and --bridge sync fly only with such a board", 2)
     flight.check_chip(values, BuildFolder(values.build, values))
     build = BuildFolder(values.build, values).prepare()
     if values.netlist:

@@ -48,9 +48,9 @@ def board_bringup(values):
     """test a new board: name each bad wire, and write a report
 
     Loads the self-test into the microcontroller's RAM by OpenOCD, listens to the console, and
-    writes OUT/bringup.html and OUT/bringup.json. Run it twice: first with the bitstream of
-    synth/ise/lines.v in the FPGA, which tests the wires, then with the chip's bitstream.
-    Then run it with --cable, to load the firmware and to call it over a serial cable. With
+    writes OUT/bringup.html and OUT/bringup.json. Run this command twice: first with the bitstream
+    of synth/ise/lines.v in the FPGA, which tests the wires, then with the chip's bitstream. Then
+    run the command with --cable, to load the firmware and to call it over a serial cable. With
     --simulated, all of this runs on a model of the board."""
     board = read(values.name)
     folder = Path(values.out or f"build/board/{board.name}")

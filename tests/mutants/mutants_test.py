@@ -6,6 +6,7 @@ Usage: mutants_test.py run|drawn work-folder verilators-runtime.a
 """
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -168,6 +169,11 @@ class Cases(Script):
         self.ask(TREE / "tools/icesoc/mutants/model.py", "--cc", "-Wall", "--top-module", "pair",
                  "--prefix", "Vpair", "--Mdir", "model", pair,
                  env={**os.environ, "DRAWN": str(self.work / "missed.json")})
+        # later steps of a build read the Verilog files of the model again
+        sources = re.findall(r"\S+[.]v\b", Path("model/Vpair__ver.d").read_text())
+        self.assertTrue(sources)
+        for source in sources:
+            self.assertTrue(Path(source).exists(), source)
         root = subprocess.check_output(["verilator", "--getenv", "VERILATOR_ROOT"], text=True)
         include = f"{root.strip()}/include"
         self.ask("c++", "-Imodel", f"-I{include}", f"-I{include}/vltstd", "main.cpp",

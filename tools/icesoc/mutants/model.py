@@ -9,7 +9,7 @@ source line, and position among the cells with the same kind and line. If the mu
 exist there, the last bit is used. The environment variable DRAWN names the list that drawn.py
 writes.
 """
-import collections, json, os, pathlib, re, subprocess, sys, tempfile
+import collections, json, os, pathlib, re, shutil, subprocess, sys, tempfile
 
 NUMBER = """module mutant_number(output reg [15:0] number);
     initial number = $c("(std::getenv(\\"MUTANT\\") ? std::atoi(std::getenv(\\"MUTANT\\")) : 0)");
@@ -123,9 +123,12 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             if file := mutated(arguments, folder):
                 kept = [a for a in arguments if not re.match(r"-G|.*\.v$|-Wall$", a)]
+                given = dict(zip(arguments, arguments[1:]))
+                # the build reads the model's file again (cmake/files.cmake)
+                os.makedirs(given["--Mdir"], exist_ok=True)
+                file = shutil.copy(file, given["--Mdir"])
                 status = subprocess.call(["verilator", *kept, "-Wno-fatal", "-Wno-lint",
                                           "-Wno-style", file])
-                given = dict(zip(arguments, arguments[1:]))
                 makefile = pathlib.Path(given["--Mdir"], given["--prefix"] + ".mk")
                 # -O1, because the model is compiled once and runs only for seconds
                 makefile.write_text("override OPT_FAST = -O1\n" + makefile.read_text())

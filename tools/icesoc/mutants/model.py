@@ -79,7 +79,7 @@ def yosys(folder, script):
 
 def mutated(arguments, folder):
     """Writes a file with a model's modules, including all their mutants. Returns the path of the
-    file, or None if the modules have no mutants."""
+    file, or None if the modules have no mutants, or if Yosys cannot read them."""
     def of(flag):
         return [a.removeprefix(flag) for a in arguments if a.startswith(flag)]
 
@@ -87,8 +87,13 @@ def mutated(arguments, folder):
     sources = [a for a in arguments if a.endswith(".v")]
     folders = "".join(f" -libdir {arguments[i + 1]}" for i, a in enumerate(arguments) if a == "-y")
     parameters = "".join(f"chparam -set {p.replace('=', ' ')} {top}\n" for p in of("-G"))
-    yosys(folder, READ.format(includes=" ".join(f"-I{d}" for d in of("-I")), top=top, folder=folder,
-                              sources=" ".join(sources), parameters=parameters, folders=folders))
+    try:
+        yosys(folder, READ.format(includes=" ".join(f"-I{d}" for d in of("-I")), top=top,
+                                  folder=folder, sources=" ".join(sources), parameters=parameters,
+                                  folders=folders))
+    except subprocess.CalledProcessError:
+        print(f"mutants: Yosys cannot read {top}: its model has no mutants", file=sys.stderr)
+        return None
     design = cells(f"{folder}/plain.json")
     mutations, has = "", set()
     for number, mutant in enumerate(json.load(open(os.environ["DRAWN"])), 1):

@@ -62,6 +62,25 @@ TEST_P(Profiles, DeassertCTSAtTheirThreshold) {
     EXPECT_EQ(held, GetParam().ctsOff);
 }
 
+// A second packet leaves the buffer, and the given number of bytes remains. CTS is asserted again
+// if the setting FT is larger than this number by the modem's release, but not by less.
+TEST_P(Profiles, AssertCTSAgainBelowTheirThreshold) {
+    if (profile == "s1")
+        GTEST_SKIP() << "series 1 has no FT";
+    constexpr size_t remaining = 50;
+    const uint32_t release = profile == "s2c" ? 17 : 1;
+    for (const bool isAsserted : {true, false}) {
+        const uint32_t ft = remaining + release - !isAsserted;
+        power({{"BD", 0x3D090}, {"FT", ft}});
+        send(std::string(GetParam().packet, 'x'));
+        send(std::string(GetParam().packet + remaining, 'y'));
+        for (int i = 0; a->counters().packetsSent < 2 && i < 10'000; ++i)
+            run(50'000);
+        ASSERT_EQ(a->counters().packetsSent, 2u);
+        EXPECT_EQ(a->cts(), isAsserted) << "FT " << ft;
+    }
+}
+
 TEST_P(Profiles, PutTheirMostIntoAPacket) {
     power();
     send(std::string(GetParam().packet + 10, 'x'), 400 * ms);

@@ -5,7 +5,7 @@
     sizes.py layers SOURCE GENERATED BUILD OUT.json   each layer on a Cortex-M3 at -Os, compared
     with
                                                       the paper's Table II; RAM and largest frames;
-                                                      fails if one exceeds sw/size_budget.json
+                                                      fails if one exceeds tests/limits.toml
     sizes.py firmware MAP OUT.json                    flash and RAM of a firmware by layer; its
                                                       stacks, by the call graph
 
@@ -21,6 +21,7 @@ import re
 import subprocess
 import sys
 import tempfile
+import tomllib
 
 # bytes of the layers in the paper's Table II; 0 for two layers that only this project has
 PAPER = {"fsmc": 1116, "radio": 1795, "crypto": 0, "link": 1307, "icec": 2622, "endpoint": 0}
@@ -86,14 +87,14 @@ def deepest(build, layer):
 
 
 def excess(entries, source):
-    """Yields a sentence for each size that exceeds its limit in sw/size_budget.json."""
-    budget = json.load(open(f"{source}/sw/size_budget.json"))
+    """Yields a sentence for each size that exceeds its limit in tests/limits.toml."""
+    budget = tomllib.loads(pathlib.Path(source, "tests/limits.toml").read_text())["bytes"]
     for name, size in ((entry["name"], entry["value"]) for entry in entries):
         if name not in budget:
-            yield f'size: sw/size_budget.json has no "{name}" (it is {size})'
+            yield f'size: tests/limits.toml has no "{name}" (it is {size})'
         elif size > budget[name]:
             yield (f"size: {name} has grown to {size} bytes, its budget is {budget[name]} "
-                   "(sw/size_budget.json)")
+                   "(tests/limits.toml)")
 
 
 def layers(source, generated, build, output):

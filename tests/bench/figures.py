@@ -31,7 +31,7 @@ TITLES = {
 NOTES = {  # notes that are printed below the titles
     "size": "The limit of each layer is the paper's figure for it (Table II). A build also fails "
             "if a layer\nexceeds its smaller budget in "
-            "[`sw/size_budget.json`](../sw/size_budget.json)."}
+            "[`tests/limits.toml`](../tests/limits.toml)."}
 
 # Patterns for the parts of names that become columns, in tables of two to six columns
 AXES = [r"\d+ vehicles?", r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", r"interferer \d+ %",

@@ -10,7 +10,7 @@ import subprocess
 from pathlib import Path
 from types import SimpleNamespace
 
-from project import BUILD, REGRESS, TREE, Project, edit, main, write
+from project import BUILD, REGRESS, TREE, Project, append, edit, main, write
 from icesoc.regress import blocks
 from icesoc.util import browser
 
@@ -217,7 +217,7 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
         write("hdl/small/counter.v", COUNTER)
         write("main.cpp", STIMULUS)
         write("build/coverage/none", "")
-        write("gates.json", '{"gates": {"hdl/": {"lines": 95, "toggles": 95}}}')
+        write("limits.toml", '[coverage]\n"hdl/" = { lines = 95, toggles = 95 }\n')
         self.ask("verilator", *"--cc --exe --build --coverage --assert -DCOVER_POINTS -O0".split(),
                  *"-Mdir build/small hdl/small/counter.v".split(), self.work / "main.cpp",
                  "-MAKEFLAGS", "OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O0 CXX='ccache g++'")
@@ -225,7 +225,7 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
         def measure(**environment):
             self.ask("build/small/Vcounter", env={**os.environ, **environment})
             done = subprocess.run([TREE / "tools/python", "-m", "icesoc.regress.coverage",
-                                   "gates.json", "build/coverage"], capture_output=True, text=True)
+                                   "limits.toml", "build/coverage"], capture_output=True, text=True)
             measured("coverage", "hdl")
             return done.stdout + done.stderr
 
@@ -243,8 +243,8 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
         measure()
         self.lights(coverage="green   *100.0 % of lines, 100.0 % of toggles, 1 of 1 cover points")
         self.has('"reset_at_two"', file="build/regress/report.html")
-        edit("gates.json", '{"hdl/"', '{"gone.v": {}, "hdl/"')
-        self.assertIn("gates.json: no file belongs to the gate gone.v", measure())
+        append("limits.toml", '"gone.v" = {}\n')
+        self.assertIn("limits.toml: no file belongs to the gate gone.v", measure())
 
     def test_lights_mutants(self):
         results = "small/one\tcaught\ttest_a\t1\nsmall/two\t{}\ttest_a\t1\n"

@@ -2,7 +2,7 @@
 """coverage: compares the coverage of each file with its minimum (gate). Verilator counts points of
 the RTL (lines, branches, toggles, covers), GHDL lines of VHDL, gcov lines of C and C++.
 
-Usage, in the tree: coverage.py GATES.json FOLDER
+Usage, in the tree: coverage.py LIMITS.toml FOLDER
 FOLDER contains rtl.dat, host.info and vhdl.info, each if it exists; summary.json is written there.
 Exit status 1: a file is below its gate.
 """
@@ -12,6 +12,7 @@ import os
 import pathlib
 import re
 import sys
+import tomllib
 
 from icesoc.regress.lights import below_gate
 from icesoc.util.errors import Stop, reason_of
@@ -152,21 +153,22 @@ def report(files, gates, out):
     return below
 
 
-def main(gates, folder):
+def main(path_of_limits, folder):
     root, files = os.path.realpath("."), collections.defaultdict(File)
     try:
-        limits = json.loads(pathlib.Path(gates).read_text())
-        explanations = Explanations(limits.get("explained", []))
+        limits = tomllib.loads(pathlib.Path(path_of_limits).read_text())
+        explanations = Explanations(limits.get("unreachable", []))
+        gates = limits["coverage"]
         for name in ("rtl.dat", "host.info", "vhdl.info"):
             if (path := pathlib.Path(folder, name)).exists():
                 read = read_info if path.suffix == ".info" else read_verilator
                 read(path, root, files, explanations)
         if not files:
             raise Stop("nothing was measured; run the tests with COVERAGE_DIR set to this folder")
-        below = report(files, limits["gates"], f"{folder}/summary.json")
-        below += [f"{gates}: no file belongs to the gate {path}" for path in limits["gates"]
+        below = report(files, gates, f"{folder}/summary.json")
+        below += [f"{path_of_limits}: no file belongs to the gate {path}" for path in gates
                   if not any(name.startswith(path) for name in files)]
-        below += [f"{gates}: explanation without effect: {rule}" for rule in explanations.stale()]
+        below += [f"{path_of_limits}: explanation without effect: {rule}" for rule in explanations.stale()]
     except (OSError, ValueError, KeyError, Stop) as error:
         print(f"coverage: {reason_of(error)}", file=sys.stderr)
         return 2

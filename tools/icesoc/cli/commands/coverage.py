@@ -34,7 +34,7 @@ def coverage(values):
     Builds the RTL models and the C and C++ programs with coverage counters (build/coverage), runs
     all tests except proofs, lints and tests of tools, and merges the counts of Verilator, GHDL and
     gcov. Writes html/index.html and summary.json in build/coverage. Exit status 1: a figure is
-    below its minimum in tests/regress/coverage_gates.json."""
+    below its minimum in tests/limits.toml."""
     build = configured(values, tests=True)
     build.ninja("regress")
     counted = BuildFolder("build/coverage", values)
@@ -42,11 +42,11 @@ def coverage(values):
     counted.follow(build)
     work, regress = counted.folder, build / "tests/regress/regress"
     tree = output([regress, "--tree", "bus hdl ip slice sw testbench tests tools"])
-    gates = Path("tests/regress/coverage_gates.json")
+    limits = Path("tests/limits.toml")
     if values.name:
         run([regress, "--prepare", "--build", work, "--name", values.name])
-        gates = work / "no_gates.json"
-        gates.write_text('{"gates": {"": {"points": 0}}, "explained": []}')
+        limits = work / "no_limits.toml"
+        limits.write_text('coverage."".points = 0\n')
     else:
         counted.ninja()
     points = run_tests(work, values)
@@ -56,7 +56,7 @@ def coverage(values):
          "--output-file", work / "merged.info"])
     run(["genhtml", "--quiet", "--title", "IceSoC", "--output-directory", work / "html",
          work / "merged.info"])
-    status = run([*tool("regress.coverage"), gates, work], check=False)
+    status = run([*tool("regress.coverage"), limits, work], check=False)
     (work / "tree").write_text(tree)
     return status
 

@@ -11,6 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from icesoc.mutants import results
 from script import TREE, Script, edit, fresh, git, main, write
 
 RUN = TREE / "tools/python", "-m", "icesoc.mutants.run"
@@ -87,7 +88,9 @@ class Cases(Script):
         self.bugs(wrong=wrong)
         self.ask(*RUN, "--jobs", "1")
         self.has("^caught *tiny/wrong ")
-        self.has("^tiny/wrong\tcaught\ttest_tiny\t", file="build/mutants/results.tsv")
+        kept = results.read("build/mutants/planted.xml")[1]
+        self.assertEqual([(m.name, m.result, m.test, m.place) for m in kept],
+                         [("tiny/wrong", "caught", "test_tiny", "tiny.c:3")])
 
         # A bug that an interrupted run has left is removed; otherwise the tests would run with it.
         copies = [Path("build/mutants", number) for number in "01"]
@@ -142,13 +145,13 @@ class Cases(Script):
                  "below 95 %: pair$")
         # each mutant of line 4 of the module is equivalent to the module, or the proof detects it
         self.lacks("^SURVIVED .*pair.v:4 ")
-        missed = json.loads(Path("build/mutants/drawn.json").read_text())["survived"]
+        missed = [m for m in results.read("build/mutants/drawn.xml")[1] if m.result == "SURVIVED"]
         self.the_model_carries(missed, pair)
         edit(pair, "assert (same_o == a_i);",
              "assert (same_o == a_i); assert (both_o == (a && b));")
         self.draw()
         self.has(r"^(\d*) of \1 mutants tried", "^pair  *100.0 %")
-        self.has(r'"survived": \[\]', file="build/mutants/drawn.json")
+        self.lacks("SURVIVED", file="build/mutants/drawn.xml")
         drawn = Path("build/mutants/drawn/pair/list").read_text()
         self.draw()
         self.assertEqual(Path("build/mutants/drawn/pair/list").read_text(), drawn)
@@ -164,11 +167,11 @@ class Cases(Script):
         self.has("no proof has a name that begins with nothing")
 
     def the_model_carries(self, missed, pair):
-        write("missed.json", json.dumps(missed))
+        results.write("missed.xml", missed)
         write("main.cpp", TEST)
         self.ask(TREE / "tools/icesoc/mutants/model.py", "--cc", "-Wall", "--top-module", "pair",
                  "--prefix", "Vpair", "--Mdir", "model", pair,
-                 env={**os.environ, "DRAWN": str(self.work / "missed.json")})
+                 env={**os.environ, "DRAWN": str(self.work / "missed.xml")})
         # later steps of a build read the Verilog files of the model again
         sources = re.findall(r"\S+[.]v\b", Path("model/Vpair__ver.d").read_text())
         self.assertTrue(sources)
@@ -188,13 +191,15 @@ class Cases(Script):
         write("copy/build/main/build.ninja", PROGRAMS)
         write("by_tests.py", f"""import pathlib, sys
 from concurrent.futures import ThreadPoolExecutor
-from icesoc.mutants import drawn, run
+from icesoc.mutants import drawn, results, run
 run.TOP, run.prepare = pathlib.Path.cwd(), lambda *_: None
 drawn.TESTS = {{"pair": "test_pair", "bad": "test_bad"}}
-rows = [dict(module=name, result="SURVIVED") for name in ("pair", "pair", "bad")]
+rows = [results.Mutant(name, "SURVIVED", "formal." + name, 1, "", {{"module": name}})
+        for name in ("pair", "pair", "bad")]
 with ThreadPoolExecutor(2) as pool:
     assert drawn.by_tests(rows, run.TOP / "copy", pool) == ["test_bad"]
-assert [row["result"] for row in rows] == ["test_pair", "SURVIVED", "SURVIVED"], rows
+assert [(row.result, row.test) for row in rows] == [
+    ("caught", "test_pair"), ("SURVIVED", "formal.pair"), ("SURVIVED", "formal.bad")], rows
 """)
         self.ask(TREE / "tools/python", "by_tests.py")
         self.has("^said$", "test_bad fails without any mutant, so it caught none")

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 from project import BUILD, REGRESS, TREE, Project, append, edit, main, write
+from icesoc.mutants import results
 from icesoc.regress import blocks
 from icesoc.util import browser
 
@@ -247,19 +248,24 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
         self.assertIn("limits.toml: no file belongs to the gate gone.v", measure())
 
     def test_lights_mutants(self):
-        results = "small/one\tcaught\ttest_a\t1\nsmall/two\t{}\ttest_a\t1\n"
+        def planted(**verdicts):
+            results.write("build/mutants/planted.xml", [
+                results.Mutant(f"small/{name}", verdict, "test_a", 1)
+                for name, verdict in verdicts.items()])
+
         measured("mutants", "hdl")
         for verdict, state in (("caught", "green  2 of 2 caught"),
                                ("SURVIVED", "red   *1 of 2 not caught: small/two"),
                                ("caught", "green")):
-            write("build/mutants/results.tsv", results.format(verdict))
+            planted(one="caught", two=verdict)
             self.lights(mutants=state, tests="green")
         missed = "red   *1 modules with drawn mutants that proofs and tests miss: fifo"
-        for score, state in (87.5, missed), (100, "green"):
-            fifo = {"drawn": 8, "same": 0, "caught": 7, "score": score}
-            write("build/mutants/drawn.json",
-                  json.dumps({"seed": "1", "tree": tree("hdl").strip(), "gate": 95,
-                              "survived": [], "modules": {"fifo": fifo}}))
+        for verdict, state in ("SURVIVED", missed), ("caught", "green"):
+            drawn = [results.Mutant(f"fifo/fifo.{i}", verdict if i == 0 else "caught",
+                                    "formal.fifo", 1, "hdl/fifo.v:3",
+                                    {"module": "fifo", "does": "inv"}) for i in range(8)]
+            results.write("build/mutants/drawn.xml", drawn, seed="1",
+                          tree=tree("hdl").strip())
             self.lights(mutants=state)
         write("hdl/new.v", "\n")  # the sources have changed since they were measured
         self.lights(mutants="grey   sources have changed since it was green")

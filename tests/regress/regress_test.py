@@ -24,6 +24,7 @@ from pathlib import Path
 
 from project import (BREAK, LONGEST, REGRESS, TREE, Project, append, commit, edit, git, main,
                      write)
+from icesoc.mutants import results
 from icesoc.regress import runner, unchanged
 from icesoc.regress.tests import Test
 
@@ -196,10 +197,10 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         yet are not lost."""
         write("slow/CTestTestfile.cmake", "".join(
             f"add_test({number:03}{'x' * 2000} true)\n" for number in range(200)))
-        results = self.work / "slow/junit.xml"
+        kept_file = self.work / "slow/junit.xml"
         run = subprocess.Popen(
             [TREE / "tools/python", "-m", "icesoc.regress.ctest", "--test-dir", "slow",
-             "--output-junit", results], stdout=subprocess.PIPE, text=True)
+             "--output-junit", kept_file], stdout=subprocess.PIPE, text=True)
         run.stdout.readline()
         log, size = Path("slow/Testing/Temporary/LastTest.log.tmp"), -1
         while not log.exists() or log.stat().st_size != size:  # until all pipes are full
@@ -209,7 +210,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.said = run.communicate(timeout=LONGEST)[0]
         self.assertEqual(run.returncode, 143)
         logged = log.read_text().count("Test Passed.")
-        kept = results.read_text().count("<testcase ")
+        kept = kept_file.read_text().count("<testcase ")
         self.assertGreater(logged, 20)
         self.assertLessEqual(logged - kept, 1)  # CTest was killed while it printed one line
         self.has(f"^stopped after {kept} of 200: {kept} passed, 0 failed$")
@@ -491,8 +492,10 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         write("build/coverage/summary.json", json.dumps(
             {"total": 97.1, "toggles": 95.2,
              "files": [{"file": f"hdl/block/some_module_{f}.v", **some} for f in range(600)]}))
-        write("build/mutants/results.tsv", "".join(
-            f"block/some_seeded_bug_{i}\tcaught\ttest_block.Case\t7\n" for i in range(400)))
+        Path("build/mutants").mkdir()
+        results.write("build/mutants/planted.xml", [
+            results.Mutant(f"block/some_seeded_bug_{i}", "caught", "test_block.Case", 7)
+            for i in range(400)])
         self.tests("""
 foreach(i RANGE 1 400)
   add_test(NAME test_with_a_long_name.AndManyCases.Number/${i} COMMAND ${t} a.${i})

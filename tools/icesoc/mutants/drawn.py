@@ -3,16 +3,17 @@
 or its tests to fail (docs/regression.md#drawn-mutants).
 
 The score of a module is the share of mutants that its proofs and tests detect; mutants that are not
-bugs do not count. Writes build/mutants/drawn.json. Exit status 1: the score of a module is too low.
+bugs do not count. Writes build/mutants/drawn.xml (JUnit). Exit status 1: the score of a module is
+too low.
 """
 import argparse, collections, functools, json, os, pathlib, re, shutil, subprocess, sys, time
 from icesoc import TREE
-from icesoc.mutants import model, run
+from icesoc.mutants import model, results, run
+from icesoc.mutants.results import GATE
 from icesoc.util.lock import only_one
 from icesoc.util.tree import tree_state
 from concurrent.futures import ThreadPoolExecutor
 
-GATE = 95  # per cent
 TESTS = {
     "bus_": "test_ip_new_foreign", "npi_|mcb_": "test_ddr_memory",
     "axis_filter": "test_ip_foreign_axis", "modem_api_": "test_modem_api",
@@ -128,7 +129,7 @@ class Proof:
 
 
 def attempt(proof, index, mutant):
-    """Tries one mutant. Returns its row: proof, module, source line, change, result, seconds."""
+    """Tries one mutant, and returns its result."""
     start = time.monotonic()
     folder = proof.work / str(index)
     # The limit is four times the CPU time of the proof without a mutant, because a mutant that only
@@ -149,26 +150,26 @@ def attempt(proof, index, mutant):
     if "wire" in first:
         does += f" ({first['wire']}[{first['wirebit']}])"
     alike, number = model.place(proof.design, first["module"], first["cell"])
-    row = dict(proof=proof.name, module=first["module"], line=line, does=does, result=result,
-               seconds=round(time.monotonic() - start, 1), alike=alike, place=number)
-    row.update({name: first.get(name, "0") for name in ("mode", "port", "portbit", "ctrlbit")})
+    facts = {"module": first["module"], "does": does, "alike": alike, "place": number}
+    facts |= {name: first.get(name, "0") for name in ("mode", "port", "portbit", "ctrlbit")}
     (folder / "mutant").write_text(mutant + "\n")
-    return row
+    return results.Mutant(f"{first['module']}/{proof.name}.{index}", result,
+                          f"formal.{proof.name}", time.monotonic() - start, line, facts)
 
 
 def programs(row):
     return next((names.split() for module, names in TESTS.items()
-                 if re.match(module, row["module"])), [])
+                 if re.match(module, row.more["module"])), [])
 
 
 def by_tests(rows, copy, pool):
-    """Runs the modules' tests on the mutants that the proofs missed, and sets the result of each
-    row. Returns the programs that fail without a mutant."""
+    """Runs the modules' tests on the mutants that the proofs missed. If a test catches a mutant,
+    changes the mutant's result and test. Returns the programs that fail without a mutant."""
     os.chdir(run.TOP)
     run.prepare(copy, f"-DVERILATOR={TREE}/tools/icesoc/mutants/model.py")
-    (copy / "build/drawn.json").write_text(json.dumps(rows))
+    results.write(copy / "build/drawn.xml", rows)
     needed = sorted({name for row in rows for name in programs(row)})
-    environment = {**run.environment(copy), "DRAWN": str(copy / "build/drawn.json")}
+    environment = {**run.environment(copy), "DRAWN": str(copy / "build/drawn.xml")}
     for old in copy.glob("build/main/**/V*__ALL.a"):
         old.unlink()
     with open(copy / "build/log", "w") as log:
@@ -195,10 +196,11 @@ def by_tests(rows, copy, pool):
 
     def caught_by(row, number):
         found = (name for name in programs(row) if name not in bad and fails(name, number))
-        return next(found, "SURVIVED")
+        return next(found, "")
 
-    for row, result in zip(rows, pool.map(caught_by, rows, range(1, len(rows) + 1))):
-        row["result"] = result
+    for row, test in zip(rows, pool.map(caught_by, rows, range(1, len(rows) + 1))):
+        if test:
+            row.result, row.test = "caught", test
     for name in bad:
         path = copy / "build" / f"{name}.0.log"
         print(f"{path.read_text(errors='replace')}mutants: {name} fails without any mutant, so it "
@@ -206,15 +208,15 @@ def by_tests(rows, copy, pool):
     return bad
 
 
-def progress(results, number):
+def progress(tried, number):
     """Returns the results. Prints the progress each time another tenth is done."""
     start, rows = time.monotonic(), []
-    for row in results:
+    for row in tried:
         rows.append(row)
         done = len(rows)
         left = round((time.monotonic() - start) / done * (number - done) / 60)
         if done * 10 // number > (done - 1) * 10 // number:
-            missed = sum(row["result"] == "SURVIVED" for row in rows)
+            missed = sum(row.result == "SURVIVED" for row in rows)
             print(f"{done} of {number} mutants tried, {missed} not detected by a proof, "
                   f"{left // 60}:{left % 60:02} h left", file=sys.stderr, flush=True)
     return rows
@@ -235,24 +237,14 @@ def measure(proofs, options, out):
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
-        missed = [row for row in rows if row["result"] == "SURVIVED" and programs(row)]
+        missed = [row for row in rows if row.result == "SURVIVED" and programs(row)]
         failing = by_tests(missed, run.WORK / "model", pool) if missed else []
     for row in rows:
-        if row["result"] in ("SURVIVED", "BROKEN"):
-            print(f"{row['result']:<9} formal.{row['proof']:<18} {row['line']} {row['does']}",
-                  flush=True)
-    scores = {}
-    for module in sorted({row["module"] for row in rows}):
-        count = collections.Counter(row["result"] for row in rows if row["module"] == module)
-        judged = count.total() - count["same"] - count["BROKEN"]
-        caught = judged - count["SURVIVED"]
-        scores[module] = dict(drawn=count.total(), same=count["same"], judged=judged, caught=caught,
-                              by_tests=caught - count["caught"],
-                              score=round(100 * caught / judged, 1) if judged else 100.0)
+        if row.result in ("SURVIVED", "BROKEN"):
+            print(f"{row.result:<9} {row.test:<25} {row.place} {row.more['does']}", flush=True)
+    scores = results.scores(rows)
     bad = [module for module, score in scores.items() if score["score"] < GATE]
-    survived = [row for row in rows if row["result"] == "SURVIVED"]
-    (out / "drawn.json").write_text(json.dumps(
-        dict(seed=options.seed, tree=tree, gate=GATE, modules=scores, survived=survived)))
+    results.write(out / "drawn.xml", rows, seed=options.seed, tree=tree)
     line = "{score:5.1f} %  {caught:3} caught of {judged:3}, {by_tests} of them by tests, {same} "
     for module, score in scores.items():
         print(f"{module:<22} {line.format(**score)}the same")
@@ -262,7 +254,7 @@ def measure(proofs, options, out):
     print("mutants: {caught} of {judged} drawn with seed {seed} caught, {by_tests} of them by "
           "tests, {same} the same as the module".format(seed=options.seed, **total)
           + (f"; below {GATE} %: {', '.join(bad)}" if bad else ""))
-    broken = sum(row["result"] == "BROKEN" for row in rows)
+    broken = sum(row.result == "BROKEN" for row in rows)
     if broken:
         print(f"mutants: {broken} do not run, see above")
     return bool(bad or failing or broken)

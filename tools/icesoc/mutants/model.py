@@ -6,10 +6,12 @@ the module is unchanged.
 
 A mutant was drawn in the module as the proof reads it. In a model, its cell is found by kind,
 source line, and position among the cells with the same kind and line. If the mutated bit does not
-exist there, the last bit is used. The environment variable DRAWN names the list that drawn.py
-writes.
+exist there, the last bit is used. The environment variable DRAWN names the results that drawn.py
+has written.
 """
 import collections, json, os, pathlib, re, shutil, subprocess, sys, tempfile
+
+from icesoc.mutants import results
 
 NUMBER = """module mutant_number(output reg [15:0] number);
     initial number = $c("(std::getenv(\\"MUTANT\\") ? std::atoi(std::getenv(\\"MUTANT\\")) : 0)");
@@ -96,12 +98,13 @@ def mutated(arguments, folder):
         return None
     design = cells(f"{folder}/plain.json")
     mutations, has = "", set()
-    for number, mutant in enumerate(json.load(open(os.environ["DRAWN"])), 1):
+    for number, drawn in enumerate(results.read(os.environ["DRAWN"])[1], 1):
+        mutant = drawn.more
         for module in design:
             like = design[module].get(mutant["alike"])
             if not like or module_of(module) != mutant["module"]:
                 continue
-            cell, ports = like[mutant["place"] % len(like)]
+            cell, ports = like[int(mutant["place"]) % len(like)]
             mode, port = mutant["mode"], mutant["port"]
             bit, control = (min(int(mutant[b]), ports[port] - 1) for b in ("portbit", "ctrlbit"))
             has.add(module)

@@ -13,13 +13,14 @@ ip/<core>/<core>.bugs.json:
 The old lines must occur exactly once in the file. "more" changes further places; a "file" in it
 names another file.
 
-Leaves build/mutants/results.tsv (name, result, test, seconds, file:line).
+Writes build/mutants/planted.xml (JUnit).
 Exit status 1: a bug survived, is no longer found in its file, or does not build.
 """
 import argparse, collections, glob, json, os, pathlib, queue, re, shutil, subprocess, sys
 import threading, time
 from concurrent.futures import ThreadPoolExecutor
 
+from icesoc.mutants import results
 from icesoc.util.errors import reason_of
 from icesoc.util.files import write
 from icesoc.util.lock import only_one
@@ -156,9 +157,9 @@ def try_bug(bug, copy):
         result = {"passes": "SURVIVED", "fails": "caught"}.get(result, result)
     for file in planted:
         restore(copy / file)
-    seconds = str(round(time.monotonic() - start))
+    seconds = round(time.monotonic() - start)
     print(f"{result:<14} {bug.name:<36} {bug.test} ({seconds} s)", flush=True)
-    return [bug.name, result, bug.test, seconds, bug.place(copy) if planted else ""]
+    return results.Mutant(bug.name, result, bug.test, seconds, bug.place(copy) if planted else "")
 
 
 def check(chosen, build):
@@ -184,12 +185,10 @@ def check(chosen, build):
 def keep(rows):
     """Writes the results. Results of other blocks are kept from an earlier run, unless their bug
     was removed."""
-    results = WORK / "results.tsv"
+    path = WORK / "planted.xml"
     there = {bug.name for bug in bugs("*")}
-    earlier = results.read_text().splitlines() if results.exists() else []
-    all_rows = {row[0]: row for row in [line.split("\t") for line in earlier] + rows
-                if row[0] in there}
-    results.write_text("".join("\t".join(row) + "\n" for row in all_rows.values()))
+    merged = {row.name: row for row in results.read(path)[1] + rows if row.name in there}
+    results.write(path, list(merged.values()))
 
 
 def try_all(chosen, jobs):
@@ -228,8 +227,8 @@ def try_all(chosen, jobs):
                  for group in sorted(groups.values(), key=len, reverse=True)]
     for task in tasks:
         task.result()
-    now = sum(row[1] == "caught" for row in rows)
-    print(f"mutants: {now} of {len(rows)} caught (build/mutants/results.tsv)")
+    now = sum(row.result == "caught" for row in rows)
+    print(f"mutants: {now} of {len(rows)} caught (build/mutants/planted.xml)")
     return now != len(rows)
 
 

@@ -79,9 +79,9 @@ def blocks_of(data, tests, history, source):
     for file in data.get("coverage", {}).get("files", []):
         add(blocks.of_file(file["file"]), "lines", file["percent"] * file["lines"] / 100,
             file["lines"], below_gate(file))
-    for _, result, _, _, *place in data["mutants"]:
+    for _, result, _, _, place in data["mutants"]:
         if place:
-            add(blocks.of_file(place[0]), "mutants", result == "caught", 1)
+            add(blocks.of_file(place), "mutants", result == "caught", 1)
     luts = collections.defaultdict(list)
     for each in data.get("utilisation", {}).get("entries", []):
         design, _, figure = each["name"].rpartition(" ")

@@ -4,6 +4,7 @@ import json
 import pathlib
 import re
 
+from icesoc.mutants import results
 from icesoc.regress.blocks import blocks_of
 from icesoc.regress.lights import lights_of
 from icesoc.regress.tests import judge_plan, read_plan
@@ -14,7 +15,7 @@ from icesoc.regress.waves import drawing_of
 HERE = pathlib.Path(__file__).resolve().parent
 LARGEST = 2_000_000  # greatest size of the page, bytes
 MEASURED = {"coverage": "coverage/summary.json", "utilisation": "synth/report.json",
-            "speed": "bench/simulator.json", "drawn": "mutants/drawn.json"}
+            "speed": "bench/simulator.json"}
 
 
 def read(path):
@@ -42,9 +43,13 @@ def measurements(build):
     for file in data.get("coverage", {}).get("files", []):
         if (more := len(file["missed"]) - 40) > 0:
             file["missed"][40:] = [f"and {more} more"]
-    mutants = build / "mutants/results.tsv"
-    data["mutants"] = [line.split("\t") for line in mutants.read_text().splitlines()] \
-        if mutants.exists() else []
+    planted = results.read(build / "mutants/planted.xml")[1]
+    data["mutants"] = [[m.name, m.result, m.test, m.seconds, m.place] for m in planted]
+    run, drawn = results.read(build / "mutants/drawn.xml")
+    if drawn:
+        data["drawn"] = {**run, "gate": results.GATE, "modules": results.scores(drawn),
+                         "survived": [{"line": m.place, "does": m.more["does"], "proof": m.test}
+                                      for m in drawn if m.result == "SURVIVED"]}
     trees = {"mutants": "mutants", "coverage": "coverage", "size": "synth", "speed": "bench"}
     data["trees"] = {name: (build / folder / "tree").read_text().strip()
                      for name, folder in trees.items() if (build / folder / "tree").exists()}

@@ -13,6 +13,7 @@ from icesoc.cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured, 
 from icesoc.cli.command import GROUPS, command
 from icesoc.cli.options import (BLOCK, BUILD, COUNT, FAMILY, FRESH, JOBS, MINUTES, NAME, PATH, SEED,
                                 TESTS, WORDS, Option)
+from icesoc.regress.tests import list_tests
 from icesoc.util.console import say, warn
 from icesoc.util.errors import Stop
 from icesoc.util.lock import lock
@@ -259,14 +260,20 @@ def soak(values):
 
 
 def measure(benches, folder):
+def benches_of(build):
+    """Returns the benches of a build folder: {name: the test that runs a short version of it}."""
+    return {test.name.removeprefix("bench."): test for test in list_tests(build.folder)
+            if test.name.startswith("bench.")}
+
+
     """Runs benches one after the other; returns the first status that is not 0. Meanwhile, other
     commands may build in the build folder, but a second run of the benches has to wait."""
     folder.mkdir(parents=True, exist_ok=True)
     status = 0
     with lock("build/bench.lock", busy="waiting for another bench in this folder ..."):
         for name, bench in benches.items():
-            words = [folder / f"{name}.json" if word == "@JSON@" else word
-                     for word in bench["command"]]
+            words = [folder / f"{name}.json" if word.endswith(f"/{name}.json") else word
+                     for word in bench.command if word != "--brief"]
             if failed := run(words, check=False):
                 warn(f"bench {name}: exit status {failed}")
             status = one_more(status, failed)
@@ -288,22 +295,23 @@ def bench(values):
     is not written.
     """
     build = configured(values)
-    benches = json.loads((build / "benches.json").read_text())
+    benches = benches_of(build)
     for name in values.only:
         if name not in benches:
             raise Stop(f"bench '{name}' is not in this build: expected one of "
                        f"{', '.join(benches)}", 2)
     folder = Path("build/bench")
     if values.only:
-        targets = [target for name in values.only for target in benches[name]["targets"]]
+        targets = [target for name in values.only for target in benches[name].targets]
         if targets:
             build.ninja(*targets)
         return measure({name: benches[name] for name in values.only}, folder)
+            benches = benches_of(build)  # CTest lists the command of a program after its build
     build.ninja("bench_programs", "regress", "size")
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     (folder / "tree").write_text(
         output([build / "tests/regress/regress", "--tree", "bus hdl ip sw testbench tests tools"]))
-    status = measure(benches, folder)
+    status = measure(benches_of(build), folder)
     return one_more(status, run(["tests/bench/figures.py", values.page,
                                  *sorted(folder.glob("*.json")), "build/size.json"], check=False))

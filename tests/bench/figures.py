@@ -6,9 +6,7 @@ and `firmware` have written. Benches in Python write their files with the functi
 
     figures.py OUTPUT.md FILE.json...
 
-A file is a list of entries, or an object with this list in "entries". An entry has name, value and
-unit. It may also have limit and share (value / limit), gross (value / a limit that includes
-overhead), or peer and ratio.
+tools/icesoc/util/measured.py describes the files.
 """
 import datetime
 import json
@@ -17,6 +15,8 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+
+from icesoc.util import measured
 
 TITLES = {
     "simulator": "Simulator", "air": "Radio link on the half-duplex air",
@@ -121,8 +121,7 @@ def main(words):
     commit = git("rev-parse", "--short", "HEAD") or "unknown"
     lines = [*HEAD.split("\n"), f"Measured on {datetime.date.today()} at commit {commit}{changed}."]
     for path in filter(os.path.exists, words[1:]):
-        content = json.load(open(path))
-        entries = content["entries"] if isinstance(content, dict) else content
+        entries = measured.read(path)["entries"]
         name = os.path.splitext(os.path.basename(path))[0]
         rows = [(e["name"], number(e["value"]), e["unit"], compared(e)) for e in entries]
         note = [NOTES[name], ""] if name in NOTES else []

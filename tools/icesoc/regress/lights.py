@@ -113,7 +113,7 @@ def lights_of(data, source):
     """Returns the status lights for the data of report.py: [{name, state, text}]."""
     measured = [of_mutants(data["mutants"], data.get("drawn", {}), source),
                 of_coverage(data.get("coverage")), of_size(data.get("utilisation")),
-                of_entries("speed", data.get("speed", []), "make bench")]
+                of_entries("speed", data.get("speed", {"entries": []})["entries"], "make bench")]
     for each in measured:  # a measurement records the state of the tree in which it was made
         tree = data["trees"].get(each["name"], "")
         if each["state"] != "grey" and tree_state(source, tree.split(":")[0]) != tree:

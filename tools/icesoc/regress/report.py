@@ -8,9 +8,11 @@ from icesoc.mutants import results
 from icesoc.regress.blocks import blocks_of
 from icesoc.regress.lights import lights_of
 from icesoc.regress.tests import judge_plan, read_plan
+from icesoc.regress.waves import drawing_of
+from icesoc.util import measured
+from icesoc.util.errors import Stop
 from icesoc.util.files import write
 from icesoc.web.page import filled, page_parts, script_safe
-from icesoc.regress.waves import drawing_of
 
 HERE = pathlib.Path(__file__).resolve().parent
 LARGEST = 2_000_000  # greatest size of the page, bytes
@@ -20,8 +22,8 @@ MEASURED = {"coverage": "coverage/summary.json", "utilisation": "synth/report.js
 
 def read(path):
     try:
-        return json.loads(path.read_text())
-    except (OSError, ValueError):
+        return measured.read(path)
+    except Stop:
         return None
 
 

@@ -17,6 +17,7 @@ from icesoc.synth import reports
 from icesoc.synth import runner
 from icesoc.synth import sources
 from icesoc.synth.report import Report, Row
+from icesoc.util import measured
 from icesoc.util.errors import Stop, reason_of
 from icesoc.util.files import write
 from icesoc.util.lock import only_one
@@ -236,7 +237,7 @@ def main(words):
             print(reports.text(reports.read(o.source / "synth/reports.json")), end="")
             return 0
         if o.compare:
-            before, after = map(sources.read_json, (o.compare, o.output / "report.json"))
+            before, after = map(measured.read, (o.compare, o.output / "report.json"))
             print(report.differences(before, after), end="")
             return 0
         # If another run is synthesising a design, this run waits, and then finds the result in the

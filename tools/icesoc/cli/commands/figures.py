@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """build figures: measures the figures that README.md and docs/ show, and writes them and their
 pictures into the pages."""
-import json
 import re
 import shutil
 from pathlib import Path
@@ -11,6 +10,7 @@ from icesoc.cli.command import command
 from icesoc.cli.options import WORDS, Option
 from icesoc.mutants import run as mutants
 from icesoc.site import figures
+from icesoc.util import measured
 from icesoc.util.console import say
 from icesoc.util.process import run
 
@@ -44,7 +44,7 @@ def regress_with_fault():
 def figures_of_synth(report):
     """Returns the estimated LUT sites of Table I, and the ranges of sites and slices."""
     found = {}
-    entries = {entry["name"]: entry for entry in json.loads(report.read_text())["entries"]}
+    entries = {entry["name"]: entry for entry in measured.read(report)["entries"]}
     for name, design in ("table1", "table1"), ("flown", "table1_flown"):
         for kind, low, high in ("sites", "low", "high"), ("slices", "less", "more"):
             if entry := entries.get(f"{design} {kind}"):

@@ -10,10 +10,11 @@ import subprocess
 from pathlib import Path
 from types import SimpleNamespace
 
-from project import BUILD, REGRESS, TREE, Project, append, edit, main, write
+from project import BUILD, TREE, Project, append, edit, main, write
 from icesoc.mutants import results
 from icesoc.regress import blocks
 from icesoc.util import browser
+from icesoc.util.tree import tree_state
 
 VCD = """$timescale 1ns $end
 $scope module top $end $var wire 1 ! clk_i $end
@@ -59,7 +60,7 @@ int main() {
 
 
 def tree(folders):
-    return subprocess.check_output([REGRESS, "--tree", folders], text=True)
+    return tree_state(".", folders)
 
 
 def measured(name, folders):
@@ -264,8 +265,7 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
             drawn = [results.Mutant(f"fifo/fifo.{i}", verdict if i == 0 else "caught",
                                     "formal.fifo", 1, "hdl/fifo.v:3",
                                     {"module": "fifo", "does": "inv"}) for i in range(8)]
-            results.write("build/mutants/drawn.xml", drawn, seed="1",
-                          tree=tree("hdl").strip())
+            results.write("build/mutants/drawn.xml", drawn, seed="1", tree=tree("hdl"))
             self.lights(mutants=state)
         write("hdl/new.v", "\n")  # the sources have changed since they were measured
         self.lights(mutants="grey   sources have changed since it was green")

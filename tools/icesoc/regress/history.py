@@ -2,11 +2,13 @@
 """history: stores the results of each run in history.jsonl, one line of JSON per run."""
 import collections
 import json
+import pathlib
 import time
 
 from icesoc.util.files import write
 
 KEPT_RUNS = 300
+HISTORY = pathlib.Path("build/regress/history.jsonl")
 
 
 class History:
@@ -14,9 +16,10 @@ class History:
     each test and seed, failures last. `how` is "p" (passed), "f" (failed) or "s" (skipped); `print`
     is the fingerprint of the test."""
 
-    def __init__(self, path, costs):
+    def __init__(self, path=HISTORY, costs=None):
+        """`costs`: a file in the format of CTestCostData.txt, for `usual`."""
         self.path, self.runs, self.damaged = path, [], 0
-        lines = costs.read_text().splitlines() if costs.exists() else []
+        lines = costs.read_text().splitlines() if costs and costs.exists() else []
         self.costs = {name: [float(seconds)] for name, _, seconds in map(str.split, lines)}
         for line in path.read_text(errors="replace").splitlines() if path.exists() else []:
             try:

@@ -17,7 +17,6 @@ from icesoc.util.lock import lock, only_one
 from icesoc.util.ninja import run_ninja
 from icesoc.util.process import (adopt_orphans, collect, end_descendants, end_orphans, hear_signals,
                                  signals_held)
-from icesoc.util.tree import tree_state
 from icesoc.regress.changes import Changes
 from icesoc.regress.failures import examine
 from icesoc.regress.history import History, make_run
@@ -73,7 +72,6 @@ def parse(words):
     add("--make", action="store_true", help="build what the chosen tests need first")
     add("--prepare", action="store_true", help="only build what the chosen tests need; with "
         "--list, only print it")
-    add("--tree", metavar="FOLDERS", help="only print the state of these folders")
     add("--plan", action="store_true", help="only check that each pattern of tests/plan.toml "
         "matches a test")
     add("--list", action="store_true", help="only print the chosen tests")
@@ -324,9 +322,6 @@ def main(words):
     options = parse(words)
     hear_signals()
     try:
-        if options.tree is not None:
-            print(tree_state(options.source, options.tree))
-            return 0
         if options.plan:
             plan, tests = read_plan(options.source), list_tests(options.build)
             wrong = [line for each in plan for line in unmatched(each, tests)]

@@ -18,6 +18,7 @@ from icesoc.util.console import say, warn
 from icesoc.util.errors import Stop
 from icesoc.util.lock import lock
 from icesoc.util.process import output, run, tool
+from icesoc.util.tree import tree_state
 
 GROUPS["check"] = "proofs, sanitizers, fuzzing, faults, coverage"
 # Test programs that are built with sanitizers: name -> folder of the test, and the programs that
@@ -259,13 +260,13 @@ def soak(values):
         env={**seed, "SOAK_BYTES": values.fuzzed})
 
 
-def measure(benches, folder):
 def benches_of(build):
     """Returns the benches of a build folder: {name: the test that runs a short version of it}."""
     return {test.name.removeprefix("bench."): test for test in list_tests(build.folder)
             if test.name.startswith("bench.")}
 
 
+def measure(benches, folder):
     """Runs benches one after the other; returns the first status that is not 0. Meanwhile, other
     commands may build in the build folder, but a second run of the benches has to wait."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -305,13 +306,12 @@ def bench(values):
         targets = [target for name in values.only for target in benches[name].targets]
         if targets:
             build.ninja(*targets)
-        return measure({name: benches[name] for name in values.only}, folder)
             benches = benches_of(build)  # CTest lists the command of a program after its build
+        return measure({name: benches[name] for name in values.only}, folder)
     build.ninja("bench_programs", "regress", "size")
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    (folder / "tree").write_text(
-        output([build / "tests/regress/regress", "--tree", "bus hdl ip sw testbench tests tools"]))
+    (folder / "tree").write_text(tree_state(".", "bus hdl ip sw testbench tests tools"))
     status = measure(benches_of(build), folder)
     return one_more(status, run(["tests/bench/figures.py", values.page,
                                  *sorted(folder.glob("*.json")), "build/size.json"], check=False))

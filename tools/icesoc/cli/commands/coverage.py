@@ -10,7 +10,8 @@ from icesoc.cli.command import command
 from icesoc.cli.options import BUILD, JOBS, NAME, Option
 from icesoc.util.console import say, warn
 from icesoc.util.errors import Stop
-from icesoc.util.process import output, run, tool
+from icesoc.util.process import run, tool
+from icesoc.util.tree import tree_state
 
 COUNTED = "rtl|firmware|vhdl|models|slice|interop|e2e"  # labels of the tests that are counted
 # Tests that are left out: fuzzers have separate counts, and e2e.cores builds a separate chip.
@@ -41,7 +42,7 @@ def coverage(values):
     counted.configure("-DCOVERAGE=ON")
     counted.follow(build)
     work, regress = counted.folder, build / "tests/regress/regress"
-    tree = output([regress, "--tree", "bus hdl ip slice sw testbench tests tools"])
+    tree = tree_state(".", "bus hdl ip slice sw testbench tests tools")
     limits = Path("tests/limits.toml")
     if values.name:
         run([regress, "--prepare", "--build", work, "--name", values.name])

@@ -2,7 +2,6 @@
 """regression: commands that run tests, with selection, history and a page; find the commit that
 broke a test; and run the nightly suite."""
 import functools
-import json
 import re
 import shlex
 import time
@@ -12,6 +11,7 @@ from icesoc.cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
 from icesoc.cli.command import COMMANDS, command
 from icesoc.cli.options import (BLOCK, BUILD, CORE_FOLDERS, COUNT, FRESH, JOBS, LABEL, SEED, SWITCH,
                                 TEST_NAME, TESTS, TEXT, UCOS2, WORDS, Option, matching, number)
+from icesoc.regress.history import History
 from icesoc.regress.tests import write_numbers
 from icesoc.regress.unchanged import Passes
 from icesoc.util.console import say
@@ -133,10 +133,8 @@ def regress(values):
 def last_good(test):
     """Returns the last commit at which the test passed. Runs with uncommitted changes are ignored,
     because a bisection cannot start there."""
-    history = Path("build/regress/history.jsonl")
-    runs = map(json.loads, history.read_text().splitlines() if history.exists() else [])
-    good = [each["commit"] for each in runs if "dirty" not in each["commit"]
-            and {end[1] for end in each.get("ends", []) if end[0] == test} == {"p"}]
+    good = [each["commit"] for each in History().runs if "dirty" not in each["commit"]
+            and {end[1] for end in each["ends"] if end[0] == test} == {"p"}]
     if not good:
         raise Stop(f"{test} passed in no recorded run of a commit; give a commit at which it "
                    "passes by GOOD= (--good)", 2)

@@ -2,7 +2,6 @@
 """synth: commands that report the utilisation of the chip and the registers of its blocks, and the
 changes of both between commits."""
 import contextlib
-import json
 import subprocess
 from pathlib import Path
 
@@ -10,6 +9,7 @@ from icesoc.cli import choices
 from icesoc.cli.build_folder import configured
 from icesoc.cli.command import DEFAULTS, GROUPS, command
 from icesoc.cli.options import BUILD, CORE_FOLDERS, FILE, FOLDER, JOBS, TEXT, WORDS, Option
+from icesoc.regress.history import History
 from icesoc.util.console import warn
 from icesoc.util.errors import Stop
 from icesoc.util.lock import lock
@@ -131,8 +131,7 @@ def named(base):
 def tests_of(names):
     """Returns lines that compare the test results of two commits. The counts of a commit are from
     its stored run with the most tests. The last lines list the tests whose results differ."""
-    history = Path("build/regress/history.jsonl")
-    kept = list(map(json.loads, history.read_text().splitlines())) if history.exists() else []
+    kept = History().runs
     runs = [max((each for each in kept if each["commit"] == name), default={},
                 key=lambda each: each["passed"] + each["failed"]) for name in names]
     lines = ["| commit | tests |", "|---|---|"]

@@ -29,7 +29,6 @@ from icesoc.util.errors import reason_of
 
 CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "icesoc"
 LIST = TREE / "examples/foreign/cores.json"
-KERNEL = TREE / "examples/porting/freertos.json"
 GITHUB = os.environ.get("ICESOC_RAW") or "https://raw.githubusercontent.com"
 NPM = os.environ.get("ICESOC_NPM") or "https://registry.npmjs.org"
 KEYRING = "/usr/share/keyrings/debian-archive-keyring.gpg"
@@ -61,6 +60,26 @@ PAGE = [("tabulator-tables", "6.5.3",
         ("uplot", "1.6.32", "4b8a8191e425658e3ea8c8c1314b0fc679c861ee3a1af2b20c7b16ba50b5133d",
          ["uPlot.iife.min.js", "uPlot.min.css"])]
 ICEJS = ("3.7.110", "8477728b2fccb8ec825d432d35391df74857c4dc5c68c39dc6f96925d475fd8d")
+# FreeRTOS 11.1.0, MIT licence: folder of its commit, SHA-256 and path of each file
+FREERTOS = ("FreeRTOS/FreeRTOS-Kernel/dbf70559b27d39c1fdb68dfb9a32140b6a6777a0", """
+508a77d2e7b51d98adeed32648ad124b7b30241a8e70b2e72c99f92d8e5874d1 LICENSE.md
+189d9626143b76b1a948a612c051617052f16b3e193324cc96b20e0eb4b8a103 include/FreeRTOS.h
+157c9b113297981d1944d37826e10955be95ae4158483ddfaf2f287d0e02e024 include/deprecated_definitions.h
+e18c1bd8dffddc0608112f3e47f28962dc8df916984e68286bbc9a9fa4f83d7c include/list.h
+b2dd748823dce76d42a15a7a00e1bad3140eaaf615487716d3eca4763e0ac9bc include/mpu_wrappers.h
+973c26ded2da7465cc843cf888d88bfc4e5bf9bb4099b48b131082eb95d35222 include/portable.h
+05308062697b6093618d4b7110dbf125c5b4839072680d3b7239bc2644082347 include/projdefs.h
+acaf6a17c7eb7106cbf4f0c6ba1438fb881127f9f4dae8085582dea8467659c0 include/queue.h
+454fae279911c48b3636b341c77ecd18a00abc8c50206b9e83cf7d4ae2bccd7f include/semphr.h
+022a341340eee8fbc21fc7fac1aafa3e6a9a720a24e91ea718af0b46fe843052 include/stack_macros.h
+f3a76f99198a537ffce4b7876566502e7156a4fbd5b57b56f213bb7884b772c9 include/task.h
+14c35d6830037b75612ad1f60367bd7a8e80122d9c8612ff4eaebaf5917b9924 include/timers.h
+e0a4d7a061e86ccb8ee4e08b0c1229c51d8c0a7a6f1c51c45083314f2e42b297 list.c
+037f78c536c8cf8dff0cc46b5a0f11e997fdbed1828ad6072a18d4848d7a9f3b portable/GCC/ARM_CM3/port.c
+8cd1066faa43ef966ec0e971dabdd82b5f2f00bd38ea86de84969dd7833072f7 portable/GCC/ARM_CM3/portmacro.h
+e66b73eb6dd7e6b2ccd121ab8d7345ab9698cd655b32171476643284e6dc4f4a queue.c
+6a54883765441f12b45b7f2e36838727e8e0aa872054df30c814c473ee3e4149 tasks.c
+""")
 # Debian 13's packages with GHDL 5, and with all libraries that it loads
 GHDL = ["ghdl-mcode", "ghdl-common", "libgnat-14", "libc6", "libgcc-s1", "libstdc++6", "zlib1g",
         "gcc-14-base"]
@@ -301,11 +320,11 @@ def spdx(target):
 
 def freertos(target):
     """the kernel FreeRTOS 11.1.0 for the Cortex-M3, for the porting example"""
-    its = json.loads(KERNEL.read_text())
-    for path, checksum in its["files"].items():
+    folder, files = FREERTOS
+    for checksum, path in map(str.split, files.strip().splitlines()):
         file = target / path
         file.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(kept(f"{GITHUB}/{its['github']}/{path}", checksum), file)
+        shutil.copyfile(kept(f"{GITHUB}/{folder}/{path}", checksum), file)
 
 
 def page(target):

@@ -11,6 +11,7 @@ from icesoc import TREE
 from icesoc.mutants import model, results, run
 from icesoc.mutants.results import GATE
 from icesoc.util.lock import only_one
+from icesoc.util.progress import clock, is_tenth
 from icesoc.util.tree import tree_state
 from concurrent.futures import ThreadPoolExecutor
 
@@ -215,10 +216,10 @@ def progress(tried, number):
         rows.append(row)
         done = len(rows)
         left = round((time.monotonic() - start) / done * (number - done) / 60)
-        if done * 10 // number > (done - 1) * 10 // number:
+        if is_tenth(done, number):
             missed = sum(row.result == "SURVIVED" for row in rows)
             print(f"{done} of {number} mutants tried, {missed} not detected by a proof, "
-                  f"{left // 60}:{left % 60:02} h left", file=sys.stderr, flush=True)
+                  f"{clock(left)} h left", file=sys.stderr, flush=True)
     return rows
 
 

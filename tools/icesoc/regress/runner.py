@@ -5,7 +5,6 @@ import os
 import pathlib
 import re
 import signal
-import sys
 import threading
 import time
 
@@ -13,6 +12,7 @@ from icesoc.regress.junit import ended, finished, logs, read_junit, status_of
 from icesoc.regress.tests import write_numbers
 from icesoc.util.errors import Interrupted, Stop
 from icesoc.util.process import children, collect, descendants, end_descendants
+from icesoc.util.progress import Line, clock, is_tenth
 
 # s; shortest CPU time, or time without use of the CPU, after which a test may be ended
 SHORTEST_HANG = 30
@@ -33,7 +33,7 @@ class Progress:
         # time
         self.busy = {}
         self.hangs = {}  # test name -> (reason why the test was ended, stacks)
-        self.lock = threading.Lock()
+        self.line = Line()
 
     def start(self, name):
         usual = self.usual.get(name)
@@ -64,7 +64,7 @@ class Progress:
             age, known = now - begin, "unknown" if usual is None else f"{usual:.1f} s"
             if age >= self.due[name]:
                 self.due[name] = 2 * age
-                self._line(f"{name} has run for {age:.0f} s, usually {known}", True)
+                self.line.show(f"{name} has run for {age:.0f} s, usually {known}", True)
             limit = self.limit(name)
             is_proof = name.startswith("formal.")  # a proof has a limit of CPU time instead
             if age < limit or is_proof or name in self.hangs:
@@ -94,9 +94,9 @@ class Progress:
         known = all(each is not None for each in self.seconds.values())
         if late:
             seconds = int(max(self.limit(name) - age for name, age in late.items()))
-            return f"at most {max(0, seconds) // 60}:{max(0, seconds) % 60:02}"
+            return f"at most {clock(max(0, seconds))}"
         seconds = int(sum(self.seconds.values()) / self.jobs) if known else 0
-        return f"{seconds // 60}:{seconds % 60:02}" if known else self.total - self.done
+        return clock(seconds) if known else self.total - self.done
 
     def end(self, name, status, seconds):
         self.running.pop(name, None)
@@ -104,20 +104,12 @@ class Progress:
         self.done += 1
         if status == "failed":
             self.failed += 1
-            self._line(f"FAILED {name} ({seconds:.1f} s)", True)
-        tenth = 10 * self.done // self.total != 10 * (self.done - 1) // self.total
-        self._show(tenth and not sys.stdout.isatty())
+            self.line.show(f"FAILED {name} ({seconds:.1f} s)", True)
+        self._show(is_tenth(self.done, self.total) and not self.line.moves)
 
     def _show(self, keep):
-        self._line(f"{self.done} of {self.total}, {self.failed} failed, {self.left()} left: "
-                   f"{' '.join(sorted(self.running))}", keep)
-
-    def _line(self, text, keep):
-        with self.lock:
-            if sys.stdout.isatty():
-                print(f"\r{text[:110]}\033[K", end="\n" if keep else "", flush=True)
-            elif keep:
-                print(text, flush=True)
+        self.line.show(f"{self.done} of {self.total}, {self.failed} failed, {self.left()} left: "
+                       f"{' '.join(sorted(self.running))}", keep)
 
 
 # errors that occur if a test has just ended and its processes no longer exist
@@ -218,8 +210,7 @@ def run_tests(tests, build, out, seed, jobs, history):
     finally:
         done.set()
         watcher.join()  # the watcher may still be reading the stacks of a test that hangs
-    if sys.stdout.isatty():
-        print("\r\033[K", end="")
+    progress.line.clear()
     if interrupted:
         results = finished(build, ends)
     elif junit.exists():

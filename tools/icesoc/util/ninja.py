@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: MIT
 """ninja: runs ninja and shows its progress in one line."""
-import os
 import re
 import subprocess
-import sys
 import time
 from pathlib import Path
 
 from icesoc.util import ghdl
-from icesoc.util.console import say
 from icesoc.util.errors import Stop
 from icesoc.util.process import end, start, wait
+from icesoc.util.progress import Line, clock
 
 # Beginnings of lines in which CMake, ninja, Verilator and its makefiles report on themselves; they
 # are not shown.
@@ -18,33 +16,23 @@ NOISE = ("ninja: Entering directory", "ninja: no work to do", "- Verilator: ", "
          "Archive ar ", "-- GLOB", "-- Configuring", "-- Generating", "-- Build files")
 
 
-class Line:
-    """The progress of a build. A terminal shows one line that is rewritten; other outputs get a
-    line for each tenth of the steps. Nothing is printed in the first seconds, so a build without
-    steps prints nothing."""
+class Steps(Line):
+    """The progress of a build. Outputs that are not terminals get a line for each tenth of the
+    steps, but none in the first seconds, so a short build prints nothing."""
 
     def __init__(self):
-        self.begin, self.told, self.is_shown = time.monotonic(), 0, False
-        self.moves = sys.stdout.isatty()
+        super().__init__()
+        self.begin, self.told = time.monotonic(), 0
 
-    def show(self, done, total, what):
+    def step(self, done, total, what):
         spent = time.monotonic() - self.begin
         text = f"[{done}/{total}]"
         if done > total / 20:
-            left = round(spent * (total - done) / done)
-            text += f" {left // 60}:{left % 60:02} left"
-        if self.moves:
-            width = os.get_terminal_size(sys.stdout.fileno()).columns or 80
-            print("\r\033[K" + f"{text} {what}"[:width - 1], end="", flush=True)
-            self.is_shown = True
-        elif spent > 3 and done * 10 // total > self.told:
+            text += f" {clock(round(spent * (total - done) / done))} left"
+        is_new = not self.moves and spent > 3 and done * 10 // total > self.told
+        if is_new:
             self.told = done * 10 // total
-            say(f"{text} {what}")
-
-    def clear(self):
-        if self.is_shown:
-            print("\r\033[K", end="", flush=True)
-        self.is_shown = False
+        self.show(f"{text} {what}", is_new)
 
 
 def in_vhdl(match):
@@ -76,7 +64,7 @@ def explained(text):
 def run_ninja(words, log, check=True, env=None):
     """Runs ninja. Prints the messages of the tools but not the steps; the whole output goes to the
     file `log`. If ninja fails, the command ends, unless `check` is false."""
-    line = Line()
+    line = Steps()
     process = start(words, env={**(env or {}), "NINJA_STATUS": "[%f/%t] "}, text=True,
                     stdout=subprocess.PIPE, stderr=subprocess.STDOUT, errors="replace")
     try:
@@ -85,7 +73,7 @@ def run_ninja(words, log, check=True, env=None):
                 file.write(text)
                 step = re.match(r"\[(\d+)/(\d+)\] (.*)", text)
                 if step:
-                    line.show(int(step[1]), int(step[2]), step[3])
+                    line.step(int(step[1]), int(step[2]), step[3])
                 elif not text.startswith(NOISE):
                     line.clear()
                     print(explained(text), end="", flush=True)

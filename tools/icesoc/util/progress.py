@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: MIT
+"""progress: shows the progress of a command in one line."""
+import os
+import sys
+import threading
+
+
+class Line:
+    """A line of text. A terminal rewrites the line each time; other outputs get only the texts that
+    are to be kept."""
+
+    def __init__(self, stream=None):
+        self.stream = stream or sys.stdout
+        self.moves, self.is_shown, self.lock = self.stream.isatty(), False, threading.Lock()
+
+    def show(self, text, keep=False):
+        """Shows a text; with `keep`, it stays and the next text gets a new line."""
+        with self.lock:
+            if self.moves:
+                width = os.get_terminal_size(self.stream.fileno()).columns or 80
+                self._write(f"\r\033[K{text[:width - 1]}" + "\n" * keep)
+                self.is_shown = not keep
+            elif keep:
+                self._write(text + "\n")
+
+    def clear(self):
+        with self.lock:
+            if self.is_shown:
+                self._write("\r\033[K")
+            self.is_shown = False
+
+    def _write(self, text):
+        self.stream.write(text)
+        self.stream.flush()
+
+
+def clock(units):
+    """Returns seconds as "minutes:seconds", or minutes as "hours:minutes"."""
+    return f"{int(units) // 60}:{int(units) % 60:02}"
+
+
+def is_tenth(done, total):
+    """Returns whether another tenth of the steps has just been done."""
+    return 10 * done // total != 10 * (done - 1) // total

@@ -11,10 +11,9 @@ import re
 import subprocess
 import sys
 
-SOURCE = pathlib.Path(sys.argv[1])
-sys.path.insert(0, str(SOURCE / "tools"))
-from icesoc.synth import runner, sources, timing, utilisation  # noqa: E402
+from icesoc.synth import runner, sources, timing, utilisation
 
+SOURCE = pathlib.Path(sys.argv[1])
 HERE = pathlib.Path(__file__).parent
 INPUTS = [f"I{n}" for n in range(6)]
 # Replaces the primitives by their models, except for the LUTs with delays. Flip-flops start at 0.

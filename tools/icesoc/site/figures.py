@@ -8,13 +8,13 @@ figures into the pages, and `make test NAME=tree.figures` compares them.
 
     figures TREE    prints a line for each figure that differs; exit status 1 if there is one
 """
-import json
 import re
 import struct
 import sys
 import zlib
 from pathlib import Path
 
+from icesoc.synth.baseline import read_baseline
 from icesoc.util.errors import reason_of
 
 KEYWORD = b"Description"  # keyword of the PNG chunk with the text
@@ -131,7 +131,7 @@ def rows(tree):
 def values(tree):
     """Returns the figures that have a source, as text without separators of thousands."""
     measured = rows(tree)
-    designs = json.loads(Path(tree, "synth/baseline.json").read_text())["designs"]
+    designs = read_baseline(Path(tree, "synth/baseline.json"))["designs"]
     found = {f"{name}.{key}": str(designs[design][key])
              for name, design in (("table1", "table1"), ("flown", "table1_flown"), ("soc", "soc"))
              for key in ("lut", "ff", "slices", "dsp", "mhz")}

@@ -3,13 +3,13 @@
 
 The functions that write pages take the tree and `pages`, the folder of the pages for Sphinx.
 """
-import json
 import re
 from pathlib import Path
 
 from icesoc.regs.generate import markdown
 from icesoc.regs.model import Block
 from icesoc.site import hdl, symbol
+from icesoc.synth.baseline import read_baseline
 
 # Folders with reusable RTL, and their titles.
 ROOMS = {"bus": "Register bus", "hdl/cdc": "Clock-domain crossings", "hdl/ddr": "Memory ports",
@@ -109,7 +109,7 @@ def entity_page(entity, tree, figures):
 def write_hdl(tree, pages):
     """Writes a page for each module of the platform, and for each folder a page with links to its
     modules."""
-    figures = json.loads((tree / "synth/baseline.json").read_text())
+    figures = read_baseline(tree / "synth/baseline.json")
     names = []
     for room, title in ROOMS.items():
         entities = []

@@ -111,6 +111,10 @@ class Cases(Script):
         self.has("tiny/stale: does not apply")
         self.make("mutants", "BLOCK=tiny/wrong", "JOBS=1", tree=".")
         self.has("^mutants: 1 of 1 caught")
+        write("ip/little/little.bugs.json", Path("tests/mutants/tiny.bugs.json").read_text())
+        self.make("mutants", "BLOCK=little/wrong", "JOBS=1", tree=".")  # a bug of a core
+        self.has("^caught *little/wrong ", "^mutants: 1 of 1 caught")
+        os.remove("ip/little/little.bugs.json")
         self.bugs(wrong=wrong)
         malformed = Path("tests/mutants/wrong.bugs.json")
         for text in '{"no": {"test": "and no file"}}\n', "no JSON\n", "[]\n":
@@ -163,6 +167,7 @@ class Cases(Script):
         os.environ["PATH"] = f"{self.work}:{path}"
         self.draw(status=2)
         self.has("no such thing", "^mutants: 1 do not run", "^pair  *100.0 %")
+        self.bugs(wrong=(TWICE, ""))  # names of seeded bugs do not restrict the proofs
         self.draw(2, "nothing")
         self.has("no proof has a name that begins with nothing")
 

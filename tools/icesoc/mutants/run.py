@@ -61,9 +61,8 @@ class Bug:
         return {file: text[1:] for file, text in texts.items()}
 
 
-def bugs(chosen):
-    """Returns the bugs of a block (`*`: of all blocks), or the bug block/name."""
-    block, _, name = chosen.partition("/")
+def read_bugs(block="*"):
+    """Returns the bugs of a block; `*`: of all blocks."""
     found = []
     for file in sorted(glob.glob(f"tests/mutants/{block}.bugs.json")
                        + glob.glob(f"ip/{block}/{block}.bugs.json")):
@@ -73,7 +72,13 @@ def bugs(chosen):
         except (ValueError, LookupError, TypeError, AttributeError) as error:
             sys.exit(f"mutants: {file}: expected bugs in the format that `tools/python -m "
                      f"icesoc.mutants.run --help` shows: {reason_of(error)}")
-    found = [bug for bug in found if not name or bug.name == chosen]
+    return found
+
+
+def bugs(chosen):
+    """Returns the bugs of a block (`*`: of all blocks), or the bug block/name."""
+    block, _, name = chosen.partition("/")
+    found = [bug for bug in read_bugs(block) if not name or bug.name == chosen]
     return found or sys.exit(f"mutants: no {chosen} in tests/mutants/*.json and ip/*/*.bugs.json")
 
 
@@ -186,7 +191,7 @@ def keep(rows):
     """Writes the results. Results of other blocks are kept from an earlier run, unless their bug
     was removed."""
     path = WORK / "planted.xml"
-    there = {bug.name for bug in bugs("*")}
+    there = {bug.name for bug in read_bugs()}
     merged = {row.name: row for row in results.read(path)[1] + rows if row.name in there}
     results.write(path, list(merged.values()))
 

@@ -14,7 +14,7 @@ from project import BUILD, TREE, Project, append, edit, main, write
 from icesoc.mutants import results
 from icesoc.regress import blocks
 from icesoc.util import browser
-from icesoc.util.tree import tree_state
+from icesoc.util.tree import tree_state, write_state
 
 VCD = """$timescale 1ns $end
 $scope module top $end $var wire 1 ! clk_i $end
@@ -59,13 +59,10 @@ int main() {
 """
 
 
-def tree(folders):
-    return tree_state(".", folders)
-
-
 def measured(name, folders):
     """Writes a file with figures, in the format of the commands that measure."""
-    write(f"build/{name}/tree", tree(folders))
+    Path("build", name).mkdir(parents=True, exist_ok=True)
+    write_state(Path("build", name), tree_state(".", folders))
 
 
 WRITTEN = "build/regress/report.html"
@@ -265,7 +262,7 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
             drawn = [results.Mutant(f"fifo/fifo.{i}", verdict if i == 0 else "caught",
                                     "formal.fifo", 1, "hdl/fifo.v:3",
                                     {"module": "fifo", "does": "inv"}) for i in range(8)]
-            results.write("build/mutants/drawn.xml", drawn, seed="1", tree=tree("hdl"))
+            results.write("build/mutants/drawn.xml", drawn, seed="1", tree=tree_state(".", "hdl"))
             self.lights(mutants=state)
         write("hdl/new.v", "\n")  # the sources have changed since they were measured
         self.lights(mutants="grey   sources have changed since it was green")

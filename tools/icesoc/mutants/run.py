@@ -22,9 +22,8 @@ from concurrent.futures import ThreadPoolExecutor
 
 from icesoc.mutants import results
 from icesoc.util.errors import reason_of
-from icesoc.util.files import write
 from icesoc.util.lock import only_one
-from icesoc.util.tree import tree_state
+from icesoc.util.tree import tree_state, write_state
 
 TOP = pathlib.Path.cwd()  # the tree
 
@@ -256,7 +255,7 @@ def main():
         if options.block == "*":
             # folders that the results depend on, for the status summary of the regression
             measured = "bus hdl ip slice sw testbench tests tools"
-            write(WORK / "tree", tree_state(TOP, measured))
+            write_state(WORK, tree_state(TOP, measured))
         return try_all(chosen, options.jobs)
 
 

@@ -168,7 +168,8 @@ def main(path_of_limits, folder):
         below = report(files, gates, f"{folder}/summary.json")
         below += [f"{path_of_limits}: no file belongs to the gate {path}" for path in gates
                   if not any(name.startswith(path) for name in files)]
-        below += [f"{path_of_limits}: explanation without effect: {rule}" for rule in explanations.stale()]
+        below += [f"{path_of_limits}: explanation without effect: {rule}"
+                  for rule in explanations.stale()]
     except (OSError, ValueError, KeyError, Stop) as error:
         print(f"coverage: {reason_of(error)}", file=sys.stderr)
         return 2

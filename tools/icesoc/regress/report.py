@@ -12,6 +12,7 @@ from icesoc.regress.waves import drawing_of
 from icesoc.util import measured
 from icesoc.util.errors import Stop
 from icesoc.util.files import write
+from icesoc.util.tree import read_state
 from icesoc.web.page import filled, page_parts, script_safe
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -53,8 +54,8 @@ def measurements(build):
                          "survived": [{"line": m.place, "does": m.more["does"], "proof": m.test}
                                       for m in drawn if m.result == "SURVIVED"]}
     trees = {"mutants": "mutants", "coverage": "coverage", "size": "synth", "speed": "bench"}
-    data["trees"] = {name: (build / folder / "tree").read_text().strip()
-                     for name, folder in trees.items() if (build / folder / "tree").exists()}
+    data["trees"] = {name: state for name, folder in trees.items()
+                     if (state := read_state(build / folder))}
     return data
 
 

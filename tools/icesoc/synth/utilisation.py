@@ -21,7 +21,7 @@ from icesoc.util import measured
 from icesoc.util.errors import Stop, reason_of
 from icesoc.util.files import write
 from icesoc.util.lock import only_one
-from icesoc.util.tree import tree_state
+from icesoc.util.tree import tree_state, write_state
 
 # FPGA families; the first one has the figures, the limits and the page
 FAMILIES = ("xc6s", "xc7", "ecp5")
@@ -178,7 +178,7 @@ def run(o, libraries):
     r.cores = cores_of(rows, library, options, o)
     report.show(r)
     write_reports(r, o, libraries)
-    write(o.output / "tree", f"{tree.result()}\n")
+    write_state(o.output, tree.result())
     return 1 if r.failures else 0
 
 

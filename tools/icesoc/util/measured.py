@@ -3,8 +3,8 @@
 `make coverage` write as JSON.
 
 A file is a list of entries, or an object, which usually has this list in "entries". An entry has
-name, value and unit. It may also have limit and share (value / limit), gross (value / a limit that includes
-overhead), or peer and ratio (value / the figure of another system).
+name, value and unit. It may also have limit and share (value / limit), gross (value / a limit that
+includes overhead), or peer and ratio (value / the figure of another system).
 """
 import json
 import pathlib

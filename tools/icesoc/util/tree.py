@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 """tree: lists the files of a checkout, and returns the state of folders and hashes of commits."""
 import subprocess
+from pathlib import Path
 
 from icesoc.util.errors import Stop
+from icesoc.util.files import write
 from icesoc.util.process import collect, output
 
 
@@ -30,3 +32,14 @@ def tree_state(source, folders):
                               check=True, stdout=subprocess.PIPE).stdout
     names = "".join(f"{file}\n" for file in files)
     return f"{folders}: {hashes(names + hashes(names, '--stdin-paths'), '--stdin')[:16]}"
+
+
+def write_state(folder, state):
+    """Stores the state that a measurement had, in the folder of its results."""
+    write(Path(folder, "tree"), state + "\n")
+
+
+def read_state(folder):
+    """Returns the stored state of a measurement, or "" if there is none."""
+    path = Path(folder, "tree")
+    return path.read_text().strip() if path.exists() else ""

@@ -18,7 +18,7 @@ from icesoc.util.console import say, warn
 from icesoc.util.errors import Stop
 from icesoc.util.lock import lock
 from icesoc.util.process import output, run, tool
-from icesoc.util.tree import tree_state
+from icesoc.util.tree import tree_state, write_state
 
 GROUPS["check"] = "proofs, sanitizers, fuzzing, faults, coverage"
 # Test programs that are built with sanitizers: name -> folder of the test, and the programs that
@@ -311,7 +311,7 @@ def bench(values):
     build.ninja("bench_programs", "regress", "size")
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    (folder / "tree").write_text(tree_state(".", "bus hdl ip sw testbench tests tools"))
+    write_state(folder, tree_state(".", "bus hdl ip sw testbench tests tools"))
     status = measure(benches_of(build), folder)
     return one_more(status, run(["tests/bench/figures.py", values.page,
                                  *sorted(folder.glob("*.json")), "build/size.json"], check=False))

@@ -11,7 +11,7 @@ from icesoc.cli.options import BUILD, JOBS, NAME, Option
 from icesoc.util.console import say, warn
 from icesoc.util.errors import Stop
 from icesoc.util.process import run, tool
-from icesoc.util.tree import tree_state
+from icesoc.util.tree import tree_state, write_state
 
 COUNTED = "rtl|firmware|vhdl|models|slice|interop|e2e"  # labels of the tests that are counted
 # Tests that are left out: fuzzers have separate counts, and e2e.cores builds a separate chip.
@@ -58,7 +58,7 @@ def coverage(values):
     run(["genhtml", "--quiet", "--title", "IceSoC", "--output-directory", work / "html",
          work / "merged.info"])
     status = run([*tool("regress.coverage"), limits, work], check=False)
-    (work / "tree").write_text(tree)
+    write_state(work, tree)
     return status
 
 

@@ -9,15 +9,18 @@ class Line:
     """A line of text. A terminal rewrites the line each time; other outputs get only the texts that
     are to be kept."""
 
-    def __init__(self, stream=None):
-        self.stream = stream or sys.stdout
-        self.moves, self.is_shown, self.lock = self.stream.isatty(), False, threading.Lock()
+    def __init__(self):
+        self.is_shown, self.lock = False, threading.Lock()
+
+    @property
+    def moves(self):
+        return sys.stdout.isatty()
 
     def show(self, text, keep=False):
         """Shows a text; with `keep`, it stays and the next text gets a new line."""
         with self.lock:
             if self.moves:
-                width = os.get_terminal_size(self.stream.fileno()).columns or 80
+                width = os.get_terminal_size(sys.stdout.fileno()).columns or 80
                 self._write(f"\r\033[K{text[:width - 1]}" + "\n" * keep)
                 self.is_shown = not keep
             elif keep:
@@ -30,8 +33,7 @@ class Line:
             self.is_shown = False
 
     def _write(self, text):
-        self.stream.write(text)
-        self.stream.flush()
+        print(text, end="", flush=True)
 
 
 def clock(units):

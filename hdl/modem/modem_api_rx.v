@@ -62,20 +62,26 @@ module modem_api_rx (
 
 `ifdef FORMAL
     // Proves that the contents of a frame end once, either with end_o or with bad_o, and have as
-    // many bytes as the length field of the frame states.
+    // many bytes as the length field of the frame states. They are valid only if the checksum is
+    // correct.
     reg past = 1'b0;
     initial assume (rst_i);
     reg       open = 1'b0;  // the contents of a frame have begun and have not ended
     reg [6:0] given = 7'd0; // bytes of the contents that were delivered
     reg [6:0] length = 7'd0;
+    reg [7:0] total = 8'd0; // sum of all bytes after the length, including the checksum
     always @(posedge clk_i) begin
         past <= 1'b1;
         open <= !rst_i && !end_o && !bad_o && (open || valid_o);
         if (valid_i && state == LOW) begin
             length <= data_i[6:0];
             given  <= 7'd0;
-        end else
+            total  <= 8'd0;
+        end else begin
             given <= given + valid_o;
+            if (valid_i)
+                total <= total + data_i;
+        end
         if (past && !$past(rst_i)) begin
             assert (!(end_o && bad_o));
             // Bytes are delivered only inside a frame. If a frame has delivered bytes, it ends with
@@ -85,9 +91,12 @@ module modem_api_rx (
             assert (!(end_o || bad_o) || state == DELIMITER);
             if (state == DATA || state == CHECKSUM)
                 assert (length != 7'd0 && length < 7'd112 && given + left == length &&
-                        (state == DATA) == (left != 7'd0));
+                        (state == DATA) == (left != 7'd0) && sum == total);
             if (end_o)
                 assert (given == length && length != 7'd0);
+            // A complete frame ends with end_o if its checksum is correct, and with bad_o if not.
+            if ($past(valid_i && state == CHECKSUM && !error_i && !silent_i))
+                assert (end_o == (total == 8'hFF) && bad_o == !end_o);
         end
         cover (past && !rst_i && end_o && given == 7'd2);
         cover (past && !rst_i && bad_o && open);

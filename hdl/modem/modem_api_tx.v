@@ -57,8 +57,9 @@ module modem_api_tx (
     end
 
 `ifdef FORMAL
-    // Proves that every frame has a correct length and a correct checksum. While api_i is 0, no
-    // frame is built: only the bytes of the packet are sent, unchanged.
+    // Proves that every frame has a correct length and a correct checksum, and that no byte is sent
+    // while the modem accepts none. While api_i is 0, no frame is built: only the bytes of the
+    // packet are sent, unchanged.
     reg past = 1'b0;
     initial assume (rst_i);
     reg [7:0] total = 8'd0; // sum of all bytes after the length, including the checksum
@@ -66,6 +67,7 @@ module modem_api_tx (
         past <= 1'b1;
         if (past)
             assume (rst_i || $stable(api_i));
+        assume (!valid_i || cts_i); // modem_tx
         if (taken)
             total <= place < DATA ? 8'd0 : total + data_o;
         if (past && !$past(rst_i)) begin
@@ -77,6 +79,9 @@ module modem_api_tx (
                                        place == CHECKSUM ? 3'd0 : place + 3'd1));
             else if (!rst_i)
                 assert (place == DATA && (!taken || (valid_i && data_o == data_i)));
+            // Every byte waits until the modem accepts bytes. The checksum waits for nothing else.
+            assert (!valid_o || cts_i);
+            assert (place != CHECKSUM || valid_o == cts_i);
             // The bytes of the packet are taken only in state DATA.
             assert (!ready_o || place == DATA);
             // The sum of the bytes after the length is 0xFF.

@@ -118,8 +118,9 @@ module modem_tx (
             assert (!rd_valid_o || (packet_valid_i && rd_index_o == out && out < packet_bytes_i));
             assert (!tx_valid_o ||
                     (rd_index_o == out + 7'd1 && tx_last_o == (rd_index_o == packet_bytes_i)));
+            // No byte is offered while the modem accepts none.
             if (tx_valid_o)
-                assert (tx_data_o == read);
+                assert (tx_data_o == read && cts_i);
             // The buffer is freed once, after all its bytes have been sent.
             if (sent_o)
                 assert (packet_valid_i && out == packet_bytes_i && !$past(sent_o));

@@ -234,11 +234,12 @@ module npi_stream #(
         // The core receives exactly the number of words that it requested, and all requested words
         // arrive.
         assert (to_give == f_left);
-        assert (!read_valid_o || f_left != {WORD_BITS{1'b0}});
+        assert (read_valid_o == (there != 6'd0 && f_left != {WORD_BITS{1'b0}}));
         assert (to_ask == {WORD_BITS{1'b0}} || to_give >= to_ask);
         // As long as words must still be requested, the core receives all outstanding words.
         assert (to_ask == {WORD_BITS{1'b0}} ||
                 {1'b0, to_give} == {1'b0, to_ask} + {{(WORD_BITS - 5){1'b0}}, outstanding});
+        assert (to_ask != {WORD_BITS{1'b0}} || to_give <= outstanding);
         assert (f_pushed <= 6'd32);
         assert (!padding || filled != 3'd0);
         assert (!npi_addr_req_o || npi_rnw_o || bursts != 3'd0);
@@ -260,6 +261,12 @@ module npi_stream #(
         assert (npi_addr_req_o && $stable(npi_rnw_o) && $stable(npi_size_o));
         assert ($stable(npi_addr_o));
     end
+    // As long as words must still be requested and fit into the read FIFO, a port that is ready
+    // gets requests.
+    always @(posedge clk_i) if (past && !rst_i && !$past(rst_i))
+        assert (npi_addr_req_o ||
+                !$past(npi_init_done_i && !npi_addr_req_o && !read_stop_i && f_left > promised &&
+                       promised <= 6'd24));
     // The idle signals rise at most one clock late.
     always @(posedge clk_i) if (past && !rst_i && !$past(rst_i)) begin
         assert (write_idle_o || $past(filled != 3'd0 || bursts != 3'd0 || npi_wr_push_o));

@@ -174,6 +174,7 @@ module fsmc_registers (
     reg [15:0] last_low;  // low half that was written last
     reg        low_word;  // the last access was a write of the low half of the word at bus_addr_o
     reg        low_read;  // the last access that began was a read of a low half
+    reg        beyond;    // the last access that began was a read beyond the slots
     reg        was_busy = 1'b0;
     reg [40:0] write_was;
     always @* begin
@@ -200,8 +201,10 @@ module fsmc_registers (
             last_low <= wr_data_i;
         low_word <= !rst_i &&
             (begins ? wr_i && !wr_addr_i[0] && wr_addr_i[24:11] == 14'd0 : low_word);
-        if (begins)
+        if (begins) begin
             low_read <= !wr_i && !rd_addr_i[0];
+            beyond   <= !wr_i && rd_addr_i[24:11] != 14'd0;
+        end
 
         if (past && !rst_i) begin
             // An access makes at most one transfer at a time. A transfer happens only for an
@@ -212,6 +215,9 @@ module fsmc_registers (
                 assert ($past(flushing));
             if (flushing && !$past(flushing))
                 assert ($past(idle && (wr_i || reading_i)));
+            // The answer is the word that the bus has returned. A read beyond the slots returns 0.
+            if (give || answering)
+                assert (word == (beyond ? 32'd0 : last_read));
             // Words are atomic. A stored high half belongs to the word that was read last. A
             // written word consists of the low half that was written just before, and of the high
             // half that is written now.

@@ -1,11 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# muxed: source-folder build-folder work-folder
+# muxed: source-folder build-folder work-folder [program...]
 # Flies the kit with multiplexed address and data: runs its self-test on the simulated kit, with and
-# without a fault, flies the mission, and runs the tests of the self-test and of the board. The
-# commands build the simulator and the firmware of this kit in a separate build folder.
+# without a fault, flies the mission, and runs the given test programs. The commands build the
+# simulator and the firmware of this kit in a separate build folder.
 set -eu
 source=$1 build=$2 work=$3 kit=nucleo-qmtech-muxed
+shift 3
 mkdir -p "$work"
 cd "$source"
 logged() { "$@" >"$work/log" 2>&1 || { tail -60 "$work/log" && exit 1; }; }
@@ -21,9 +22,7 @@ logged ./icesoc run --board $kit --size 96x64 --guard 20 --show no --seed "${SEE
     --build "$build" --out "$work/run"
 # A simulator that was built for the other kit refuses the recording; replay uses the right one.
 logged ./icesoc replay "$work/run" --built --build "$build" --out "$work/replay"
-tested='test_bringup test_sim_board'
-# shellcheck disable=SC2086 # a list of words
-logged ninja -C "build/board_$kit" $tested
-for name in $tested; do
+[ $# = 0 ] || logged ninja -C "build/board_$kit" "$@"
+for name in "$@"; do
     logged "build/board_$kit/tests/testbench/$name"
 done

@@ -175,6 +175,7 @@ module fsmc_registers (
     reg        low_word;  // the last access was a write of the low half of the word at bus_addr_o
     reg        low_read;  // the last access that began was a read of a low half
     reg        beyond;    // the last access that began was a read beyond the slots
+    reg        held;      // since the last access began, reading_i has been high
     reg        was_busy = 1'b0;
     reg [40:0] write_was;
     always @* begin
@@ -205,6 +206,7 @@ module fsmc_registers (
             low_read <= !wr_i && !rd_addr_i[0];
             beyond   <= !wr_i && rd_addr_i[24:11] != 14'd0;
         end
+        held <= begins || (held && reading_i);
 
         if (past && !rst_i) begin
             // An access makes at most one transfer at a time. A transfer happens only for an
@@ -240,6 +242,13 @@ module fsmc_registers (
             // pins rises.
             assert (!done || !(ne_n_async_i || noe_n_async_i));
             assert (!$past(given_up && !begins) || !(done && !$past(done)));
+            assert ($past(held || rst_i) || !(done && !$past(done)));
+            // Errors: an access beyond the slots, a high half written without its low half, and a
+            // transfer that the slave ends with an error or does not answer.
+            assert (error_o == $past(!rst_i &&
+                ((begins && (!in_range || (wr_i && high && !(low_word && same)))) ||
+                 (ends && (bus_error_i || !bus_ready_i)))));
+            assert (error_memory_o == $past(!rst_i && flushing && expired_i && !idle_i));
         end
         cover (past && bus_valid_o && bus_write_o && bus_ready_i);
         cover (past && done && rd_addr_i[0] && $past(half_read, 3));

@@ -84,6 +84,11 @@ module modem_api_rx (
         end
         if (past && !$past(rst_i)) begin
             assert (!(end_o && bad_o));
+            // A frame begins with the delimiter, and the high byte of its length is 0.
+            if (state != $past(state) && state != DELIMITER)
+                assert ($past(valid_i && !error_i && !silent_i) &&
+                        (state != HIGH || $past(data_i) == 8'h7E) &&
+                        (state != LOW || $past(data_i) == 8'h00));
             // Bytes are delivered only inside a frame. If a frame has delivered bytes, it ends with
             // end_o or bad_o.
             if (open && !end_o && !bad_o)

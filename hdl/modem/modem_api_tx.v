@@ -82,6 +82,10 @@ module modem_api_tx (
             // Every byte waits until the modem accepts bytes. The checksum waits for nothing else.
             assert (!valid_o || cts_i);
             assert (place != CHECKSUM || valid_o == cts_i);
+            // The first bytes are the delimiter and the length of the packet.
+            assert (place != 3'd0 || data_o == 8'h7E);
+            assert (place != 3'd1 || data_o == 8'h00);
+            assert (place != 3'd2 || data_o == {1'b0, bytes_i});
             // The bytes of the packet are taken only in state DATA.
             assert (!ready_o || place == DATA);
             // The sum of the bytes after the length is 0xFF.

@@ -11,7 +11,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from icesoc.mutants import results
+from icesoc.mutants import model, results
 from script import TREE, Script, edit, fresh, git, main, write
 
 RUN = TREE / "tools/python", "-m", "icesoc.mutants.run"
@@ -136,6 +136,7 @@ class Cases(Script):
         """The proof in this test covers only half of the module. Mutants that the proof misses are
         reported with their line, and mutants that are not bugs are excluded. The survivors are then
         put into a model, and a test that runs with this model detects them."""
+        self.a_flip_flop_is_found_by_its_signal()
         pair = "hdl/small/pair.v"
         write(pair, PAIR)
         write("bus/none.v", "")
@@ -170,6 +171,22 @@ class Cases(Script):
         self.bugs(wrong=(TWICE, ""))  # names of seeded bugs do not restrict the proofs
         self.draw(2, "nothing")
         self.has("no proof has a name that begins with nothing")
+
+    def a_flip_flop_is_found_by_its_signal(self):
+        """Yosys creates the flip-flops of a line in an order that depends on other modules."""
+        def design(*names):
+            module = {"cells": {}, "netnames": {}}
+            for number, name in enumerate(names):
+                module["netnames"][name] = {"bits": [10 + number], "hide_name": 0}
+                module["cells"][f"$procdff${number}"] = {
+                    "type": "$dff", "attributes": {"src": "/a/hdl/small/two.v:3.5-9.8"},
+                    "connections": {"Q": [10 + number]}}
+            write("plain.json", json.dumps({"modules": {"two": module}}))
+            return model.cells("plain.json")
+
+        drawn, other = design("sum", "left"), design("left", "sum")
+        alike, number = model.place(drawn, "two", "$procdff$0")
+        self.assertEqual(other["two"][alike][number][0], "$procdff$1")
 
     def the_model_carries(self, missed, pair):
         results.write("missed.xml", missed)

@@ -5,9 +5,9 @@ modules. When a test begins, the environment variable MUTANT selects one by numb
 the module is unchanged.
 
 A mutant was drawn in the module as the proof reads it. In a model, its cell is found by kind,
-source line, and position among the cells with the same kind and line. If the mutated bit does not
-exist there, the last bit is used. The environment variable DRAWN names the results that drawn.py
-has written.
+source line, signal (flip-flops only), and position among the cells that are alike in these. If the
+mutated bit does not exist there, the last bit is used. The environment variable DRAWN names the
+results that drawn.py has written.
 """
 import collections, json, os, pathlib, re, shutil, subprocess, sys, tempfile
 
@@ -46,20 +46,26 @@ def module_of(name):
 
 def cells(path):
     """Returns the cells of a design in Yosys' JSON as {module: {kind and source line: [(cell, width
-    of each port)]}}. The cells are in the order of their creation."""
+    of each port)]}}. The cells are in the order of their creation. The kind of a flip-flop includes
+    its signal, because the order of the flip-flops of a line depends on other modules."""
     def made(item):
         return int((re.findall(r"\$(\d+)$", item[0]) or [0])[0])
 
     found = {}
-    for module, content in json.load(open(path))["modules"].items():
+    for module, content in json.loads(pathlib.Path(path).read_text())["modules"].items():
         alike = found[module] = collections.defaultdict(list)
+        signals = {}  # name and index of each bit; the first name, if there are several
+        for name, net in sorted(content["netnames"].items()):
+            for index, bit in enumerate(net["bits"] if not net["hide_name"] else []):
+                signals.setdefault(bit, f" {name}[{index}]")
         for name, cell in sorted(content["cells"].items(), key=made):
             # Of several locations, the last is that of the cell: Yosys puts the location of a
             # condition that it could not resolve in front of it.
             source = cell["attributes"].get("src", "").split("|")[-1]
             source = re.sub(r".*/((bus|hdl|ip)/)", r"\1", source)
             widths = {port: len(bits) for port, bits in cell["connections"].items()}
-            alike[f"{module_of(cell['type'])} {source}"].append((name, widths))
+            signal = signals.get(cell["connections"].get("Q", [""])[0], "")
+            alike[f"{module_of(cell['type'])} {source}{signal}"].append((name, widths))
     return found
 
 

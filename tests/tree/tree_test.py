@@ -50,17 +50,22 @@ class Cases(Script):
             Path("sudo").unlink()
 
     def test_skipped(self):
-        """Skipped tests are listed at the end with their reasons (icesoc.regress.ctest)."""
+        """Skipped and failed tests are listed at the end with their reasons, the failed ones last
+        (icesoc.regress.ctest)."""
         fresh(WORK)
         write("CMakeLists.txt", TINY)
         self.ask("cmake", "-B", "build", "-G", "Ninja")
         self.ask(TREE / "tools/python", "-m", "icesoc.regress.ctest", "--test-dir", "build")
         self.assertTrue(self.said.endswith("Skipped, 2:\n    by_script: no right to mount\n"
                                            "    by_gtest: no IPv6\n"), self.said)
-        append("CMakeLists.txt", "add_test(NAME fails COMMAND false)\n")
+        append("CMakeLists.txt", 'add_test(NAME fails COMMAND sh -c "echo error: no wind; false")\n'
+               "add_test(NAME is_silent COMMAND false)\n")
         self.ask("cmake", "build")
         self.ask(TREE / "tools/python", "-m", "icesoc.regress.ctest", "--test-dir", "build",
                  status=None)
+        self.assertTrue(self.said.endswith(
+            "Skipped, 2:\n    by_script: no right to mount\n    by_gtest: no IPv6\n\n"
+            "Failed, 2:\n    fails: error: no wind\n    is_silent: no output\n"), self.said)
 
     def test_tarball(self):
         """The tools can also list the files of a copy of the tree that is not a clone."""

@@ -2,7 +2,9 @@
 """ctest: runs CTest with the given arguments.
 
 `--output-junit FILE` leaves the results in FILE, for CI systems. At the end, ctest.py prints the
-notes of tests that passed (lines that begin with `note: `), and each skipped test with the reason.
+notes of tests that passed (lines that begin with `note: `), each skipped test with the reason, and
+each failed test with the reason. The failed tests come last, because a CI system or a terminal may
+keep only the end of the output.
 After Ctrl-C, TERM or HUP it ends the tests, and FILE contains the tests that have finished.
 """
 
@@ -15,13 +17,18 @@ import sys
 import tempfile
 import time
 
+from icesoc.regress.failures import reason_of
 from icesoc.regress.junit import ended, finished, read_junit, write_junit
 from icesoc.util.errors import Interrupted
 from icesoc.util.process import (adopt_orphans, end_descendants, hear_signals, reading, start,
                                  wait, wait_for)
 
 
-def reason(text):
+# A run of more tests prints no notes: they are about a core that a user is working on.
+MOST_WITH_NOTES = 50
+
+
+def reason_for_skipping(text):
     """Returns the text of GTEST_SKIP, or the last output line of a script that ended with 77."""
     said = re.search(r": Skipped\n(.+)", text)
     lines = [line for line in text.splitlines() if line.strip()]
@@ -75,6 +82,22 @@ def run(words, results):
     return status, True
 
 
+def print_summary(results, stopped):
+    """Prints the notes of passed tests, then the skipped and the failed tests with their reasons.
+    If the run was stopped, write_finished has already printed the names of the failed tests."""
+    if len(results) <= MOST_WITH_NOTES:
+        for result in results:
+            if result.status == "passed":
+                for note in re.findall("^note: (.*)", result.log, re.M):
+                    print(f"{result.name}: {note}")
+    for status, reason in ("skipped", reason_for_skipping), ("failed", reason_of):
+        chosen = [result for result in results if result.status == status]
+        if chosen and not (stopped and status == "skipped"):
+            print(f"\n{status.capitalize()}, {len(chosen)}:")
+            for result in chosen:
+                print(f"    {result.name}: {reason(result.log) or 'no output'}")
+
+
 def main():
     hear_signals()
     with tempfile.TemporaryDirectory() as folder:
@@ -85,15 +108,7 @@ def main():
         path.unlink(missing_ok=True)
         status, stopped = run(words, path)
         results = read_junit(path) if path.exists() else []
-    for result in results:
-        if result.status == "passed":
-            for note in re.findall("^note: (.*)", result.log, re.M):
-                print(f"{result.name}: {note}")
-    skipped = [result for result in results if result.status == "skipped"]
-    if skipped and not stopped:
-        print(f"\nSkipped, {len(skipped)}:")
-        for result in skipped:
-            print(f"    {result.name}: {reason(result.log)}")
+    print_summary(results, stopped)
     return status
 
 

@@ -15,8 +15,8 @@
 
 module cdc_bit #(
     parameter             WIDTH    = 1,
-    // 0: each bit is late independently of the others. N > 0: all bits that change in one clock are
-    // late together, or none of them is; in simulation, they are late only if one of the N most
+    // 0: each bit may be late, independently of the others. N > 0: the bits that change in one
+    // clock are all late, or all in time. In simulation, they are late only if one of the N most
     // significant bits changes in that clock.
     parameter             TOGETHER = 0,
     // 1: bits are never late here, because a cdc_skew in front of this module delays them

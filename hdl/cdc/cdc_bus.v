@@ -76,15 +76,15 @@ module cdc_bus #(
         end else if (edge_of_clk && clocks != 3'd7) begin
             clocks <= clocks + 3'd1;
         end
-        // From one edge of src_clk_i that sends a word to the next such edge, dst_clk_i has at
-        // least three edges. Edges of src_clk_i that are closer to each other are ringing.
+        // Assumption: dst_clk_i has at least three edges between two words. A second edge of
+        // src_clk_i with the same data, before the next edge of dst_clk_i, is ringing, not a word.
         assume (!new_write || clocks >= 3'd3);
     end
     wire [1:0] left  = count - {1'b0, handed}; // number of words that are left after this step
     // dst_valid_o was high in the last clock of dst_clk_i
     wire       gives = edge_of_clk ? was_valid : gave;
     always @* if (past) begin
-        // A word is pending as soon as it was sent, and is transferred once, in order and
+        // A word is pending as soon as it is sent, and is transferred once, in order and
         // unchanged.
         assert (!handed || count != 2'd0);
         assert (left <= 2'd1 || dst_valid_o);

@@ -30,7 +30,7 @@
     (* hierconn *) wire [(ADDR_BITS<<QUEUE_LOG2)-1:0] \u_queue.f_addrs ;
     (* hierconn *) wire [4*QUEUE_LOG2-1:0]          \u_queue.f_places ;
     (* hierconn *) wire [4:0]                       \u_queue.f_moved ;
-    // the highest bit is 1 while words of a request are being transferred; the others are its kind
+    // highest bit: a request is at the pointer `move`; the other bits: kind of this request
     (* hierconn *) wire [KIND:0]                    \u_queue.f_moving ;
     (* hierconn *) wire [(72<<FIFO_LOG2)-1:0]       \g_port[0].u_write.u_fifo.f_words ,
         \g_port[1].u_write.u_fifo.f_words ;

@@ -158,9 +158,9 @@ module npi_queue #(
     wire unused = &{1'b0, issue_port, 1'b0};
 
 `ifdef FORMAL
-    // The four pointers never pass each other, and the kind of a request does not change. These
-    // registers of the queue are used by npi_arbiter_proof; requests are numbered by their
-    // position.
+    // Proves that the four pointers never pass each other, and that the kind of a request does not
+    // change. npi_arbiter_proof reads the following copies of the queue's registers, in which the
+    // requests are numbered by their position.
     `SHIFT_NUMBERS(place_of, number_of, after, LOG2)
     wire [(KIND<<LOG2)-1:0]      f_kinds;
     wire [(ADDR_BITS<<LOG2)-1:0] f_addrs;
@@ -273,8 +273,8 @@ module npi_queue #(
             cover (full_o);
             cover (inside && issued && is_read && came == 6'd4);
             cover (cmd_valid_o && !cmd_read_o && cmd_last_o == 5'd3);
-            // reaches cycles with three of the four actions; the three places of this proof do not
-            // allow all four
+            // Each line reaches a cycle with three of the four actions. All four at once would need
+            // more requests than the three that fit into the queue of this proof.
             cover (move_done_i && cmd_valid_o && cmd_ready_i && back_done_i);
             cover (push_i && move_done_i && back_done_i);
         end

@@ -42,8 +42,8 @@ module npi_select #(
     wire [PORTS-1:0] normal  = asking & ~URGENT;
     wire             overdue = run == URGENT_RUN;
     wire [PORTS-1:0] members = |urgent && !(overdue && |normal) ? URGENT : ~URGENT;
-    // `later` excludes the port that was served last, so this line needs no `asking` and uses
-    // req_i, which saves one input per port.
+    // `later` excludes the port that was served last. Therefore this line can use req_i instead of
+    // `asking`, which saves one input per port.
     wire [PORTS-1:0] first   = req_i & later & members;
     wire [PORTS-1:0] turn    = asking & members;
 

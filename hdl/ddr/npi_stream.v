@@ -4,12 +4,12 @@
 // reads a buffer in order; the other writes a buffer in order, in bursts of 64 bytes. The module
 // reads ahead as far as the port's FIFO allows.
 //
-// read_start_i, while read_idle_o is high, starts to read a buffer; valid/take delivers its words.
-// Words of a burst after the first read_words_i words, and all words after read_stop_i, are
-// discarded. write_start_i, while write_idle_o is high, starts to write a buffer; valid/ready
-// accepts its words. write_flush_i, high for one clock without valid, completes the current burst
-// with words whose byte enables are 0. write_idle_o is high when all accepted words have been
-// acknowledged, so that every later request of any port sees them.
+// read_start_i starts to read a buffer; it is allowed only while read_idle_o is high. valid/take
+// delivers read_words_i words. The remaining words of the last burst, and all words after
+// read_stop_i, are discarded. write_start_i starts to write a buffer; it is allowed only while
+// write_idle_o is high. valid/ready accepts the words. write_flush_i, high for one clock without
+// valid, fills the current burst with words that have no byte enables. write_idle_o is high when
+// all accepted words are acknowledged; every later request of any port then sees them in memory.
 
 `default_nettype none
 
@@ -142,7 +142,7 @@ module npi_stream #(
 
         if (rst_i) begin
             request     <= 1'b0;
-            // the value of the idle state, which also applies before npi_init_done_i
+            // an idle stream holds this value, also before npi_init_done_i
             request_read <= 1'b1;
             to_ask      <= {WORD_BITS{1'b0}};
             to_give     <= {WORD_BITS{1'b0}};
@@ -236,7 +236,7 @@ module npi_stream #(
         assert (to_give == f_left);
         assert (read_valid_o == (there != 6'd0 && f_left != {WORD_BITS{1'b0}}));
         assert (to_ask == {WORD_BITS{1'b0}} || to_give >= to_ask);
-        // As long as words must still be requested, the core receives all outstanding words.
+        // Until the last word is requested, the core receives every outstanding word.
         assert (to_ask == {WORD_BITS{1'b0}} ||
                 {1'b0, to_give} == {1'b0, to_ask} + {{(WORD_BITS - 5){1'b0}}, outstanding});
         assert (to_ask != {WORD_BITS{1'b0}} || to_give <= outstanding);
@@ -261,8 +261,8 @@ module npi_stream #(
         assert (npi_addr_req_o && $stable(npi_rnw_o) && $stable(npi_size_o));
         assert ($stable(npi_addr_o));
     end
-    // As long as words must still be requested and fit into the read FIFO, a port that is ready
-    // gets requests.
+    // A port that is ready gets requests until all words are requested, unless the read FIFO has no
+    // room for a burst.
     always @(posedge clk_i) if (past && !rst_i && !$past(rst_i))
         assert (npi_addr_req_o ||
                 !$past(npi_init_done_i && !npi_addr_req_o && !read_stop_i && f_left > promised &&

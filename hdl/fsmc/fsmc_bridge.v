@@ -149,9 +149,9 @@ module fsmc_bridge #(
         else if (excuse)
             excused_write <= 1'b1;
 
-    // ---- Time-out of accesses to memory. After the time-out, excused_read or excused_write ends
-    // the wait of the access, until the strobe of the access rises. fsmc_registers handles the
-    // time-out of accesses to registers.
+    // ---- Time-out of accesses to memory. After the time-out, excused_read or excused_write goes
+    // high and ends the wait of the access. It stays high until the strobe of the access rises.
+    // fsmc_registers handles the time-out of accesses to registers.
     localparam PATIENCE = TIMEOUT_LOG2 > 1 ? TIMEOUT_LOG2 : 2;
     `SHIFT_ORDER(after, PATIENCE)
     localparam [PATIENCE-1:0] LAST = 1 << (TIMEOUT_LOG2 - 1);
@@ -182,10 +182,10 @@ module fsmc_bridge #(
     // no effect on the access (fsmc_bridge_proof). The last gate is one LUT.
     // tests/hdl/fsmc/nwait_test.py simulates the netlist with random delays.
     //
-    // While the previous write is still in transfer, `room` does not include it yet. The next write
-    // then needs room for both writes; roomy_for_both was counted before the previous write was
-    // posted. `roomy` is 0 in the clock after a write, until `room` includes this write. `roomy`
-    // therefore does not fall in the clock in which the transfer ends.
+    // `room` does not take a write into account while the write is still in transfer. The next
+    // write then needs room for both writes; roomy_for_both was counted before the first of them
+    // was posted. `roomy` is 0 in the clock after a write, because `room` is not up to date in that
+    // clock. `roomy` therefore does not fall in the clock in which the transfer ends.
     reg       roomy;
     reg [1:0] roomy_for_both;
     always @(posedge clk_i) begin

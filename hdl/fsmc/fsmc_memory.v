@@ -6,10 +6,10 @@
 // fsmc_post handles the writes. Reads are answered from two buffers, one for blocks with even
 // numbers and one for blocks with odd numbers. The first miss in a block fetches one word; a second
 // miss in the same block fetches the whole block. After that, when the processor enters a block,
-// the next block is fetched as well, up to the next multiple of 4 KiB, because both buffers have
-// the same upper address bits. Nothing is fetched while a write waits. A write, or drop_i, discards
-// all data in the buffers and all words that are still to arrive. Therefore a read never returns
-// data that is older than a previous write.
+// the next block is read ahead. Read-ahead stops at multiples of 4 KiB, because both buffers share
+// the upper address bits. Nothing is fetched while a write waits. A write, or drop_i, discards all
+// data in the buffers and all words that have not arrived yet. Therefore a read never returns data
+// that is older than a previous write.
 //
 // NWAIT depends on the AND of rd_same_o and rd_found_o, which does not glitch while the address is
 // stable. A single flip-flop (a bit of full, or have_one) makes the data of a buffer valid. A fetch
@@ -256,9 +256,9 @@ module fsmc_memory #(
     end
 
 `ifdef FORMAL
-    // Proves that a read returns the value written last. `place` is the halfword under observation,
-    // `foreign` a write to it by another master, and `memory` and `newest` are its values. All four
-    // come from the proof in fsmc_post.
+    // Proves that a read returns the value written last. The proof in fsmc_post provides these
+    // signals: `place` is the halfword under observation; `foreign` is high when another master
+    // writes it; `memory` is its value in memory, `newest` the value that was written last.
     (* hierconn *) wire [ADDR_BITS-1:0] \u_fsmc_post.place ;
     (* hierconn *) wire \u_fsmc_post.foreign ;
     (* hierconn *) wire [WIDTH-1:0] \u_fsmc_post.memory , \u_fsmc_post.newest ;

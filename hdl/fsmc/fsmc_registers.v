@@ -27,7 +27,7 @@ module fsmc_registers (
     input  wire        rd_high_async_i, // pin: the processor reads the high half
     input  wire        ne_n_async_i,    // pins: the access ends when one of them is high
     input  wire        noe_n_async_i,
-    // high from the time at which rd_data_o is the data of this access, until the access ends
+    // goes high when rd_data_o is the data of this access, and stays high until the access ends
     output wire        rd_done_o,
     output wire [15:0] rd_data_o,
     // time-out: the bridge counts clocks while busy_o is high, and starts from zero when restart_o

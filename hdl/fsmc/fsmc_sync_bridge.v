@@ -195,8 +195,8 @@ module fsmc_sync_bridge #(
         .clk_i(clk_i), .rst_i(rst_i),
         .wr_i(reg_write), .wr_addr_i(addr), .wr_data_i(wdata),
         .reading_i(reading), .rd_addr_i(addr), .rd_high_async_i(addr[0]),
-        // Here both inputs are levels in the clock domain clk_i. They rise when `reading` falls,
-        // which ends the read.
+        // In this bridge, the next two inputs are not pins but levels in the clock domain clk_i.
+        // They rise when `reading` falls, which ends the read.
         .ne_n_async_i(!reading), .noe_n_async_i(!reading),
         .rd_done_o(reg_done), .rd_data_o(reg_data),
         .restart_o(reg_restart), .expired_i(expired),

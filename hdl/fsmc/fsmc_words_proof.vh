@@ -45,8 +45,8 @@
     always @* assume (!(was_access && !selected && !was_nwe) || !nwe_n_i);
 
     // ---- Writes
-    // low_may: the bridge may have stored the low half that was written last. low_sure: it
-    // certainly has.
+    // low_may: the bridge may have stored the low half that was written last. low_sure: the bridge
+    // has certainly stored it.
     reg       low_may = 1'b0, low_sure = 1'b0;
     reg [1:0] low_at = 2'd0, low = 2'd0;
     // owed: the bridge owes a transfer or an error report. may: a transfer is allowed; sure: a
@@ -101,8 +101,8 @@
     (* anyconst *) reg [1:0] its;
     // asked: a transfer has begun in this access; got: this transfer has ended
     reg       asked = 1'b0, got = 1'b0;
-    // half_may: the bridge may have stored the high half of the word `its`. half_sure: it certainly
-    // has.
+    // half_may: the bridge may have stored the high half of the word `its`. half_sure: the bridge
+    // has certainly stored it.
     reg       half_may = 1'b0, half_sure = 1'b0;
     reg [1:0] answer_at = 2'd0;
     reg [3:0] answer = 4'd0;
@@ -291,8 +291,8 @@
                      ((give && !read_given_up) || done)));
         end
 
-        // The low half that was written last is stored until its high half is written. Only then is
-        // the word transferred.
+        // The low half that was written last is stored until its high half is written. The write of
+        // the high half transfers the word.
         assert (!half_write || idle);
         if (!pending2) begin
             assert (!half_write ||

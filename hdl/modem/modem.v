@@ -28,7 +28,7 @@ module modem #(
     // of the bus.
     reg         turn;
     wire        set_configure, set_reset_modem, baud_write, net_write, settings_write;
-    // Registered one cycle after the write, because the paths from here are long.
+    // Commands, one cycle after they are written; registers, because the paths from here are long.
     reg         configure, reset_modem, rings_reset;
 
     // Block RAM with the settings. Words 0..15 are the registers, including the ID; words 28..31
@@ -96,8 +96,8 @@ module modem #(
     wire        tx_waits = !tx_free[4];
     wire        rx_waits = !rx_free[4];
     // High one clock after the ring has become full. This is early enough, because a waiting byte
-    // is taken only two clocks after the end of a packet (`writes`). The register shortens the path
-    // to the word that is read.
+    // is taken only two clocks after the end of a packet (`writes`). rx_full is a register, because
+    // the path from it to the index of the settings word is long.
     reg         rx_full;
     // RTS is a flip-flop, because the modem may sample the pin at any time, and the output of a LUT
     // may glitch

@@ -53,8 +53,8 @@ module modem_at #(
     reg       fresh;    // the line has not been idle yet, so the time has not started
     reg       steady;   // the character to send is available
     reg [3:0] value;    // last digit
-    // tried: a command has failed once; walks: the command has failed twice. In step 1 they select
-    // the rate of the next attempt: with tried 9600, with walks the next lower rate
+    // tried: the command has failed; walks: it has failed more than once. In step 1, the first
+    // failure selects 9600 baud, the second BD 7, and each further failure the next lower rate
     reg       tried, walks;
     reg       heard_o, heard_k; // heard_o: the reply ends with "O"; heard_k: it ends with "OK"
     // high for one cycle after a complete reply: ok if it was "OK", refused otherwise
@@ -137,7 +137,7 @@ module modem_at #(
             place <= after(place);
         if (passed || missed || start)
             place <= {5'd0, missed && enters};
-        if (passed) // step EE without encryption skips step KY
+        if (passed) // after step EE without encryption, step KY is skipped
             step_o <= step_o + (skip && !value[0] ? 4'd2 : 4'd1);
         if (passed || start) begin
             tried <= 1'b0;

@@ -5,8 +5,8 @@
 //
 // The proof shows that at the time at which the gate closes, no register of the core would take
 // another value at the next clock, whatever the inputs are. Therefore the core behaves the same
-// with and without gating. The core's clock is the signal `closes` here; idle_registers.v adds this
-// assertion for each flip-flop with this clock.
+// with and without gating. In this proof the core's clock is the signal `closes`; idle_registers.v
+// adds an assertion for each flip-flop with this clock: the flip-flop keeps its value.
 
 `default_nettype none
 

@@ -81,8 +81,8 @@ TEST(AsconServant, WhileTheCoreHangsNothingIsTakenForAnAnswer) {
     slot.memory_.hold(false);
     slot.bench_.waitFor([&] { return !(slot.bus_.read(ASCON_STATUS) & ASCON_STATUS_BUSY_MASK); },
                         "the core to abort", 1000);
-    // The abandoned message has ended and its event is still set; the next call must not take this
-    // event for its own.
+    // The abandoned message has ended and its event is still set. The next call must not mistake
+    // this event for its own end.
     ASSERT_EQ(Cores_Ascon_seal(&core.servant, &n, &m, &m, &text, &tag, nullptr), ICE_OK);
     auto want = asconEncrypt(key, nonce, message, message);
     EXPECT_EQ(hex(AsconBytes(text.data, text.data + text.size)), hex(want.text));

@@ -13,7 +13,8 @@
 #include <openssl/sha.h>
 #include <string>
 
-// Return data that counts up from `first` (messages, keys), and the hexadecimal digits of data.
+// counted and sixteen return bytes that count up from `first`, for messages and keys; hex returns
+// the hexadecimal digits of bytes.
 inline AsconBytes counted(uint8_t first, size_t size) {
     AsconBytes bytes(size);
     for (size_t i = 0; i < size; ++i)

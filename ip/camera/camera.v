@@ -122,10 +122,10 @@ module camera (
         .write_valid_i(eighth), .write_data_i({token[7:0], pixels}), .write_be_i(8'hFF),
         .write_ready_o(write_ready), .write_flush_i(state == FINISH), .write_idle_o(write_idle));
 
-    // ---- frames ---- Tokens wait in the FIFO while a buffer is selected and while a frame is
-    // finished. If the FIFO becomes full, tokens are lost, which is reported. While a word of eight
-    // pixels cannot be written, the next token waits, whatever its kind is, because the kind is
-    // decoded too late in the clock to let other tokens pass.
+    // ---- frames ---- Tokens wait in the FIFO while a buffer is being selected, and while a frame
+    // is being finished. If the FIFO becomes full, tokens are lost; the core reports this. If a
+    // word of eight pixels cannot be written, the next token waits. Tokens of every kind wait,
+    // because the kind is decoded too late in the clock to treat some of them differently.
     wire ready  = x != 3'd7 || write_ready;
     assign pop  = has_token && listening && ready;
     wire begins = pop && starts;
@@ -153,9 +153,9 @@ module camera (
         events    <= 7'd0;
         last_word <= words == width;
         last_line <= y + 12'd1 == height;
-        // A line end also shifts a byte in. The following pixels push this byte out again, so it
-        // has no effect. If only pixels shifted, the enables of 56 flip-flops would depend on the
-        // kind of the token.
+        // The token of a line end also shifts a byte in. The pixels of the next line push this
+        // byte out again, so it has no effect. If only pixels shifted, the enables of 56 flip-flops
+        // would depend on the kind of the token.
         if (capturing && has_token && x != 3'd7)
             pixels <= {token[7:0], pixels[55:8]};
         if (stop && state != OFF)

@@ -7,7 +7,7 @@
 #include "camera_regs.h"
 #include "fsmc.h"
 
-/* maximum number of times that STATUS is read; a burst in progress ends within one read */
+/* maximum number of reads of STATUS after STOP; a burst in progress ends during the first read */
 #define STOP_READS 1000
 
 static U32 get(const Camera_Core* self, U32 word) {

@@ -153,7 +153,8 @@ TEST_F(FirCore, ACountWrittenBehindTheStartDoesNotChangeTheCall) {
 
 TEST_F(FirCore, OneSampleAClockWhenTheMemoryKeepsUp) {
     core_.memory_.setStall(0);
-    // Compares a long block with a short one, so that the time for copying data is not counted.
+    // Starts the core again on data that is already in memory, so copying is not counted. The
+    // difference between a long and a short block leaves only the time per sample.
     auto clocksOf = [&](size_t count) {
         filter(std::vector<Ice_Short>(count, 1));
         uint64_t before = core_.bench_.cycles();

@@ -85,7 +85,7 @@ architecture rtl of vision is
   signal written       : std_logic;
   signal size_ok       : std_logic; -- result of the check of the registers in the previous clock
   signal idle, offered, accept : std_logic;
-  signal go            : std_logic; -- one clock after `accept`; until then the settings are loaded
+  signal go            : std_logic; -- one clock after `accept`; an idle core loads the settings
   signal first_pixel, memory_base : std_logic_vector(31 downto 0);
 
   -- stream: x is the column of the pixel that is being taken. lines_left is the number of lines
@@ -326,8 +326,8 @@ begin
   begin
     if rising_edge(clk_i) then
       if go = '1' then
-        -- The first centre is one column before (0, -1): it is in the last column of line -2. The
-        -- numbers are unsigned.
+        -- The first centre is the pixel before (0, -1): the last column of line -2. kept_y is
+        -- unsigned, so 131070 stands for -2.
         kept_x <= last_column;
         kept_y <= to_unsigned(131070, 17); -- -2
       elsif decide = '1' and fill = SCORE_DELAY + KEPT_DELAY then

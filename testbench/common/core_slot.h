@@ -32,8 +32,8 @@ constexpr U32 coreClocksOfMs = 100;
 // byte address of the core's buffers in DDR3, as the driver uses it
 constexpr U32 coreMemory = 0x01000000;
 
-// Reports the status of a call that failed, unless the call threw one of the exceptions of its
-// operation.
+// Exception for a call that failed, with its status. It is not used if the call threw one of the
+// exceptions of its operation.
 class CoreError : public std::runtime_error {
 public:
     explicit CoreError(Ice_Status status)
@@ -133,8 +133,7 @@ public:
         hw_check(status);
     }
     // Polls until a deferred operation has ended. Like the task of the firmware, it polls after
-    // each interrupt of the core, and otherwise a few milliseconds after the time that the last
-    // poll returned.
+    // each interrupt of the core, and a few milliseconds after the time-out of the operation.
     void hw_finish(U32 operation) {
         Hw_Status status = HW_OK;
         U32 next = HW_NEVER;

@@ -60,8 +60,8 @@ public:
 #ifdef ICESOC_TRACE
         if (window_.file.empty() || clock < window_.from || clock > window_.to)
             return;
-        // each model of a test overwrites the file, so the file shows the last model: the test
-        // failed in this model
+        // Each model of a test overwrites the file. After a failure, the file therefore shows the
+        // model in which the test failed.
         if (!wave_) {
             wave_.reset(new VerilatedFstC);
             top.trace(wave_.get(), 99);

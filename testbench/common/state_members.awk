@@ -3,8 +3,8 @@
 # state_members: reads the header that declares the state of a Verilated model, and lists the
 # signals whose names begin with `top`, one line each: MEMBER(name, "path"). If `class` is set to
 # the type of the state, the list is written as the function stateOf (registers_apart.h).
-# Not listed: random values that are read beyond the end of an array, and variables that take writes
-# beyond the end of an array.
+# Two kinds of variables that Verilator adds are not listed: random values for reads beyond the end
+# of an array, and variables that take writes beyond the end of an array.
 
 BEGIN {
     if (class) {
@@ -16,7 +16,7 @@ END {
     if (class)
         print "#undef MEMBER\n    };\n}"
 }
-/__DOT____V/ && class { next } # copies that Verilator makes
+/__DOT____V/ && class { next } # variables that Verilator adds
 /__DOT____V(xrand|lvbound)/ { next }
 /;$/ && match($0, "[ ]" top "[A-Za-z0-9_]*;$") {
     name = substr($0, RSTART + 1, RLENGTH - 2)

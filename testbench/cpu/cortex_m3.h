@@ -99,7 +99,7 @@ public:
     // disables the limit. If the number is reached within an IT block, the processor stops after
     // the block.
     void setLimit(uint64_t instructions) { limit_ = instructions; }
-    // Returns the last value of instructions(), before the current one, at which the processor
+    // Returns the last value of instructions() before the current value at which the processor
     // could have stopped.
     uint64_t lastStop() const { return boundaries_[0]; }
     // Makes run() return before the next instruction; called by the bus or by a listener.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// system_control: models the system registers of a Cortex-M3. SysTick is modelled as the time at
-// which it is next due, NVIC and SCB (ARMv7-M ARM, B3.2) as access to the class Exceptions, and the
-// MPU (B3.5) as a list of regions.
+// system_control: models the system registers of a Cortex-M3 (ARMv7-M ARM). SysTick is modelled as
+// the time at which it is next due. The registers of NVIC and SCB (B3.2) read and write the class
+// Exceptions. The MPU (B3.5) is a list of regions.
 
 #include "system_control.h"
 #include <cstdio>

@@ -25,7 +25,7 @@
 
 class Checkpoints {
 public:
-    // Order for a copy that is woken. A place is a number of executed instructions.
+    // Order that a woken copy carries out. A place is a number of executed instructions.
     struct Order {
         enum Goal {
             Stop, // run to `place`, and stop there
@@ -87,7 +87,8 @@ public:
         kill(s.copies[last].process, SIGUSR1);
         if (getpid() == s.first)
             waitForTheEnd();
-        // a copy ends together with its parent, so this process waits as long as it has copies
+        // The copies end together with their parent, so this process must not end while it has
+        // copies.
         while (hasCopies_)
             pause();
         _exit(0);

@@ -22,11 +22,11 @@ public:
         std::function<void()> reset;
         std::function<bool()> isOver;
         std::function<std::string()> describe;
-        // Goes back by one instruction (if `singleStep` is true) or to the last breakpoint. The
-        // function is empty if going back is not supported. It returns only if there is no earlier
-        // place. Otherwise another process continues, and `run` returns in that process.
+        // Goes back by one instruction (if `singleStep` is true) or to the last breakpoint. `back`
+        // is empty if going back is not supported. `back` returns only if there is no earlier
+        // place; otherwise another process continues, in which `run` returns.
         std::function<void(bool singleStep)> back = nullptr;
-        // Returns "begin" or "end" if a reversible run has reached the begin or the end of its
+        // Returns "begin" or "end" if a reversible run has reached the beginning or the end of its
         // recording; otherwise returns "".
         std::function<std::string()> edge = [] { return ""; };
         // called after the debugger has written a register or memory

@@ -64,7 +64,7 @@ private:
         // Read data is only valid while ready is high, so before that it is noise.
         top_.bus_rdata_i = random_.next();
         top_.bus_error_i = random_.chance(0.5);
-        // the bits of the answer that depend on the address are set at once, as from a decoder
+        // in a clock with ready, answer() replaces the noise at once, as a decoder does
         answer();
     }
 
@@ -114,8 +114,8 @@ public:
     bool errorWrite = false;
     std::function<void()> onTick; // called once per clock; for observers
 
-    // Configure the FSMC by its driver: with the driver's timings, or with the settings `bank` for
-    // both banks.
+    // Let the driver configure the FSMC: with the driver's timings, or with the settings `bank`
+    // for both banks.
     FSMC_Status init() { return FSMC_init(&driverPort, &master); }
     FSMC_Status init(const FSMC_Bank& bank) {
         const FSMC_Bank banks[2] = {bank, bank};

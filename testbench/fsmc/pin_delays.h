@@ -40,10 +40,11 @@ struct FsmcCorner {
 };
 
 // The tables of the two data sheets (STM32F2, "FSMC characteristics"; Spartan-6, DS162, IOB and CLB
-// switching) were not available. Therefore the delays of the pads are values from memory, rounded
-// to the safe side. The routing delays in the FPGA are the limits in synth/ise/chip.ucf. The tracks
-// on the board are assumed to be 2 cm to 8 cm long. From address to read data, and from NE to
-// NWAIT, a signal needs at most 10 ns through the chip, and 15 ns including the other delays.
+// switching) were not available. Therefore the delays of the pads are remembered values, which were
+// not compared with the tables and are rounded to the safe side. The routing delays in the FPGA are
+// the limits in synth/ise/chip.ucf. The tracks on the board are assumed to be 2 cm to 8 cm long.
+// From address to read data, and from NE to NWAIT, a signal needs at most 10 ns through the chip,
+// and 15 ns including the other delays.
 inline const FsmcCorner fsmcCorners[] = {
     {"no delay", 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0},
     {"fast", 0, 0, 0, 0, 500, 100, 1000, 1500, 2500, 1000, 500},
@@ -64,11 +65,11 @@ inline const FsmcCorner fsmcCorners[] = {
      500},
 };
 
-// Returns a corner of delays. In the tests cdc.*, each synchroniser may be late by a whole clock.
-// This already covers the effect of the delays (docs/fsmc.md), so a simplified corner is returned:
-// the address arrives no later than NOE, the bits of the address arrive together, and NWE's delay
-// into the chip is equal at both edges. At 60 MHz the bits of the address may still arrive at
-// different times before NOE.
+// Returns a corner of delays; in the tests cdc.* (CDC_SEED is set), a simplified corner. In these
+// tests each synchroniser may be late by a whole clock, which already covers the effect of the
+// delays (docs/fsmc.md). In a simplified corner the address arrives no later than NOE, the bits of
+// the address arrive together, and NWE's delay into the chip is equal at both edges. At 60 MHz the
+// bits of the address may still arrive at different times before NOE.
 inline FsmcCorner cornerOf(unsigned index, unsigned hclk = 100) {
     FsmcCorner corner = fsmcCorners[index];
     if (std::getenv("CDC_SEED")) {

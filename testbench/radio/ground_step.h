@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// ground_step: makes simulated time wait for a ground program that keeps step with it
-// (keep_step.h), even if a busy machine rarely runs that program.
+// ground_step: makes simulated time wait for a ground program that keeps step with simulated time
+// (keep_step.h). The flight then does not depend on how often a busy machine runs the program.
 
 #pragma once
 
@@ -23,9 +23,9 @@
 class GroundStep {
 public:
     // `goOn` is called about every 10 ms while simulated time stands still; if it returns false,
-    // the wait ends. If a program stops simulated time for `patience` seconds of the wall clock,
-    // although no debugger has stopped the program, simulated time no longer waits for it, and a
-    // message on stderr names it.
+    // the wait ends. The wait also ends after `patience` seconds of the wall clock, unless a
+    // debugger has stopped the program. In both cases simulated time no longer waits for the
+    // program; after `patience` seconds, a message on stderr names the program.
     GroundStep(SimStatus& status, PtyLine& pty, std::function<bool()> goOn, double patience = 60)
         : status_(status), pty_(pty), goOn_(std::move(goOn)), patience_(patience) {
         std::strncpy(status_.device, pty.path().c_str(), sizeof status_.device - 1);
@@ -86,8 +86,8 @@ private:
         const size_t name = text.rfind(") ");
         return name != std::string::npos && (text[name + 2] == 'T' || text[name + 2] == 't');
     }
-    // Adds `bytes` to the number of bytes given to the program, unless another program has replaced
-    // this one.
+    // Adds `bytes` to the number of bytes given to the program, unless another program keeps step
+    // now.
     void given(uint64_t keeper, size_t bytes) {
         uint64_t is = load(status_.toGround);
         while (is - simCount(is) == simSession(keeper) &&

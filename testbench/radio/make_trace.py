@@ -4,7 +4,8 @@
 
 The trace is computed, not recorded. It contains free-space loss, Rayleigh fading of each of the
 four tries of a packet (as in rf_channel.h), and bursts of losses that are as frequent as in
-"bursts, long" (docs/simulation.md). The begin and the end of a burst are drawn once per second."""
+"bursts, long" (docs/simulation.md). Once per second, a random number decides whether a burst
+begins or ends."""
 import math
 import random
 import sys

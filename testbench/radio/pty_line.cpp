@@ -21,7 +21,7 @@ constexpr uint64_t pollNs = 500'000; // interval between two reads of the pty, n
 // shorter interval between two reads, ns, for a program that counts its bytes, so that no byte is
 // late
 constexpr uint64_t countedPollNs = 100'000;
-// maximum number of reads without a result; after that, counted bytes that have not arrived are
+// maximum number of reads in one call; after that, counted bytes that have not arrived are
 // considered read
 constexpr int patience = 20'000;
 
@@ -77,7 +77,7 @@ void PtyLine::readAhead(uint64_t now) {
     for (; counter && looks < patience; ++looks) {
         uint8_t bytes[512];
         ssize_t count = read(master_, bytes, sizeof bytes);
-        if (count > 0) {        // also bytes of a program that no longer counts them
+        if (count > 0) {        // possibly from a program that no longer counts
             if (ahead_.empty()) // the wire was idle until now
                 rxFree_ = std::max(rxFree_, static_cast<double>(now));
             ahead_.insert(ahead_.end(), bytes, bytes + count);

@@ -233,7 +233,7 @@ private:
         RfPacket packet;
         Outcome drawn; // outcome drawn for the packet
         const RfReceiver* from;
-        // times of the frame's begin and end, and of the end of its acknowledgement
+        // times at which the frame begins and ends, and at which its acknowledgement ends
         uint64_t begin, frameEnd, end;
         bool collided = false;
         // Returns the time at which the air is free again. A frame that collided is not

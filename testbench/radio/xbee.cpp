@@ -256,7 +256,8 @@ void XBee::launch(RfPacket packet, uint64_t now) {
     mac_.send(std::move(packet), now);
 }
 
-// Occupies the modem's processor, which handles one packet at a time, sent or received.
+// Occupies the modem's processor for the time of one packet. The processor handles one packet at a
+// time, sent or received.
 void XBee::work(uint64_t now, bool encrypted) {
     uint64_t needed = encrypted ? processingEncryptedNs : processingNs;
     busyUntil_ = std::max(busyUntil_, now) + channel_.jittered(needed);

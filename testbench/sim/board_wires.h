@@ -52,7 +52,7 @@ public:
     // Returns the kind of the board's modem (xbee_profile.h); empty if unknown.
     const std::string& modem() const { return modem_; }
     // Sets the function that returns the setting of a pin. Without this function, every pin counts
-    // as switched to its signal; programs that do not model pins need this.
+    // as switched to its signal, for programs that do not model the settings of pins.
     void follow(std::function<PinSetting(unsigned port, unsigned pin)> setting);
     // Plants a fault of a wire or of a bank's supply. Returns false for other kinds of faults.
     bool plant(const WireFault& fault);

@@ -33,8 +33,8 @@ public:
             std::this_thread::sleep_until(due);
             slept_ += Clock::now() - now;
         } else if (now - due > std::chrono::milliseconds(50)) {
-            // The simulation has been too slow. It does not catch up; the rate is kept from this
-            // time on.
+            // The simulation was too slow. It does not catch up: the current time becomes the new
+            // starting point.
             anchor_ = now;
             anchorNs_ = simulatedNs;
         }
@@ -86,9 +86,9 @@ public:
         std::shared_ptr<ReplayedLine> replayed;
     };
 
-    // Creates the folder and the files of the ground station in it: the counters, before.png, and
-    // the recording (unless a recording is replayed). Throws std::runtime_error, before changing
-    // anything, if the options or the picture are wrong.
+    // Creates the output folder with the files of the ground station: the counters, before.png, and
+    // the recording (except in a replay). If the options or the picture are wrong, throws
+    // std::runtime_error before it creates anything.
     explicit Flight(const Options& options);
     Flight(const Flight&) = delete;
     Flight& operator=(const Flight&) = delete;

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""icesoc-fly: flies the mission in the simulator: a simulated vehicle that a ground station with
-unmodified ZeroC Ice calls over simulated modems.
+"""icesoc-fly: flies the mission in the simulator. A ground station with unmodified ZeroC Ice calls
+a simulated vehicle over simulated modems.
 
 This is the installed form of `./icesoc run`, without the page of the flight. It writes pictures, a
 report, and flight.json, which describes the flight, to the output folder.
@@ -19,7 +19,8 @@ REFERENCE = PREFIX / "libexec/icesoc/vision-reference"
 # Fields of the flight description that this program does not offer, because only programs of the
 # source tree use them.
 OTHER = {"app", "port", "live", "update", "clk_hz", "probe"}
-# Descriptions that differ from those of the source tree, which contains boards.
+# Help texts that differ from the schema's descriptions, which are written for the source tree with
+# its boards.
 TEXTS = {"board": "folder made by ./icesoc board make, whose wires are flown; the vehicle runs the "
                   "ARM binary"}
 CONFIG = Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config") / "icesoc"

@@ -19,8 +19,8 @@ public:
         std::string firmware; // ELF file
         // Processor clock (HCLK) in simulated time, Hz. With 120 MHz, the processor's work takes as
         // long as on the board, even if the FPGA's clock is slower. With 0, HCLK is 6/5 of the
-        // FPGA's clock, as always for FSMC accesses. Cycle counts are then the same as on
-        // the board, and the processor is slower by the same factor as the FPGA.
+        // FPGA's clock; FSMC accesses use this ratio in any case. Cycle counts are then the same as
+        // on the board, and the processor is slower by the same factor as the FPGA.
         uint32_t hclkHz = 120'000'000;
         // Guard time, ms; 0 keeps the program's value. The machine writes the guard time to the
         // variable uav_guardMs (uav.h) after each start, as a debugger would do. A program without

@@ -31,7 +31,7 @@ constexpr uint64_t margin = 2; // number of clocks before an event that are alwa
 // number of clocks after a carry of the phase in which the tick of this carry may still have
 // effects
 constexpr uint64_t settling = 8;
-// number of clocks for which only the platform is skipped, at first; this number grows later
+// initial number of clocks for which only the platform is skipped; the number grows later
 constexpr uint64_t least = 8;
 constexpr unsigned longest = 32; // largest number of clocks between two comparisons of a busy chip
 // number of comparisons of a busy chip between two records of the cores that have changed
@@ -229,7 +229,7 @@ QuietSpan::Clocks QuietSpan::look(Clocks most) {
     }
     if (!isPlatformLikeImage() || !learn(now)) {
         blame();
-        if (isFixed_ && age(now.phase) < settling) // the tick changed other state than counters
+        if (isFixed_ && age(now.phase) < settling) // the tick changed more than counters
             takeImage();
         else
             beginPause();
@@ -248,7 +248,7 @@ QuietSpan::Clocks QuietSpan::look(Clocks most) {
     since_ = 0;
     if (isLike) {
         rest_ = least;
-        // if other state than counters has changed, the next clock is compared again
+        // if anything except counters has changed, the next clock is compared again
         return isAllFixed_ ? clocks : Clocks{};
     }
     blame();

@@ -95,10 +95,10 @@ private:
     std::vector<unsigned char> image_; // state of the chip at the last full comparison
     bool hasImage_ = false;
     Counters before_{};       // counters at the last comparison
-    bool isFixed_ = false;    // true if, of the platform's state, only counters change
-    bool isAllFixed_ = false; // true if, of the whole chip's state, only counters change
-    // true if there was a clock with a low stirs_o in which, of the platform's state, only counters
-    // changed
+    bool isFixed_ = false;    // true if the platform's state, except for counters, does not change
+    bool isAllFixed_ = false; // the same for the state of the whole chip
+    // true if there was a clock with a low stirs_o in which the platform's state, except for
+    // counters, did not change
     bool isCalm_ = false;
     bool stirs_ = true;   // value of stirs_o before the next clock
     bool stirred_ = true; // value of stirs_o before the last clock

@@ -2,8 +2,8 @@
 //
 // stm32f2: models the parts of an STM32F2 that the firmware uses: the Cortex-M3, flash, RAM, FSMC,
 // clock, pins, EXTI, CRC unit, watchdog, random number generator and backup SRAM, as described in
-// RM0033. An access is a bus fault in three cases: it goes to any other address, its peripheral's
-// clock is off, or it goes to the FSMC while one of the FSMC's pins is not switched to the FSMC.
+// RM0033. An access causes a bus fault in three cases: it goes to any other address, the clock of
+// its peripheral is off, or it goes to the FSMC while one of the FSMC's pins has another function.
 
 #pragma once
 
@@ -23,9 +23,9 @@
 class Stm32F2 : private CpuBus {
 public:
     struct Config {
-        // Number of the processor's HCLK cycles per HCLK cycle of the FSMC pins. It is more than 1
-        // if the FPGA's clock is slower than on the board, because the FSMC pins are then also
-        // slower, but the processor is not.
+        // Number of HCLK cycles of the processor in one HCLK cycle of the FSMC pins. The number is
+        // more than 1 if the FPGA's clock is slower than on the board: the FSMC pins are then
+        // slower as well, but the processor keeps its speed.
         unsigned coreCyclesPerHclk = 1;
         uint32_t hclkHz = 120'000'000;     // processor clock, Hz in simulated time
         uint64_t seed = 1;                 // seed of the random number generator
@@ -46,8 +46,8 @@ public:
     // Sets the level at one of the pins 0 to 4 of port B, which can be inputs of EXTI.
     void setPinB(unsigned pin, bool high) { setPin(1, pin, high); }
     // Sets a function that is called when time has passed, after each step of the pins. The
-    // function returns the time, ns, at which it must be called next; while the processor sleeps,
-    // it may be called at this time only.
+    // function returns the time, ns, at which it must be called next. While the processor sleeps,
+    // calls before this time may be omitted.
     void onTime(std::function<uint64_t()> called) { onTime_ = std::move(called); }
 
     // Model of the FPGA's flash, connected to SPI 1 (PA4..7), with PROGRAM_B on PC0 and DONE on

@@ -16,7 +16,7 @@ using Names = std::vector<std::string>;
 struct KindName {
     const char* name;
     WireFault::Kind kind;
-    const char* unit; // unit of its value; empty without a value
+    const char* unit; // unit of the fault's value; empty if it has none
 };
 constexpr KindName kinds[] = {{"open", WireFault::Open, ""},
                               {"stuck0", WireFault::Stuck0, ""},

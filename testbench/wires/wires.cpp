@@ -62,7 +62,7 @@ void Wires::plant(const WireFault& fault) {
     }
 }
 
-// Joins end 0 of each address line with the next line.
+// Joins end 0 of each address line with end 1 of the line with the next number.
 void Wires::shiftAddress() {
     constexpr unsigned count = 25;
     for (unsigned line = count; line-- > 0;) {

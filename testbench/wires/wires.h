@@ -42,9 +42,11 @@ public:
         settle(now);
         return nodes_[nodeOf_[2 * net + end]].level != inverted_[2 * net + end];
     }
-    // Returns the time at which a pull changes the level of a wire; ~0 if none does.
+    // Returns the next time at which a pull changes the level of a wire; ~0 if no such change is
+    // due.
     uint64_t nextChange() const { return due_; }
-    // Returns how many times two drivers have worked against each other; only faults cause this.
+    // Returns how many times two drivers have driven a net to opposite levels; only faults cause
+    // this.
     uint64_t fights() const { return fights_; }
     // Returns whether edges of this net arrive more than once.
     bool isRinging(unsigned net) const { return ringing_[net]; }
@@ -56,7 +58,7 @@ private:
         bool fixed = false, fixedLevel = false; // a short to a supply
         // pull of another part; it is stronger than the pulls of the chips
         Level otherPull = None;
-        // time at which a pull began to work against the level
+        // time since which a pull has been opposite to the level
         uint64_t since = 0;
         bool moving = false, fighting = false;
     };

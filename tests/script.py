@@ -78,9 +78,10 @@ class Script(unittest.TestCase):
         self.assertTrue(right, f"exit status {done.returncode} of {words}: {self.said[-20000:]}")
 
     def make(self, *words, tree=TREE, build="build", **how):
-        """Runs a command with make like a user, in the whole source tree or in a small tree of the
-        test. Everything that the command would build and install already exists, unless `build` is
-        None."""
+        """Runs a command through make, as a user does. `tree` is the source tree in which the
+        command works: the whole tree, or a small one that the test has written. `build` is a build
+        folder in which everything already exists, so that the command builds and installs nothing;
+        with None, the command builds what it needs."""
         ours = {
             name: value
             for name, value in os.environ.items()

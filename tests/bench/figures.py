@@ -33,7 +33,8 @@ NOTES = {  # notes that are printed below the titles
             "if a layer\nexceeds its smaller budget in "
             "[`tests/limits.toml`](../tests/limits.toml)."}
 
-# Patterns for the parts of names that become columns, in tables of two to six columns
+# Patterns of those parts of a figure's name that become a column heading. Figures whose names
+# differ only in such a part share a row if the row has two to six columns.
 AXES = [r"\d+ vehicles?", r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", r"interferer \d+ %",
         "in the clear|encrypted|with a key", r"of \d+ bytes", r"\d+ ports", r"HCLK \d+ MHz"]
 HEAD = """# Figures
@@ -48,8 +49,9 @@ modems could transfer, including the overhead of frames. """
 
 
 def figure(name, value, unit, limit=None, peer=None, ratio=None):
-    """Returns an entry for the figure. `limit`, or the figure `peer` of another system, is compared
-    with it."""
+    """Returns the entry of a figure for the JSON file. The figure is compared with `limit` if it is
+    given. `peer` is a text about another system with which the figure was compared, and `ratio` is
+    the result of this comparison."""
     entry = {"name": name, "value": value, "unit": unit, "command": "make bench"}
     if limit:
         entry.update(limit=limit, share=round(value / limit, 3))
@@ -79,9 +81,9 @@ def compared(entry):
 
 
 def split(name):
-    """Finds the part of a name that one of the patterns AXES matches, such as "5 vehicles". Returns
-    (the pattern, the rest of the name) and this part; (None, name) and None if no pattern
-    matches."""
+    """Splits a name at the part that one of the patterns AXES matches, such as "5 vehicles".
+    Returns (the pattern, the rest of the name) and the matched part. If no pattern matches, returns
+    (None, name) and None."""
     for axis in AXES:
         found = re.search(f",? ({axis})", name)
         if found:
@@ -91,8 +93,9 @@ def split(name):
 
 def tables(rows):
     """Returns the lines of the tables for rows of (name, value, unit, compared)."""
-    # series: the cells of each row with several columns, by pattern, rest of the name and unit;
-    # plain: a row for each single figure, with the cells of its series
+    # series: the cells of figures that can share a row; its keys are (pattern, rest of the name,
+    # unit). plain: for each figure, the cells of its series, and its line in the table of single
+    # figures.
     series, plain = {}, []
     for name, value, unit, limit in rows:
         key, column = split(name)

@@ -21,8 +21,10 @@ const Ground::Call isAlive = {"uav", "isAlive", 0, {7, 0}};
 // vehicle's processor.
 class MeasuredFlight : public GroundAndChip {
 public:
-    // `scaled`: 1 for the ratio of clocks on the board; 50 makes processor time realistic in
-    // proportion to radio time. `key`: key of the link, or empty. `isTransparent`: true if the
+    // `scaled`: factor by which the processor's clock is faster than 6/5 of the simulated fabric
+    // clock. With 1, the ratio of the clocks is that of the board. With more (a simulated chip with
+    // a lower CLK_HZ), the processor still runs at 120 MHz, so that it is as fast as on the board
+    // in relation to the radio. `key`: key of the link, or empty. `isTransparent`: true if the
     // vehicle's modem is in transparent mode.
     MeasuredFlight(const std::string& elf, double scaled, const std::vector<uint8_t>& key = {},
                    bool isTransparent = false)
@@ -91,7 +93,7 @@ private:
 
 constexpr double hclkPerClk = 1.2;
 constexpr double entering = 12,
-                 // cycles of exception entry and exit, which pass after the call of the listener
+                 // cycles of exception entry and exit; the listener is called before they pass
     leaving = 10;
 constexpr unsigned fpgaInterrupt = FirstInterrupt + 6; // EXTI0
 constexpr uint8_t fpgaPriority = 0x50;
@@ -130,8 +132,8 @@ void measureLatencies(MeasuredFlight& f) {
     auto switches = std::make_shared<Range>();
     auto routines = std::make_shared<Range>();
     auto rose =
-        // time at which the interrupt rose, in fabric clocks; exact during an access and during
-        // sleep
+        // fabric clock in which the interrupt line rose; exact if the processor sleeps or accesses
+        // the FPGA at this time
         std::make_shared<uint64_t>(0);
     auto begin = std::make_shared<std::array<double, Exceptions::count>>();
     f.soc.onIrq([&f, rose](bool high) {
@@ -210,8 +212,8 @@ void measureCalls(MeasuredFlight& f, unsigned calls, const std::string& what, do
 }
 
 void measureStream(MeasuredFlight& f, const std::string& what) {
-    // Floods the vehicle with one-way requests of 1 KB to an object that does not exist. A window
-    // of the link is always full, and more requests wait in the queue. This loads the link and
+    // Floods the vehicle with one-way requests of 1 KB to an object that does not exist. The link's
+    // send window is always full, and more requests wait in the queue. This loads the link and
     // IceC's dispatcher, but no servant, and there are no replies.
     f.ground.replies.clear();
     uint64_t bytes = 0;
@@ -221,7 +223,7 @@ void measureStream(MeasuredFlight& f, const std::string& what) {
             f.ground.call(0, "missing", "listen", 0, load);
         return false;
     };
-    double end = f.seconds() + 1; // the measurement begins after a second of calls
+    double end = f.seconds() + 1; // the requests run for a second before the measurement begins
     f.until([&] { return feed() || f.seconds() > end; }, 3, "the stream");
     double awake = f.awake(), waiting = f.waiting(), began = f.seconds();
     bytes = f.ground.deliveredBytes;
@@ -278,7 +280,8 @@ void measureStacks(MeasuredFlight& f, const std::string& what) {
     }
 }
 
-// Measures the only stack of the minimal program; at power-on RAM contains zeros.
+// Measures how much of its only stack the minimal program uses. RAM contains zeros at power-on, so
+// the stack has been used down to the lowest word that is not 0.
 void measureMinimal(const std::string& elf) {
     MeasuredFlight f(elf, 1);
     measurePings(f, "minimal");

@@ -36,8 +36,8 @@ struct Chip {
     SocModel soc;
 };
 
-// Measures block transfers by the driver, including the set-up of the bank, the reading ahead, and
-// the check at the end.
+// Measures block transfers by the driver. Their time includes the set-up of the bank, the bridge's
+// reading ahead, and the driver's check at the end.
 double streams(unsigned hclk, uint64_t seed, uint32_t halfwords, bool& right) {
     Chip chip(hclk, seed);
     Random random(seed);

@@ -29,8 +29,8 @@ constexpr Mix mixes[] = {{"reads", 0, 0},
                          {"each port reads and writes", 0.5, 0.5}};
 
 // Returns the number of clocks that the MCB needs for the requests, from the first command to the
-// last word. The driver loses no clock, and always has words to write and room for words. Request
-// is any type with the members address, words and read.
+// last word. The MCB is driven without a lost clock: words to write are always ready, and words
+// that were read are taken at once. Request is any type with the members address, words and read.
 template <class Request> uint64_t directMcb(size_t bytes, const std::vector<Request>& requests) {
     McbModel memory(bytes);
     while (!memory.pins.calibDone)
@@ -75,8 +75,8 @@ template <class Request> uint64_t directMcb(size_t bytes, const std::vector<Requ
     return clocks;
 }
 
-// Runs streams on all ports, each through a separate part of the memory. Returns the worst share of
-// the limit.
+// Runs streams on all ports, each through a separate part of the memory. Returns the throughput of
+// all ports together as a fraction of the MCB's limit.
 template <class Module, unsigned ports>
 double stream(const Mix& mix, unsigned size, uint64_t cycles, uint64_t seed) {
     using Bench = MemoryBench<Module, ports>;

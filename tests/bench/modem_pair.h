@@ -234,8 +234,9 @@ bool passUntil(uint64_t& now, uint64_t end, RfChannel& air, Ends& ends, Done don
     return true;
 }
 
-// Two ends of a class that is derived from ModemEnd, and the air between them. The first end has
-// called; both links are up, and channels 0 to `channels` - 1 are open.
+// Two ends, and the air between them. End is a class that is derived from ModemEnd. The constructor
+// starts the first end's link, and returns when both links are up and channels 0 to `channels` - 1
+// are open.
 template <class End> class ModemPair {
 public:
     template <class... Arguments>
@@ -299,9 +300,9 @@ struct BareModems {
     uint64_t now = 1'000'000;
 };
 
-// Returns the lower limit of a round trip on half-duplex air (formula in docs/link.md), ms, as the
-// median of simulated trips. `out` bytes are sent; after the last of them has arrived, `back` bytes
-// are returned. Each of these two messages fits into one packet. RN is 2.
+// Returns the lower limit of a round trip on half-duplex air (formula in docs/link.md), in ms: the
+// median of many simulated trips. One modem sends `out` bytes; when the last of them has arrived,
+// the other modem returns `back` bytes. Each of the two messages must fit into one packet. RN is 2.
 inline double floorMs(size_t out, size_t back, bool isEncrypted = false) {
     BareModems w(RfWeather(), 1, isEncrypted, 2);
     const std::vector<uint8_t> bytes(std::max(out, back), 1);

@@ -184,13 +184,13 @@ class Call(unittest.TestCase):
         self.assertRegex(self.ask("nothing")[2], r"^done in [0-9.]+ ms\n$")
 
     def test_refused(self):
-        """Wrong arguments are rejected before anything is sent; no server listens at this
-        address."""
+        """Wrong arguments are rejected before anything is sent: the calls name an address at which
+        no server listens."""
         self.assertEqual([ADDRESS.read(text) for text in ("9", "0x9", "0x0009", "65535")],
                          ["0x0009", "0x0009", "0x0009", "0xFFFF"])
         for words, message in REFUSED.items():
-            # whether an operation exists is known only after the object has been asked for its
-            # interface
+            # These two calls need the server: `call` must ask the object for its interface before
+            # it knows that the operation does not exist.
             unknown = words.split()[0] in ("ad", "ice_pong")
             target = () if unknown or {"--gateway", "--device"} & set(words.split()) \
                 else ("--gateway", "127.0.0.1:1")
@@ -263,7 +263,7 @@ class Call(unittest.TestCase):
             Catalogue(str(BUILD)).find("fri.filter")
 
     def test_registers(self):
-        """Calls a core by its registers; names and values are checked."""
+        """Calls a core through its registers. Unknown names and wrong values are rejected."""
         build = Path(self.work.name, "build")
         (build / "gen").mkdir(parents=True)
         (build / "slice").symlink_to(BUILD / "slice")
@@ -339,7 +339,7 @@ with Ice.initialize() as communicator:
             return usage.ru_utime + usage.ru_stime
 
         times = {"own": [], "ours": []}
-        # CPU time, because the load of the machine would decide a comparison of elapsed times
+        # Compares CPU times, because elapsed times depend on the load of the machine.
         for _ in range(5):
             for name, words in ("own", program), ("ours", called):
                 begin = used()

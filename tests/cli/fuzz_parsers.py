@@ -5,11 +5,11 @@
     fuzz_parsers.py PARSER BUILD INPUTS [FILE...]
 
 The parser must either read a file, or reject it with a proper message and an exit status that is
-not 0. It must not write output for a file that it rejects. Everything else is a finding, also the
-use of more than 5 s of CPU time. Inputs that reach a new line of the parser are mutated further.
-FUZZ=600 runs for 600 s instead of INPUTS inputs, and starts with the inputs that earlier runs
-stored (~/.cache/icesoc/fuzz). SEED (default 1) selects the mutations. If FILE is given, only these
-files are read, unchanged.
+not 0. It must not write output for a file that it rejects. Any other behaviour is reported as a
+finding, and so is the use of more than 5 s of CPU time. Inputs that reach a new line of the parser
+are mutated further. FUZZ=600 runs for 600 s instead of INPUTS inputs, and starts with the inputs
+that earlier runs stored (~/.cache/icesoc/fuzz). SEED (default 1) selects the mutations. If FILE is
+given, only these files are read, unchanged.
 """
 import contextlib
 import dataclasses

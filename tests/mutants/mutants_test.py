@@ -168,7 +168,9 @@ class Cases(Script):
         os.environ["PATH"] = f"{self.work}:{path}"
         self.draw(status=2)
         self.has("no such thing", "^mutants: 1 do not run", "^pair  *100.0 %")
-        self.bugs(wrong=(TWICE, ""))  # names of seeded bugs do not restrict the proofs
+        # With DRAW, BLOCK is the name of a proof, so it is not checked against the names of seeded
+        # bugs.
+        self.bugs(wrong=(TWICE, ""))
         self.draw(2, "nothing")
         self.has("no proof has a name that begins with nothing")
 

@@ -100,8 +100,8 @@ class Cases(Project):
 
     def test_commands_radio(self):
         """Runs short parts of commands that normally take hours."""
-        # Both soak and fly would run test_chip_soak, which is also a separate test. Here only `fly`
-        # runs it.
+        # `soak` and `fly` both run test_chip_soak. Here the filter skips it in `soak`, so that it
+        # runs only once.
         os.environ["GTEST_FILTER"] = "-ChipSoak*"
         self.user("soak MINUTES=0.01 FUZZED=1000")
         self.has("^modem controller: 1000 bytes of noise", "^link layer: 10000 bytes of noise",

@@ -197,8 +197,8 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
         self.assertEqual(blocks.last_green(SimpleNamespace(runs=runs), of), {"x": "five"})
 
     def lights(self, words="--name 'a[.]'", status=0, **states):
-        """Runs tests, by default those that pass. Checks the states of the statuses named in
-        `states`."""
+        """Runs tests, by default those that pass. Then checks the status summary: each keyword
+        argument is the name of a status and its expected state."""
         self.regress(words, status)
         self.has(*(f"^{name}  *{state}" for name, state in states.items()))
 

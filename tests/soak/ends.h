@@ -50,8 +50,9 @@ public:
         for (int channel = 0; channel < LINK_CHANNELS; ++channel)
             totals_.unknown += check_.forget(channel);
     }
-    // Checks a message that has arrived. Returns an error text, or an empty string if the message
-    // is correct; on an error the caller tries the Mail of the other possible sender.
+    // Checks a message that has arrived. Returns an empty string if the message is correct,
+    // otherwise an error text. If two stations share an address, the message may be from either of
+    // them; after an error, the caller therefore tries the Mail of the other one.
     std::string arrived(int channel, const Bytes& bytes, bool isRival) {
         const std::string fault = check_.arrived(channel, bytes, isRival);
         totals_.received += fault.empty();
@@ -105,10 +106,11 @@ public:
             out_.push_back(mailOf(name, target));
         }
     }
-    // name of the rival in this test; on the air it uses the address 0 of the first ground station
+    // number of the rival within this test; its address on the air is 0, as that of the first
+    // ground station
     static constexpr int rival = 0x10000;
     // Restarts the program. `hasKeys` is true if each pair of vehicle and ground station has a key.
-    // This key depends on the number of key changes of the pair.
+    // The key follows from the number of key changes of this pair.
     void boot(uint64_t now, bool hasKeys) {
         now_ = now;
         begin();
@@ -136,7 +138,7 @@ public:
             if (out_[peer] && isUp(peer) && random_.chance(rate))
                 offer(peer);
         if (random_.chance(0.002))
-            isBusy_ = random_.chance(0.1); // while it is busy, the program accepts no messages
+            isBusy_ = random_.chance(0.1); // a busy program accepts no messages
     }
     bool isWell() const {
         for (size_t peer = 0; peer < peers(); ++peer)
@@ -176,7 +178,7 @@ private:
     void onOutcome(size_t peer, U32 id, Link_Outcome outcome) override {
         out_[peer]->report(id, outcome);
     }
-    // Accepts a message for link and program in one step, unless the program is busy.
+    // Checks a message and accepts it (0), unless the program is busy (1).
     int onMessage(size_t peer, int channel, const U8* data, U32 size) override {
         if (isBusy_)
             return 1;

@@ -94,8 +94,8 @@ public:
     const RfChannel::Counters& air() const { return air_.counters(); }
 
 private:
-    // Makes a guest appear; if it is already present, it disappears, and the outcome of its pending
-    // messages is unknown. Returns the number of appearances, 0 or 1.
+    // Switches a guest on if it is off, and off if it is on. The outcome of its pending messages is
+    // then unknown. Returns 1 if the guest was switched on, otherwise 0.
     unsigned visit(size_t number) {
         End& guest = *ends_[vehicles_ + grounds_ + number];
         const bool comes = guest.isGone();
@@ -144,8 +144,8 @@ private:
         air_.weather = RfWeather::drawn(random_, 40);
         attacker_.hinder(attacked_ && !isFleet_ && random_.below(2));
         air_.weather.delayNs = random_.below(2) ? 0 : random_.below(20) * msNs;
-        // messages per ms: a low rate, or more than the air can carry; in a fleet an eighth of this
-        // rate, because many links share the air
+        // messages per ms: in most cases a low rate, otherwise more than the air can carry. In a
+        // fleet an eighth of this, because many links share the air.
         rate_ = (random_.below(3) ? 0.08 : 0.8) / (isFleet_ ? 8 : 1);
     }
     // Injects a random fault at one of the ends; with more ends there are more faults.

@@ -15,15 +15,15 @@
 #include <utility>
 #include <vector>
 
-// A function that returns a text returns an empty string if the link keeps its promise, and
-// otherwise an error.
+// Checks that a link delivers messages as it promises. Functions that return a string return an
+// empty string if the promise was kept, otherwise an error text.
 class DeliveryCheck {
 public:
     using Bytes = std::vector<uint8_t>;
 
     // Records that a message is sent. The messages of one stream must arrive in the order of these
-    // calls. `id` is the number of the message; no other message without a report may have this
-    // number.
+    // calls. `id` is the number of the message. It must differ from the numbers of all messages
+    // that have not been reported yet.
     void sent(int stream, uint32_t id, const Bytes& message) {
         Stream& s = streams_[stream];
         s.messages.push_back({id, digestOf(message)});

@@ -131,7 +131,7 @@ class Timing(unittest.TestCase):
         self.assertEqual(f["luts"], [10, 11, 12, 13, 14])
         self.assertEqual(f["clocks"], [102, 104, 105, 108, 109])
         self.assertEqual(report.clock_of(f), "105.0 (102.0-109.0)")
-        # The clock is rounded as on the page.
+        # clock_text() rounds to 0.1 MHz, as the page does.
         self.assertEqual([baseline.clock_text(mhz) for mhz in (104.46, 104.44, 104.0)],
                          ["104.5", "104.4", "104.0"])
 

@@ -36,7 +36,8 @@ protected:
         }
         chip_.onTime([this](uint64_t now) {
             far_.advance(now);
-            return std::min(far_.nextEvent(), now + 100'000); // bytes may arrive in the meantime
+            // at least every 0.1 ms, because bytes on the line may cause new events
+            return std::min(far_.nextEvent(), now + 100'000);
         });
     }
     uint32_t read(uint32_t word) { return fsmc_.read32(slot + 4 * word); }

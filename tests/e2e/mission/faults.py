@@ -30,8 +30,9 @@ from icesoc.util.process import children
 STATUS = record.of_tree("testbench/status/sim_status.toml")
 IMAGE = "/usr/share/xplanet/images/earth.jpg"
 LONGEST = 240.0  # time limit of a mission on a busy machine, s
-REAL = 0.3  # part of each moment that passes before simulated time starts, s
-LAST = 2.0  # latest moment, s; for faults without a time, moment / LAST sets the size of the fault
+REAL = 0.3  # first part of each moment, which is real time since the start of the process, s
+# latest moment, s. A fault that has a size instead of a time scales its size with moment / LAST.
+LAST = 2.0
 
 
 def proc(pid, name):
@@ -137,8 +138,8 @@ def expect(condition, mission, text):
 
 
 def is_whole(out):
-    """Checks that no file is only partly written: reads all pictures and reports. Returns true if
-    no temporary file is left."""
+    """Reads all pictures and JSON files, to check that each of them is complete. Returns True if no
+    temporary file is left."""
     from PIL import Image
     for path in Path(out).iterdir():
         if path.suffix == ".png":

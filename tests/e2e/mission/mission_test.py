@@ -185,7 +185,8 @@ class Cases(Script):
                  file=f"{wave}.program.vcd")
 
     def patched(self, name, symbol, offset, value):
-        """Writes a copy of the firmware that has other bytes at a symbol."""
+        """Writes a copy of the firmware in which the bytes at `symbol` + `offset` are replaced by
+        `value`."""
         shutil.copy(FIRMWARE, name)
         there = f"{{unsigned char[{len(value)}]}}((char*)&{symbol} + {offset})"
         self.ask("gdb-multiarch", "-nx", "-batch", "--write", name, "-ex",
@@ -197,7 +198,7 @@ class Cases(Script):
         offer the core, and reports the reason to the ground."""
         lines = (BUILD / "gen/soc_cores.c").read_text().split("hw_contracts[")[1].split("\n")[1:]
         row = 1 + next(n for n, line in enumerate(lines) if '"vision"' in line)
-        # last word of the vision core's entry
+        # the last word of the vision core's row, which is the hash of its registers
         self.patched("other.elf", "hw_contracts", 20 * row - 4, b"\xff" * 4)
         self.refused("no object 'hwengine1'; vision: expected registers with hash 0xFFFFFFFF, as "
                      "the firmware was built for, got 0x.* in the chip: rebuild both from the same "
@@ -397,14 +398,15 @@ class Cases(Script):
 
     def test_mistakes(self):
         """A start that fails changes nothing in the folder. The tested mistakes are a wrong
-        picture, a wrong description of the flight, a wrong port, and a port without a modem. For
-        the last two, the test starts the ground's program without a simulator."""
+        picture, a wrong description of the flight, a wrong port, and a port without a modem. The
+        two wrong ports are tested with the ground's program alone, without a simulator."""
         write("mine/report.md", "mine\n")
         shutil.copy("mine/report.md", ".")
         os.symlink(self.out / "mine/report.md", "calls.jsonl")
         write("bad.png", "this is not a picture\n")
         self.refused("expected a PNG, JPEG or PGM file", image="bad.png")
-        self.lacks("127.0.0.1")  # the address of the page would be printed before this error
+        # if the page had been started, its address would have been printed before this error
+        self.lacks("127.0.0.1")
         for name in "report.md", "calls.jsonl":
             self.assertEqual(Path(name).read_text(), "mine\n")
         for text in '"text"', "[", "[{}]":

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // memory_test: compares the memory controller with a reference memory, under random traffic from
-// all ports. It also tests a port before the calibration has ended.
+// all ports. It also tests accesses that a port makes before the memory is calibrated.
 
 #include "VMemoryMcb2.h"
 #include "VMemoryMcb3.h"

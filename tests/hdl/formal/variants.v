@@ -27,7 +27,8 @@ module same (
     reg  [`WIDTH-1:0] was = 1;
     always @(posedge clk_i)
         was <= bits_i;
-    // With TOGETHER, the simulation makes no bit late unless one of the upper bits changes.
+    // With TOGETHER, the simulation delays bits only in a clock in which one of the upper TOGETHER
+    // bits changes.
     wire [`WIDTH-1:0] moved = bits_i ^ was;
     wire [`WIDTH-1:0] late  =
         `TOGETHER != 0 && moved >> (`WIDTH - `TOGETHER) == 0 ? {`WIDTH{1'b0}} : mask_i;

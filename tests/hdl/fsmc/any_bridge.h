@@ -54,7 +54,8 @@ protected:
         EXPECT_EQ(b_.errors, 1u);
     }
 
-    // A read from a memory that does not answer ends in an error. The caller ends the hang.
+    // Checks that a read ends in an error if the memory does not answer. Afterwards the memory
+    // still does not answer; call memoryWorksAgain().
     void readOfAHungMemoryEndsInAnError() {
         b_.memory.setByte(0x40, 0x77);
         b_.memory.hold(true);

@@ -52,7 +52,8 @@ TEST_F(Bridge, ARegisterReadRightBehindAWriteComesAfterIt) {
         fsmc_.idle(random.below(8));
         fsmc_.write32(at(word), value);
         EXPECT_EQ(fsmc_.read32(at(word)), value) << "SEED=" << testSeed() << " access " << i;
-        // FSMC_streamWrite reads a register at its end, so the write must have reached the memory
+        // the last step of FSMC_streamWrite reads a register, so the data must be in the memory
+        // when it returns
         FSMC_streamWrite(place, &last, 1);
         EXPECT_EQ(written(), last) << "SEED=" << testSeed() << " stream " << i;
     }
@@ -76,8 +77,8 @@ TEST_F(Bridge, ARegisterWrittenTooEarlyIsLostAndReported) {
         unsigned errors = b_.errors;
         b_.slave.hung = true; // the slave hangs, but for less than the time-out
         fsmc_.write32(bcr2, bcr & ~fsmc::bcrAsyncWait);
-        // The second write below may change the high half of the word that is being transferred, so
-        // it writes the value that this half already has.
+        // The lost write below (to word 41) may change the high half of the word that is still in
+        // transfer. Therefore it writes the value that this half already has.
         if (behindWrite)
             fsmc_.write32(at(40), 0x5A5A1234);
         else
@@ -104,9 +105,9 @@ TEST_F(Bridge, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
     memoryWorksAgain();
 }
 
-// If the queue has no room for a write, the bridge reports an error and lets the write end, as it
-// does for a read. Two entries of the queue are reserved for such writes. When these are also full,
-// writes are lost.
+// If the queue has no room for a write, the bridge reports an error and ends the access, as it does
+// for a read without an answer. Two entries of the queue are reserved for such writes. When these
+// entries are also full, further writes are lost.
 TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
     b_.keepEvents();
     const uint32_t& event = b_.slave.words[b_.slave.clearWord];

@@ -146,8 +146,8 @@ TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
 // After a doorbell, which is an access to a register, the bridge must discard data that it has read
 // ahead, because this data may be old. It must also discard data that is still arriving, or that is
 // requested in the clock of the doorbell. At 168 MHz, the pins can already have the doorbell's
-// address while the memory's side still sees the read. Here this address is equal to the address of
-// the block in its window.
+// address while the memory's side still sees the read. In this test, the doorbell and the block
+// have the same address within their windows.
 TEST(Modes, WhatADoorbellDropsOnItsWayIsNotTakenForFresh) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0.1, 168, 100);
     ASSERT_EQ(b.init(plainModes[0].bank), FSMC_OK);

@@ -117,7 +117,7 @@ module nwait_bench;
         .npi_rd_pop_o(npi_pop), .npi_rd_empty_i(npi_empty), .npi_init_done_i(1'b1)
     );
 
-    // ---- NWAIT may end while the pins are stable, and may not begin
+    // ---- while the pins are stable, NWAIT may be released, but must not be asserted
     time    moved = 0;
     integer glitches = 0, lates = 0, errors = 0, waits = 0;
     always @(a or d or ne_n or noe_n or nwe_n) moved = $time;

@@ -93,8 +93,8 @@ protected:
         return packet;
     }
 
-    // Returns the number of errors without the retries of the set-up, because the set-up may have
-    // to search for the baud rate.
+    // Returns the error counters, except that of the set-up's retries: the set-up may need retries
+    // to find the baud rate.
     uint32_t errors() { return bus_.read(MODEM_ERRORS) & ~MODEM_ERRORS_RETRIES_MASK; }
     // Drives the line bit by bit in place of the modem's model, which cannot do this. The model is
     // silent during this time.

@@ -160,7 +160,8 @@ TEST(Apb, RegistersOfOneByteAreReachedThroughPackedStructures) {
         slot.bus_.write(MY_NARROW_PAGE, i / 8 * 32);
         EXPECT_EQ(slot.bus_.read(MY_NARROW_REG0 + i % 8), 0x80 + i);
     }
-    EXPECT_EQ(slot.bench_.top().lamp_o, 1u); // the lamp's pin is bit 7 of register 8, with colour 0
+    // Register 8 contains 0x88: its bits 2 to 0, the colour, are 0, and its bit 7 lights the lamp.
+    EXPECT_EQ(slot.bench_.top().lamp_o, 1u);
     EXPECT_TRUE(slot.bus_.transfer(false, MY_NARROW_REG9, 0).error)
         << "the core refuses this access by PSLVERR";
 }

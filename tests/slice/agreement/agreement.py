@@ -3,10 +3,10 @@
 """agreement: checks that slice2c accepts, warns about and rejects the same code as ZeroC's
 slice2cpp.
 
-agreement.py SLICE2C CASES.ice WORK   A case begins with a line "// ok: ...", "// warning: ..." or
-    "// error: ..." and ends at the next one. Both compilers must accept it silently, accept it with
-    a warning, or reject it; the first line that they report must be the same. Then tests each
-    keyword of Slice as a name of each kind.
+agreement.py SLICE2C CASES.ice WORK   Each case in the file begins with a line "// ok: ...",
+    "// warning: ..." or "// error: ..." and ends at the next such line. Accordingly, both compilers
+    must accept the case silently, accept it with a warning, or reject it; the first line that they
+    report must be the same. Then each keyword of Slice is tested as a name of each kind.
 agreement.py SLICE2C FOLDER           Tests ZeroC's own wrong files (icesoc.util.fetch zeroc). For
     each line with a message of slice2cpp, slice2c must also report a message, or one of the REASONS
     must apply.

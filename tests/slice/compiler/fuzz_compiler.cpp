@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// fuzz_compiler: entry point for libFuzzer: it passes any text through lexer, parser, checks and
-// all generators, as slice2c does. A text without errors must result in C, and each of its [":hw"]
-// interfaces in registers, wrappers, servant, proxy and skeletons. Nothing may crash, hang or leak
-// (built with sanitizers).
+// fuzz_compiler: entry point for libFuzzer. It passes any text through lexer, parser, checks and
+// all generators, as slice2c does. If a text has no errors, the generators must write C for it; for
+// each of its [":hw"] interfaces they must also write registers, wrappers, servant, proxy and
+// skeletons. Nothing may crash, hang or leak (built with sanitizers).
 
 #include "c/generator.h"
 #include "front/front.h"

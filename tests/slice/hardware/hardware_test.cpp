@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// hardware_test: tests that generated servants can call cores. A servant uses the FSMC driver, the
-// port of this driver is connected to the register bus of a slot, and a generated wrapper connects
-// the core.
+// hardware_test: tests that generated servants can call cores. A servant calls the FSMC driver. The
+// driver's accesses go directly to the register bus of a slot, to which a generated wrapper
+// connects the core.
 
 #include "VCalculatorSlot.h"
 #include "VManySlot.h"
@@ -116,7 +116,8 @@ TEST_F(CalculatorServant, OtherCallsGoOnWhileALongOneIsUnderWay) {
     EXPECT_EQ(divide(8, 2), 4);
 }
 
-// Tests 64-bit values, floating point, and words that metadata selects, at the pins of the wrapper.
+// Calls operations with 64-bit values, with floating-point numbers, and with parameters whose
+// register words are chosen by metadata. Checks the pins of the wrapper.
 class WideEchoServant : public ::testing::Test {
 protected:
     WideEchoServant() {
@@ -179,9 +180,9 @@ bool isSame(const Demo_Five& x, const Demo_Five& y) {
     return std::memcmp(&x, &y, sizeof x) == 0;
 }
 
-// Tests an operation with 20 words of parameters and 20 words of results, and another with three
-// words, at the pins of the wrapper. (slice.hardware.vhdl.many shows that the VHDL wrapper behaves
-// the same.)
+// Calls an operation with 20 words of parameters and 20 words of results, and another one with
+// three words. Checks the pins of the wrapper. (slice.hardware.vhdl.many shows that the VHDL
+// wrapper behaves the same.)
 class ManyServant : public ::testing::Test {
 protected:
     ManyServant() {

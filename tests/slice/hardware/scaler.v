@@ -19,7 +19,7 @@ module scaler (
     wire [15:0] offset, limit;
     reg  [2:0]  state;
     reg  [6:0]  index;
-    reg  [47:0] earlier; // samples of the word that is not complete yet
+    reg  [47:0] earlier; // samples for the next word to be written
     reg  [31:0] total;
     reg  [15:0] largest, largest_index, over_index;
     reg         over;

@@ -102,8 +102,8 @@ def thrown(echo, module, ic, encoding, form, e):
 
 
 def hide(v, t, module, ic, values):
-    """Fills an instance of the class or exception Hidden... with random members. `values` is the
-    number of values that the members of `t` may contain."""
+    """Fills an instance of the class or exception Hidden..., which is derived from `t`, with random
+    members. `values` limits the number of values in each member of `t`."""
     # members of the instance may refer to the instance itself
     graph = [(v, t)] if t.kind == "class" else []
     for name, ft, tag in t.all_fields():
@@ -167,9 +167,9 @@ def lone(echo, module, encoding):
 
 
 def declared(echo, module, encoding):
-    """Sends a class that the file of the operation only declares, and interfaces by value. The
-    compact format forbids interface names that the receiver does not know; with encoding 1.0 Python
-    returns no interfaces."""
+    """Sends an instance of a class that the operation's Slice file declares but does not define,
+    and interfaces by value. The compact format forbids interface names that the receiver does not
+    know; with encoding 1.0 Python returns no interfaces."""
     for form in ("Compact", "Sliced"):
         sent = module.Later(7)
         sent.next = sent

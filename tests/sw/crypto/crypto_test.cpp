@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // crypto_test: checks that the firmware's Ascon-AEAD128 gives the known answers that Ascon's
-// authors published, and rejects a message with a wrong bit. Checks that its X25519 gives the
-// results of the standard and, for random numbers, the results of OpenSSL.
+// authors published, and rejects a message with a wrong bit. Checks that the firmware's X25519
+// gives the results of the standard and, for random numbers, the results of OpenSSL.
 
 #include "known_answers.h"
 #include "random.h"
@@ -83,7 +83,8 @@ Value multiply(const Value& number, const U8* point) {
     return result;
 }
 
-// Test of RFC 7748, 5.2: multiplies repeatedly, beginning with 9 as the number and as the point.
+// The iterated test of RFC 7748, 5.2: number and point are 9 at first. Each result becomes the next
+// number, and the previous number becomes the next point.
 TEST(X25519Code, GivesTheStandardsAnswerAfterAThousandTimes) {
     Value number = {9}, point = {9};
     for (int i = 0; i < 1000; ++i) {

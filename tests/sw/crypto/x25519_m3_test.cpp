@@ -49,7 +49,7 @@ TEST(X25519M3, TakesTheSameCyclesForAnyNumberAndALittleStack) {
             << "X25519 used more than 576 bytes of stack";
     }
     EXPECT_LT(cycles[0], 12'000'000u); // this number of cycles takes 100 ms at 120 MHz
-    // If the model stops before a multiplication, it counts 2 cycles more for this multiplication.
+    // The model counts 2 more cycles for a multiplication before which it has stopped.
     EXPECT_NEAR(double(cycles[0]), double(cycles[1]), 4);
     EXPECT_EQ(cycles[1], cycles[2]);
     std::printf("%llu cycles\n", static_cast<unsigned long long>(cycles[0]));

@@ -39,7 +39,8 @@ protected:
     void expectAnswer(int id = 1) {
         EXPECT_EQ(echo_->repeat(id, {1, 2}), (RadioTest::Bytes{1, 2}));
     }
-    // Asks for the number of notes until it has reached `wanted`.
+    // Asks the vehicle how many notes it has received, until it has received at least `wanted`.
+    // Then the number must be exactly `wanted`.
     void expectNoted(int wanted) {
         int noted = 0;
         for (int calls = 0; calls < 1000 && noted < wanted; ++calls)

@@ -17,7 +17,7 @@ struct Maintained : Ice::Object {
     bool ice_isA(std::string id, const Ice::Current&) const override {
         return id == "::IceSoC::Maintenance";
     }
-    // the gateway itself only calls ice_ping
+    // counts the calls of the clients; the gateway itself calls only ice_isA
     std::string ice_id(const Ice::Current&) const override {
         ++calls;
         return ice_staticId();
@@ -50,7 +50,8 @@ TEST_F(Gateway, MaintenanceIsReachedAtItsOwnDoor) {
         const std::string facet = name == "faceted" ? "f" : "";
         world_.uav->addFacet(servant, id, facet);
         const std::string proxy = name + (facet.empty() ? "" : " -f f");
-        // for the first call the gateway asks the object, for the second it uses the cached answer
+        // Before the first call, the gateway asks the object for its type. For the second call it
+        // uses the cached answer.
         for (int turn = 0; turn < 2; ++turn)
             expectRefusal(call(proxy, port_), "'" + name + "' is a maintenance object");
         EXPECT_EQ(whyFails(call(proxy, door)), "");
@@ -95,8 +96,8 @@ TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
     EXPECT_EQ(one.heard->calls, 6);
     EXPECT_EQ(two.heard->calls, 6);
     EXPECT_EQ(idle.heard->calls, 0);
-    // Passes a proxy of the program's object to an operation, as if the vehicle were to call the
-    // object later.
+    // Passes a proxy of the program's object to an operation, as a program does whose object the
+    // vehicle is to call later.
     const auto passes = [](const Program& program, const std::string& operation) {
         Ice::OutputStream out(program.ic.communicator());
         out.startEncapsulation();
@@ -108,7 +109,7 @@ TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
         out.finished(in);
         try {
             program.echo->ice_invoke(operation, Ice::OperationMode::Normal, in, result);
-            // expected, because the operation has no such parameter
+            // the vehicle may reject the call, because the operation has no such parameter
         } catch (const Ice::LocalException&) {
         }
     };

@@ -328,7 +328,7 @@ public:
     }
 };
 
-// Calls the witness. Returns the reply, or the name of the exception.
+// Calls a Witness. Returns its reply, or the name of the exception.
 std::string ask(const std::shared_ptr<Ice::ObjectPrx>& proxy, const std::string& operation,
                 Ice::OperationMode mode = Ice::OperationMode::Normal,
                 const Ice::Context& context = {}, const std::vector<Ice::Byte>& in = {}) {

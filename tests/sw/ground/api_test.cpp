@@ -131,7 +131,8 @@ TEST(Api, AfterNoiseFramesAreReadAgain) {
             Heard heard;
             for (uint32_t i = random.below(40); i; --i)
                 heard.feed(modem, {static_cast<uint8_t>(random.below(4) ? random.next() : 0x7E)});
-            // a wrong frame in the noise can delay only the first frames
+            // the noise may look like the beginning of a frame, which can delay at most these three
+            // frames
             for (int i = 0; i < 3; ++i)
                 heard.feed(modem, packetFrom(frames, 1, Bytes(60, 0x55)));
             heard.data.clear();

@@ -172,8 +172,8 @@ protected:
     pollfd none_ = {-1, 0, 0};
 };
 
-// Bytes that were counted but never arrive are considered read by an earlier program; the line
-// waits for them only once.
+// If the program's count includes bytes that never arrive, the line waits for them once. It then
+// assumes that they were read in the session of an earlier program.
 TEST(Pty, BytesThatNeverComeAreWaitedForOnce) {
     struct Modem : SerialClient {
         void fromHost(uint8_t, uint64_t) override {}
@@ -289,8 +289,8 @@ TEST_F(Step, WhoIsHeldByADebuggerIsWaitedFor) {
     close(ready[1]);
 }
 
-// If the function that decides whether to continue has returned false, it is not called again, and
-// the simulation does not wait for any program.
+// GroundStep gets a function that decides whether to continue. Once this function has returned
+// false, it is not called again, and the simulation waits for no program any more.
 TEST_F(Step, NobodyIsWaitedForAfterTheStop) {
     SimulatedClock clock(status_.path());
     SerialPort port(clock);

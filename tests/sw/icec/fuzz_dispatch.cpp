@@ -3,11 +3,12 @@
 // fuzz_dispatch: fuzzes the messages from a peer (the bytes after a valid header) and the parser of
 // proxy strings, with libFuzzer.
 //
-// The first byte selects the type of the message, or a request of which only the parameters are
-// fuzzed. In the parameters, a pair of bytes selects each function that reads, and the argument of
-// this function. A proxy that was read or parsed must be the same after conversion to a string and
-// back, and to bytes and back. After each message the communicator must still answer a ping. With
-// ICEC_MINIMAL it tests the minimal run time, without the strings.
+// The first byte of an input selects the type of the message, or a request of which only the
+// parameters are fuzzed. The servant then decodes the parameters by a sequence of read functions;
+// two bytes select each of these functions and its argument. A proxy that was read or parsed must
+// be the same after conversion to a string and back, and to bytes and back. After each message the
+// communicator must still answer a ping. Built with ICEC_MINIMAL, fuzz_dispatch tests the minimal
+// run time, which has no proxy strings.
 
 #include "ice_messages.h"
 #include "loop.h"

@@ -122,7 +122,7 @@ protected:
         serving_.join();
         answering_.join();
     }
-    // Sends the reply from another task than the one that dispatched the operation.
+    // Sends replies later, from a task that does not dispatch operations.
     void answer() {
         for (;;) {
             std::unique_lock<std::mutex> lock(laterMutex_);
@@ -213,8 +213,8 @@ TEST_F(Tasks, OneThatHasEndedLeavesItsPlaceToOthers) {
     EXPECT_EQ(ask(prx, "op", 2), 4);
 }
 
-// While one task waits for a reply and receives messages, another task polls repeatedly. For each
-// poll it takes over the role of the receiving task, and then gives it back.
+// Tasks make calls while two other tasks poll repeatedly. Each poll takes the role of the receiving
+// task over from a waiting call, and then gives it back.
 TEST_F(Tasks, CallWhileTwoPollNowAndThen) {
     std::atomic<bool> over{false};
     auto poll = [&] {

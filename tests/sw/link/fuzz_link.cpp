@@ -76,7 +76,9 @@ struct Node : LinkProgram {
 #endif
     std::deque<Bytes> out; // frames in transit
     uint32_t nonce = 1;
-    uint64_t sum = 0; // sum of all received bytes, computed so that each of them is read
+    // sum of all received bytes; computing it reads each byte, so a sanitizer detects bytes out of
+    // bounds
+    uint64_t sum = 0;
     bool busy = false;
 };
 

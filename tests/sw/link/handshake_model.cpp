@@ -25,12 +25,13 @@ enum class Bug {
     // a HELLO-ACK is accepted even if it contains an earlier nonce of this side
     NonceIsNotEchoed,
     OneKeyForBoth,       // both directions use the same key
-    ResetIsNotAuthentic, // an RST ends a session although it is not authenticated
+    ResetIsNotAuthentic, // an unauthenticated RST ends a session
     // a HELLO ends the session although its sender has not proved that it is present
     HelloEndsTheSession,
     HelloMakesASession, // a HELLO begins a session, without a CONFIRM
     ConfirmIsNotAuthentic,
-    OwnNonceIsTaken,  // if an attacker returns a nonce of this side, it counts as the peer's
+    // a side accepts its own nonce, sent back by an attacker, as a nonce of the peer
+    OwnNonceIsTaken,
     NonceServesTwice, // no new nonce is drawn when a session begins
     UnconfirmedCalls, // a side makes calls although its peer may not have begun the session yet
     OldDataIsTaken,   // the number of an earlier data frame is accepted again
@@ -138,8 +139,9 @@ private:
         s.isAnswered = false;
     }
 
-    // Ends a session, and checks that an attack was not the reason: only one of the two sides, or
-    // silence, may end a session.
+    // Ends the session of a side. `byAttack` is false if the side itself ends the session, or has
+    // received a valid BYE. Otherwise an attack may have ended it, which is a fault if the peer is
+    // still in this session.
     void end(State& state, int who, bool byAttack) {
         Side &s = state.side[who], &other = state.side[1 - who];
         if (!s.isUp)

@@ -140,8 +140,8 @@ TEST_P(LinkLayer, ARebootOfTheVehicleIsNoticedByTheNextFrame) {
     EXPECT_TRUE(until([&] { return bothUp(); }, 1'000'000));
 }
 
-// Since the last PING so much time has passed that the 32-bit time has wrapped halfway; the time of
-// the PING must not be considered to be in the future.
+// Traffic keeps the link from sending a PING for more than half of the range of the 32-bit time.
+// After that, the time of the last PING must not be taken for a time in the future.
 TEST_P(LinkLayer, ASilenceAfterFortyMinutesOfTrafficIsAskedAbout) {
     ASSERT_TRUE(connect());
     ASSERT_EQ(a.open(0), LINK_OK);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_test: tests two link layers over two modem models and the air between them. Cases are
-// packets that modems lose after they have acknowledged them, published radio conditions, and the
-// example of a trace.
+// modem_test: tests two link layers over two modem models and the air between them. The tests cover
+// packets that a modem acknowledges and then loses, published radio conditions, and the example of
+// a recorded trace.
 
 #include "modem_pair.h"
 #include <gtest/gtest.h>
@@ -277,7 +277,8 @@ TEST_F(RandomWait, WhoSendsLittleWaitsWherePacketsAreLost) {
     EXPECT_EQ(rn(pair.a), 0u);
 }
 
-// Failed tries mean that there are collisions. Lost packets without failed tries do not.
+// Failed tries of the MAC indicate collisions, so the links must wait longer. Packets that are lost
+// without failed tries do not indicate collisions.
 TEST_F(RandomWait, TwoStreamsDoNotWaitWherePacketsAreLostWithoutFailedTries) {
     ModemPair<End> pair(RfWeather(), testSeed(), 1, false, 2u);
     const auto stream = [&] {

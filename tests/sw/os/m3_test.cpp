@@ -31,8 +31,8 @@ TEST_P(OsM3Cases, SaysWhatTheManualSays) {
     EXPECT_EQ(m3.text("os_said"), c.expected);
 }
 
-// The interrupt wakes the task of higher priority before any instruction, so the task switch may
-// happen anywhere in the computation.
+// In each run, the interrupt wakes the task of higher priority before another instruction, so that
+// tasks are switched at many points of the computation.
 TEST(OsM3, ASwitchAtAnyInstructionLosesNoRegister) {
     unsigned number = 0;
     while (std::string(os_cases[number].name) != "RegistersSurviveSwitches")

@@ -93,7 +93,7 @@ void OsCase_preempting(void) {
     (void)OsCase_task(OsCase_waitsForSem, 5);
 }
 
-/* ---- a task that creates a task of higher priority is preempted by it ---- */
+/* ---- if a task creates a task of higher priority, the new task runs at once ---- */
 
 static void creates(void) {
     OsCase_say("creates");

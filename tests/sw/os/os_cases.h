@@ -35,8 +35,8 @@ void Runner_passTime(void);
 
 void OsCase_say(const char* word);
 void OsCase_sayNumber(unsigned value);
-/* Creates a task that has a separate stack, and its priority as its number. Returns the result of
- * OSTaskCreateExt. */
+/* Creates a task with a separate stack; the task's number equals its priority. Returns the result
+ * of OSTaskCreateExt. */
 INT8U OsCase_task(void (*body)(void), INT8U priority);
 /* creates a task without the options for its stack */
 INT8U OsCase_uncheckedTask(void (*body)(void), INT8U priority);
@@ -46,7 +46,7 @@ extern OS_EVENT* osCase_sem;
 void OsCase_waitsForSem(void);
 void OsCase_created(void);
 
-/* The functions that prepare a case or are its interrupt routine. */
+/* Declares the functions that prepare the cases, and the cases' interrupt routines. */
 /* clang-format off */
 #define OS_CASES(X) \
     X(choosing) X(computing) X(counting) X(creating) X(delaying) X(handingOver) X(inheriting) \

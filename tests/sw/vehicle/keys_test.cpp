@@ -290,7 +290,7 @@ TEST(Keys, PowerThatFailsAtAnyWordLeavesAKeyThatWorks) {
             ASSERT_TRUE(vehicle.meets({newKey})) << "after " << cut << " words";
             EXPECT_EQ(UAV_countKeys(0), 1) << "after " << cut << " words";
         }
-        // The change must be possible again.
+        // a complete change must still be possible
         ASSERT_TRUE(vehicle.meets({newKey, oldKey})) << "after " << cut << " words";
         ASSERT_TRUE(UAV_setNextKey(0, vehicle.b.link(), newKey.data()));
         ASSERT_TRUE(vehicle.meets({newKey})) << "after " << cut << " words";

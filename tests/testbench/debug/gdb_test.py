@@ -124,7 +124,8 @@ def reverse():
     ends = re.findall("No more reverse-execution history|Reached end of recorded history", said)
     assert len(ends) == 2, "begin and end are not reported"
     assert not re.search("= 77$", said, re.M), "later data are visible earlier"
-    # the checkpoints, which are frozen copies of the simulator, end a moment after it
+    # The checkpoints are frozen copies of the simulator's process. They end shortly after the
+    # simulator.
     copies = ["pgrep", "-f", "--", f"--out {out} --gdb"]
     until = time.monotonic() + PATIENCE
     while subprocess.run(copies, stdout=subprocess.DEVNULL).returncode == 0:

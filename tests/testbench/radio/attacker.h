@@ -41,8 +41,8 @@ public:
         voices_.push_back(std::make_unique<Voice>(air_));
         voices_.back()->mac.send(std::move(packet), now);
     }
-    // Does one thing, drawn at random, that is possible without a key. It sends in the name of the
-    // sender or the receiver of a packet, or in the name of another modem.
+    // Sends one hostile packet of a random kind, for which no key is needed. The packet has the
+    // addresses of a recorded packet, sometimes with sender and receiver exchanged.
     void doMischief(uint64_t now) {
         if (heard_.empty())
             return;

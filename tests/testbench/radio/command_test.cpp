@@ -40,7 +40,8 @@ const Sequence sequences[] = {
     {"OfFewerCharacters", {}, {{"", 11}, {"++", 30}}, false, "", "++"},
     {"OfAnotherCharacterThanCC", {{"CC", '-'}}, {{"", 11}, {"+++", 11}}, false, "", "+++"},
     {"OfCC", {{"CC", '-'}}, {{"", 11}, {"---", 11}}, true, "OK\r", ""},
-    // RO 0xFF: without the end of the sequence, the modem would send nothing for 265 ms
+    // With RO 0xFF the modem waits 265 ms before it sends data on the air. If the sequence is
+    // completed, it sends the data before the sequence at once.
     {"ThatDoesNotCome", {{"RO", 0xFF}}, {{"", 11}, {"before", 11}}, false, "", ""},
     {"BehindData", {{"RO", 0xFF}}, {{"", 11}, {"before", 11}, {"+++", 20}}, true, "OK\r", "before"},
     {"ThenCN", {}, {{"", 11}, {"+++", 11}, {"ATCN\r", 1}, {"data", 20}}, false, "OK\rOK\r", "data"},

@@ -62,8 +62,9 @@ TEST_P(Profiles, DeassertCTSAtTheirThreshold) {
     EXPECT_EQ(held, GetParam().ctsOff);
 }
 
-// A second packet leaves the buffer, and the given number of bytes remains. CTS is asserted again
-// if the setting FT is larger than this number by the modem's release, but not by less.
+// When the second packet has left the buffer, `remaining` bytes are still in it. CTS is asserted
+// again if FT is at least `remaining` + `release`, and stays deasserted if FT is lower. `release`
+// depends on the modem.
 TEST_P(Profiles, AssertCTSAgainBelowTheirThreshold) {
     if (profile == "s1")
         GTEST_SKIP() << "series 1 has no FT";

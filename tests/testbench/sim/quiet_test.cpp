@@ -35,9 +35,9 @@ struct Flight {
     std::map<int, int> replies; // their statuses
 };
 
-// The plan of a flight. The slow flight evaluates each clock at its start, and later for
-// `compareNs`. This later time begins with reply number `comparedFrom`; 0 means with the first
-// call.
+// The plan of a flight. The slow flight evaluates each clock in two periods: at the start of the
+// flight, and later for `compareNs`. The later period begins with reply number `comparedFrom`; 0
+// means that it begins with the first call.
 struct Plan {
     // calls that are repeated; each call begins after the reply to the previous one
     std::vector<Ground::Call> calls;

@@ -34,8 +34,8 @@ public:
         });
         provide(64, 64, [](uint32_t i) { return i % 8 < 3 && i / 64 % 8 < 3 ? 150 : 100; });
     }
-    // Begins a flight with these steps. Returns a function that a machine calls; the machine
-    // continues while this function returns true.
+    // Begins a flight with these steps. Returns the function that the simulated machine calls to
+    // ask whether it must continue; the function returns true until the steps are done.
     std::function<bool()> flight(std::vector<Script> steps) {
         soc.reset(true);
         ground.start();
@@ -63,8 +63,8 @@ public:
             return at++ == packets.size();
         };
     }
-    // Makes calls of the pilot. `some`: true if the first byte of the last result must differ from
-    // 0.
+    // Makes the pilot call the vehicle. The first byte of the last reply's result must be different
+    // from 0 if `some` is true, and 0 if it is false.
     Script calls(std::vector<Call> these, bool some = false, const char* what = "") {
         const int last = static_cast<int>(these.size());
         return inOrder({[this] { return ground.replies.clear(), true; },

@@ -144,7 +144,8 @@ TEST_F(UavUpdate, AnImageComesInPiecesPackedOrNotAndIsStarted) {
     fly({{"getStatus", {}, Idle},
          {"begin", encoded(headerOf(6, 1)), None},
          {"getStatus", {}, Receiving},
-         // sent before the bytes to which it refers
+         // refused, because this compressed piece refers to the first half, which has not been sent
+         // yet
          {"write", piece(half, half, packed), Misplaced},
          {"write", piece(0, half, first), None},
          {"write", piece(half, half + 4, packed), Misplaced},

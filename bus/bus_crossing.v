@@ -33,8 +33,8 @@ module bus_crossing #(
     // ---- clk_i
     reg       owes;     // a request was sent to the core and has not been answered yet
     reg       asked;    // the current access has sent its request
-    // the answer arrived one clock ago; if the access has cleared an interrupt, irq_o is already
-    // low now
+    // the answer arrived one clock ago, so irq_o is already low if the access has cleared an
+    // interrupt
     reg       answered;
     reg       deaf;     // an earlier access timed out, and the core has not answered it yet
     reg [7:0] patience;

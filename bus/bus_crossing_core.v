@@ -43,10 +43,10 @@ module bus_crossing_core (
         .clk_i(clk_i), .rst_i(rst_i), .valid_i(core_valid_o), .write_i(1'b0), .addr_i(10'd0),
         .wdata_i(32'd0), .ready_i(core_ready_i), .rdata_i(core_rdata_i), .error_i(core_error_i));
     reg        past = 1'b0, open = 1'b0; // open: a request has not been answered yet
-    // known: an access has ended; done: an access ended in the last clock
+    // known: an access has ended; done: an access ended in the previous clock
     reg        known = 1'b0, done = 1'b0;
     reg [32:0] answer;                    // error and data of the access that ended last
-    reg        irq_was = 1'b0;            // interrupt of the core in the last clock
+    reg        irq_was = 1'b0;            // interrupt of the core in the previous clock
     wire       completes = core_valid_o && core_ready_i;
     always @(posedge clk_i) begin
         past  <= 1'b1;
@@ -64,8 +64,8 @@ module bus_crossing_core (
         assert (!(busy && ended));
         assert (!core_valid_o || open);
         assert (ended_o == done);
-        // The answer is the answer of the core, or an error if the core was reset. It is stable
-        // until the next access ends.
+        // The core's answer is passed on; if the core was reset, the answer is an error. The answer
+        // is stable until the next access ends.
         assert (!known || answer_o == answer);
         assert (known || !ended_o);
         assert (irq_o == irq_was);

@@ -16,12 +16,12 @@ module bus_decoder #(
     // master
     input  wire                bus_valid_i,
     input  wire                bus_write_i,
-    input  wire [9:0]          bus_addr_i, // 16 times the slot, plus the word
+    input  wire [9:0]          bus_addr_i, // word address: 16 * slot + word
     input  wire [31:0]         bus_wdata_i,
     output wire                bus_ready_o,
     output wire [31:0]         bus_rdata_o,
     output wire                bus_error_o,
-    // slots: 1, 4 or 32 bits for each slot, with slot 0 in the lowest bits
+    // slots; the vectors have 1, 4 or 32 bits per slot, with slot 0 in the lowest bits
     output wire [SLOTS-1:0]    slot_valid_o,
     output wire                slot_write_o,
     output reg  [4*SLOTS-1:0]  slot_addr_o,
@@ -60,11 +60,12 @@ module bus_decoder #(
         end else begin : g_many
             localparam GROUPS = (SLOTS + 7) / 8;
             reg [2:0]            index;
-            // one bit per group, high if the group is selected; with only one group, which is
-            // incomplete, the bit is always high
+            // one bit per group, high if the group is selected; not used with fewer than eight
+            // slots, because an access to a missing slot then selects the last entry of the only
+            // group, which is 0
             reg [GROUPS-1:0]     group;
-            // answers of each group that may still be selected; each bit of the slot number halves
-            // their number
+            // read data that may still be selected, per group; each bit of the index halves the
+            // number of words, until one word per group is left
             reg [256*GROUPS-1:0] left;
             reg [31:0]           rdata;
             integer g, b, i;

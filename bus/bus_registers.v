@@ -46,7 +46,7 @@ module bus_registers #(
         .event_i(event_i), .irq_o(irq_o)
     );
 
-    wire [32*13-1:0] shown; // values that reads of the words return
+    wire [32*13-1:0] shown; // read value of each word
     genvar w;
     generate
         for (w = 3; w < 16; w = w + 1) begin : g_word

@@ -56,11 +56,11 @@ module bus_rules #(
     // Address and direction are valid one clock before valid, because the decoder stores them in
     // registers.
     wire early     = !valid_i || !past || (addr_i == addr_was && write_i == write_was);
-    // Valid is low for a clock between two transfers, because a write may take effect one clock
-    // later.
+    // Valid is low for one clock between two transfers, because a write may take effect one clock
+    // after its transfer.
     wire paused    = !valid_i || !ended;
     wire withdrawn = waiting && !valid_i && waited < PATIENCE;
-    // Rule for the slave: it answers in time, and the data of an error is 0.
+    // Rules for the slave: it answers in time, and a read that fails returns 0.
     wire late      = valid_i && !ready_i && waited >= LIMIT - 1;
     wire leaking   = valid_i && ready_i && error_i && !write_i && rdata_i != 32'd0;
 
@@ -72,7 +72,7 @@ module bus_rules #(
                 assert (paused);
                 assert (!withdrawn);
                 assume (!leaking);
-                // `late` is not excluded by an assumption, because a slave may hang.
+                // The slave is not assumed to answer in time, because it may hang.
             end
         end else begin : g_slave
             always @* if (!rst_i) begin

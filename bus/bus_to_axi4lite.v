@@ -91,9 +91,9 @@ module bus_to_axi4lite #(
     wire unused = &{1'b0, addr[1:0], axi_bresp_i[0], axi_rresp_i[0], 1'b0};
 
 `ifdef RULES // the rules are included in proofs and in tests of cores
-    // The handshakes of AXI4-Lite as properties of a master (ARM IHI 0022, A3.1-A3.3, B1.1). The
-    // slave is assumed to do anything that the standard allows: ready comes before, together with
-    // or after valid, and the response comes at any later time or never.
+    // Checks of the AXI4-Lite handshakes on the master's side (ARM IHI 0022, A3.1-A3.3, B1.1). The
+    // slave may do anything that the standard allows: ready may come before, together with or after
+    // valid, and the response may come at any later time or never.
     reg past = 1'b0;
     reg aw_taken = 1'b0, w_taken = 1'b0, ar_taken = 1'b0;
     // the slave has taken address and data, and has not responded yet

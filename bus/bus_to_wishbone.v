@@ -53,7 +53,7 @@ module bus_to_wishbone #(
         accepted <= PIPELINED != 0 && wb_cyc_o && !wb_ack_i && !wb_err_i && !wb_rty_i
                     && (accepted || !wb_stall_i);
         pause    <= wb_cyc_o && wb_rty_i && !wb_ack_i && !wb_err_i;
-        // After the end of the access, which may be a time-out, the next access starts a new cycle.
+        // When an access has ended, even by a time-out, the next access starts a new cycle.
         if (rst_i || (bus_valid_i && bus_ready_o)) begin
             accepted <= 1'b0;
             pause    <= 1'b0;
@@ -63,8 +63,8 @@ module bus_to_wishbone #(
     wire unused = &{1'b0, wb_stall_i, 1'b0};
 
 `ifdef RULES // the rules are included in proofs and in tests of cores
-    // The handshakes of Wishbone B4 as properties of a master with one transfer at a time. Numbers
-    // are the rule numbers of the standard (B4, 2010). The rules for the slave are assumed.
+    // Checks of the Wishbone B4 handshakes of a master that has one transfer at a time. The numbers
+    // are those of the rules in the standard (B4, 2010). The slave is assumed to follow its rules.
     reg past = 1'b0;
     reg outstanding = 1'b0; // a strobe was taken and has not been answered yet (pipelined mode)
     // 1: the cycle may end in the next clock without an answer
@@ -87,8 +87,8 @@ module bus_to_wishbone #(
         assert (!(wb_stb_o && outstanding));      // at most one transfer at a time
         assume (wb_ack_i + wb_err_i + wb_rty_i <= 1); // 3.45: at most one of ACK, ERR and RTY is
                                                       // high
-        // 3.55: outside a cycle the slave may keep its answer signals high, so nothing is assumed
-        // about these signals outside a cycle.
+        // 3.55: outside a cycle the slave may keep its answer signals high, so they are not checked
+        // there.
         if (PIPELINED != 0 && wb_cyc_o && !outstanding && !taken)
             // 3.35: the slave answers only after it has taken the strobe
             assume (!answer);

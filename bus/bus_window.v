@@ -37,8 +37,8 @@ module bus_window #(
 );
     generate
         if (ADDR_WIDTH < 3 || ADDR_WIDTH > 32 || TIMEOUT < 1 || TIMEOUT > 255) begin : g_refused
-// reports an error as npi_arbiter does: $error for Verilator and Yosys, the name of an unknown
-// module for other tools
+// reports an error in the same way as npi_arbiter: by $error in Verilator and Yosys, and by the
+// name of an unknown module in other tools
 `ifdef VERILATOR
             $error("bus_window: ADDR_WIDTH is 3..32, TIMEOUT 1..255");
 `elsif YOSYS
@@ -50,7 +50,7 @@ module bus_window #(
     endgenerate
 
     localparam [3:0] PAGE = 4'd3;
-    localparam WIDTH = ADDR_WIDTH > 5 ? ADDR_WIDTH : 6; // width for at least one page of 32 bytes
+    localparam WIDTH = ADDR_WIDTH > 5 ? ADDR_WIDTH : 6; // at least 6, so that `page` has a bit
 
     wire        own_ready, own_error, reg_write, reg_read;
     wire [31:0] own_rdata;
@@ -137,7 +137,7 @@ module bus_window #(
         cover (past && !rst_i && given_up && answered && !error_i);
     end
     always @* if (!rst_i) begin
-        // a request to the adapter ends at the latest with the access
+        // a request to the adapter does not outlast the access
         assert (!busy_o || wanted);
         assert (patience + used == TIMEOUT);
         if (bus_valid_i && !bus_write_i && bus_addr_i == PAGE)

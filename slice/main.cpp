@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Files for [":hw"] interfaces, one or two per interface; they are generated if the option gives a
-// folder.
+// An option that names a folder for generated files, and the functions that make these files: one
+// or two files for each [":hw"] interface.
 struct HardwareOutput {
     const char *option, *help;
     GeneratedFile (*makes[2])(const hw::Block&);
@@ -202,7 +202,8 @@ struct Collected {
     nlohmann::ordered_json described = nlohmann::ordered_json::object(); // --describe
 };
 
-// Compiles a file; or, depending on the options, adds its dependencies or its description to `all`.
+// Compiles a file. With --depend or --describe, only adds the file's dependencies or its
+// description to `all`.
 bool compile(const std::string& file, const Options& o, Collected& all) {
     if (fs::is_directory(file) || !std::ifstream(file)) {
         std::cerr << "slice2c: error: cannot read '" << file << "'\n";
@@ -224,7 +225,7 @@ bool compile(const std::string& file, const Options& o, Collected& all) {
     }
     Diagnostics diagnostics(std::cerr);
     Unit unit = compileUnit(p.text, file, o.rules, diagnostics);
-    if (o.describe) { // a description may exceed the limits of C
+    if (o.describe) { // the limits of the C mapping do not apply to a description
         if (diagnostics.errors() == 0)
             describeUnit(unit, all.described);
         return diagnostics.errors() == 0;

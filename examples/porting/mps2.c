@@ -83,7 +83,8 @@ static void onUart(void) {
     UART[INTERRUPT] = INTERRUPT_RX;
     while (UART[STATE] & STATE_RX_FULL) {
         U8 byte = (U8)UART[DATA];
-        if (written - taken < RING) { /* a byte that is lost is repeated by the link layer */
+        /* if the ring is full, drops the byte; the link layer sends it again */
+        if (written - taken < RING) {
             ring[written % RING] = byte;
             ++written;
         }

@@ -6,7 +6,7 @@
 #include "c/context.h"
 
 CContext::CContext(const Unit& ofFile, const CFileNames& ofFiles) : unit(ofFile), names(ofFiles) {
-    // first operation that throws each set of exceptions; the key is the set, with the labels
+    // maps each set of exceptions, with their labels, to the first operation that throws this set
     std::map<std::vector<std::string>, std::string> first;
     eachOperation([&](const Declaration& d, const Operation& o) {
         auto family = mayThrow(unit, o);

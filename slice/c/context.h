@@ -58,7 +58,7 @@ bool isClass(const Type& type); // True if the type is a class, in C a pointer t
 // Returns a declaration of `name`: "Ice_Int x", "M_Node *x".
 std::string cVariable(const Type& type, const std::string& name);
 
-// A value in a list of members or parameters for writing or reading.
+// A member or parameter that generated code writes to a stream or reads from a stream.
 struct Slot {
     const Type* type = nullptr;
     std::string value;   // its lvalue
@@ -70,7 +70,7 @@ struct Slot {
     std::string has;
 };
 
-// Generate the code that writes or reads slots in the order of the wire.
+// Generate the code that writes or reads slots in their order on the wire.
 void writeSlots(Writer& w, const std::vector<Slot>& slots);
 void readSlots(Writer& w, const std::vector<Slot>& slots);
 
@@ -107,8 +107,8 @@ std::string operationName(const Declaration& owner, const Operation& o);
 std::string exceptionType(const Declaration& owner, const Operation& o);
 
 // Return lists of C parameters; each parameter is preceded by a comma (", Ice_Int a, const M_S
-// *b"). The first function returns the in parameters. The second function returns the out
-// parameters and the result, as pointers. With `isSent`, pointers to class instances are const.
+// *b"). inParameters: the in parameters. outParameters: the out parameters, the result and the
+// exception, as pointers. With `isSent`, pointers to class instances are const.
 std::string inParameters(const Operation& o);
 std::string outParameters(const Declaration& owner, const Operation& o, bool isSent);
 

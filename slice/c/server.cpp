@@ -86,8 +86,8 @@ void dispatchOperation(Writer& w, const CContext& c, const Declaration& d, const
             for (const Slot& s : outSlots(o, ""))
                 if (s.isOptional)
                     w.line(s.has + " = 0;");
-            // the servant then has an additional parameter: the exception, which has a list of
-            // unknown slices
+            // the exception may contain slices of unknown types; the servant must get it with an
+            // empty list of these slices
             if (throwsPreserved(c.unit, o))
                 w.line("memset(&ex, 0, sizeof ex);");
             if (!o.throws.empty())

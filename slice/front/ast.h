@@ -84,7 +84,7 @@ struct Literal {
     enum class Kind { None, Bool, Integer, Floating, String, Enumerator };
     Kind kind = Kind::None;
     int64_t integer = 0; // value of a Bool, an Integer or an Enumerator
-    double floating = 0; // value, if the literal is a Floating
+    double floating = 0; // value of a Floating
     // Floating: its text as written; String: its text in UTF-8; Enumerator: its name
     std::string text;
     const Declaration* owner = nullptr; // Enumerator: the enum that contains it
@@ -143,7 +143,7 @@ struct Declaration {
     std::vector<const Declaration*> implemented; // Class: interfaces that it implements
     // Interface, Class: operations without inherited ones
     std::vector<Operation> operations;
-    // class for whose operations this interface was generated; null for other declarations
+    // class from which this interface was generated; null for other declarations
     const Declaration* ofClass = nullptr;
     int compactId = -1; // Class: compact id; -1 if none
 

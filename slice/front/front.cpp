@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// front: runs the steps from text to unit. The last step makes classes callable, as in Ice's C++11
-// mapping: for each class with operations, it creates an interface that has the operations of the
-// class, including inherited ones, and the type id of the class.
+// front: runs the steps of the compiler, from the source text to the checked unit. The last step
+// makes classes callable, as in Ice's C++11 mapping: for each class with operations, it creates an
+// interface that has the class's operations, including inherited ones, and the class's type id.
 
 #include "front/front.h"
 #include "front/parser.h"

@@ -140,7 +140,7 @@ private:
     size_t position_ = 0;
     std::vector<std::string> scope_;
     std::string scopeId_; // "::A::B"
-    // type that is being parsed: the names that it uses are recorded for this type, not for its
+    // type that is being parsed; the names that it uses are recorded for the type, not for its
     // module
     std::string user_;
     std::map<std::string_view, bool> isMain_;

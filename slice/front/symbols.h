@@ -38,7 +38,7 @@ class Symbols {
 public:
     explicit Symbols(Diagnostics& diagnostics) : diagnostics_(diagnostics) {}
 
-    // Returns the symbol with this full name; capital and small letters are equal.
+    // Returns the symbol with this full name. Ignores the case of letters.
     Symbol* find(const std::string& id);
     // Declares `name` in `scope` ("" or "::A::B"). Returns the new or the already existing symbol,
     // or 0 after it has reported an error.
@@ -49,7 +49,7 @@ public:
     // must not use the same name with another meaning.
     Symbol* resolve(const std::string& scope, const std::string& written, const Location& at,
                     const std::string& user);
-    // Does the same as resolve, but capital and small letters are equal, and nothing is recorded.
+    // Searches as resolve does, but ignores the case of letters and records nothing.
     Symbol* innermost(const std::string& scope, const std::string& written);
     // Returns true, and reports an error, if `user` has used the name with another meaning before.
     bool hasChanged(const std::string& user, const std::string& name, const Location& at);

@@ -66,9 +66,9 @@ void head(Writer& w, const Block& b, const char* comment) {
     w.line();
 }
 
-// Statements of a core that does not use its memory port yet. They declare two streams of words,
-// for reading and writing the core's buffers, that make no requests. No operation may have a name
-// that begins with npi_.
+// Verilog code of a core that does not use its memory port yet. It connects two streams of words,
+// for reading and writing the core's buffers, which make no requests. The code declares signals
+// named npi_..., so no operation may have a name that begins with npi_.
 const char npiStream[] =
     R"(    // The buffers in DDR3 as two idle streams of words (docs/memory.md, npi_stream).
     wire        npi_read_start = 1'd0, npi_read_take = 1'd0;
@@ -95,7 +95,7 @@ const char npiStream[] =
                         npi_read_valid, npi_read_idle, npi_write_base[5:0], npi_write_ready,
                         npi_write_idle, 1'b0};)";
 
-// The same statements in VHDL: npiSignals has the signal declarations.
+// The same code in VHDL. npiSignals contains the declarations of the signals.
 const char npiSignals[] =
     R"(  -- The buffers in DDR3 as two idle streams of words (docs/memory.md, npi_stream).
   signal npi_read_start, npi_read_take, npi_read_valid, npi_read_idle : std_logic;

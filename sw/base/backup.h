@@ -18,14 +18,14 @@
 
 typedef struct Backup_Slot {
     U32 key[BACKUP_KEY_WORDS];
-    U32 check; /* checksum of the key; with any other value the slot is empty */
+    U32 check; /* checksum of the key; any other value marks the slot as empty */
 } Backup_Slot;
 
 typedef struct Backup_Keys {
     Backup_Slot slots[BACKUP_SLOTS];
-    /* number of the slot with the next key. For the first ground station, this word also stores
-     * whether the vehicle accepts links without a key. In the entry of the group, this word is
-     * instead the number of the newest call to all vehicles. */
+    /* slot that contains the next key. For the first ground station, this word also stores whether
+     * the vehicle accepts links without a key. For the group, this word stores the number of the
+     * newest call to all vehicles instead. */
     U32 state;
 } Backup_Keys;
 

@@ -16,7 +16,7 @@
 #define RCC_CR_HSEBYP (1UL << 18) /* the HSE input is a clock at OSC_IN, not a crystal */
 #define RCC_CR_PLLON (1UL << 24)
 #define RCC_CR_PLLRDY (1UL << 25)
-/* fields: M in bits 5..0, N 14..6, P 17..16, HSE as source 22, Q 27..24 */
+/* fields: M 5..0, N 14..6, P 17..16, HSE as source 22, Q 27..24 */
 #define RCC_PLLCFGR REG(0x40023804UL)
 #define RCC_CFGR REG(0x40023808UL)
 #define RCC_CFGR_SW_PLL 2UL

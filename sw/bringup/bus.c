@@ -151,7 +151,7 @@ static void reportBits(U32 first, U32 count, U32 bits, const char* kind, const c
                         "this line with line_tester; both ends of the wire");
 }
 
-/* lowest address line that a register does not need and that has a wire */
+/* lowest address line that has a wire and that no register needs */
 #define FIRST_BEYOND (BOARD_MUXED ? 16U : 11U)
 
 void Bus_testData(void) {
@@ -164,8 +164,8 @@ void Bus_testData(void) {
     }
     reportBits(LINE_D0, 16, (wrong | wrong >> 16) & 0xFFFFU, "wrong",
                "a bit of a register is not read as it was written");
-    /* An access to an address beyond the slots must read 0 and report an error; this tests each of
-     * these address lines. */
+    /* A read at an address beyond the slots must return 0 and report an error. Each pass of the
+     * loop sets one of the address lines that no register needs. */
     wrong = 0;
     for (i = FIRST_BEYOND; i < 25U; ++i) {
         Bus_write(MAP_SLOT_SYSTEM, SYSTEM_EVENT, SYSTEM_EVENT_BUS_ERROR_MASK);

@@ -15,7 +15,7 @@ int Bus_start(void);
 int Bus_isShifted(void);
 
 /* The steps. */
-void Bus_testWrites(void); /* tests writes and the edge of NWE at several HCLK */
+void Bus_testWrites(void); /* tests writes and the edge of NWE at several frequencies of HCLK */
 /* tests each data line at a register, and each address line of the registers */
 void Bus_testData(void);
 int Bus_testMemory(void); /* tests the DDR3 memory; returns 1 if it works */

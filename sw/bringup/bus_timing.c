@@ -52,7 +52,8 @@ typedef struct Point {
 static const Point points[] = {{3, 120}, {3, 110}, {3, 100}, {3, 90}, {4, 120}, {4, 110}, {4, 100},
                                {4, 90},  {4, 80},  {4, 70},  {4, 60}, {5, 60},  {6, 60}};
 #define POINTS (sizeof points / sizeof points[0])
-/* the longest read path that the driver allows; on a multiplexed board, NWAIT limits the path */
+/* index of the timing with the longest read path that the driver allows; on a multiplexed board,
+ * NWAIT limits the path */
 #define DRIVER_POINT (BOARD_MUXED ? 2U : 4U)
 
 static U32 budget(const Point* p) { /* in units of 0.1 ns */

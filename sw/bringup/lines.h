@@ -44,7 +44,7 @@ typedef struct Pins {
 } Pins;
 
 typedef struct Answer {
-    U32 id, clocks, edges; /* clocks: clock cycles of the board / 64, modulo 65536 */
+    U32 id, clocks, edges; /* clocks: cycles of the board's clock / 64, modulo 65536 */
     Pins pins;
     /* levels of the modem's pins shortly after the last frame has set the tester's outputs */
     Pins early;

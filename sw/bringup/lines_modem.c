@@ -197,8 +197,8 @@ static int testReset(void) {
     return 0;
 }
 
-/* Returns 1 if the FPGA can drive at least one of its outputs high. The bank of these pins then has
- * a supply. */
+/* Returns 1 if the FPGA can drive at least one of its outputs to the modem high, which shows that
+ * the bank of these pins has a supply. */
 static int isBankPowered(void) {
     set(PIN_TXD, 1);
     set(PIN_RTS, 1);

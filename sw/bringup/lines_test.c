@@ -14,7 +14,8 @@
 #include "timing.h"
 
 #define SETTLE_US 20U /* settling time: an open line of 100 pF with a pull of 40 kOhm */
-/* one bit more than the numbers need, so that no number is the inverse of another one */
+/* size of the code that represents a line, bits: one more than the numbers of the lines need, so
+ * that no code is the inverse of another code */
 #define CODE_BITS 7U
 #define CODE_MASK 127U
 #define NONE 255U
@@ -32,7 +33,7 @@ typedef enum Fate {
 } Fate;
 
 static U8 fate[LINES];
-/* arrives[i]: the FPGA's pin for line i has received the number of the line arrives[i] */
+/* arrives[i]: number of the line whose code has arrived at the FPGA's pin for line i */
 static U8 arrives[LINES];
 
 /* Returns whether only the FPGA drives this line in operation. Such a line may contain a buffer. */
@@ -78,7 +79,7 @@ static void reportStuck(U32 line, int high) {
                     "a short to ground, or another part that drives it");
 }
 
-/* Drives a line that has the same level with a pull-up and with a pull-down, to the other level
+/* Tests a line whose level does not depend on the pull: drives the line to the opposite level
  * `high`. Returns 1 if the line follows. */
 static int follows(U32 line, int high) {
     int now;
@@ -96,8 +97,8 @@ static void reportPulled(U32 line, int high) {
                 "another part on the line: an LED, a resistor, a solder bridge that is not open");
 }
 
-/* `found` is not 0 if the tester answers. A held line that the FPGA drives is then not reported
- * yet: a later step with the tester can distinguish it from an inverted line. */
+/* `found` is not 0 if the tester answers. In this case, a held line that the FPGA drives is not
+ * reported here, because a later step with the tester can distinguish it from an inverted line. */
 static void testStuck(U32 found) {
     U8 down[LINES], up[LINES];
     U32 i;
@@ -143,7 +144,9 @@ static void testShorts(void) {
     Timing_wait(SETTLE_US);
 }
 
-#define LEAST_DRIVEN 4U /* fewer driven data lines may be shorts to NE1 or NOE */
+/* Least number of driven data lines that indicates another chip. Fewer driven lines may be shorts
+ * to NE1 or NOE. */
+#define LEAST_DRIVEN 4U
 
 /* Returns the number of data lines that another chip drives while NE1 and NOE are low. */
 static U32 drivenWhenSelected(void) {
@@ -295,7 +298,8 @@ static void judgeSent(const U8* first, const U8* second) {
 #define ADDRESS_LINES 25U
 #define LEAST_SHIFTED 4U
 
-/* Detects whether the address lines are all wired to the next address pin, for example A0 to A1. */
+/* Detects address lines that are shifted: each line is wired to the next address pin, for example
+ * A0 to A1. */
 static void testShift(void) {
     U32 i, count = 0;
     for (i = LINE_A0 + 1U; i < LINE_A0 + ADDRESS_LINES; ++i)

@@ -162,7 +162,7 @@ FSMC_Status FSMC_checkError(U32* where) {
  * + 4 ns before the end of the access. */
 #define WRITE_HZ 30000000UL
 #define READ_HZ 25000000UL
-/* size of an aligned region of memory, bytes; the bridge does not read ahead beyond the end of the
+/* size of an aligned region of memory, bytes; the bridge does not read ahead beyond the end of a
  * region */
 #define REGION 4096U
 #define BLOCK 64U
@@ -170,7 +170,7 @@ FSMC_Status FSMC_checkError(U32* where) {
 /* settings until FSMC_setHclk is called; they are slow, but safe at every HCLK */
 static U8 writeAddset = 15, readDatast = 17;
 
-/* Returns the number of HCLK cycles that an access must take, at least 4. */
+/* Returns the number of HCLK cycles that an access must take, 4 to 18. */
 static U32 cyclesFor(U32 hclkHz, U32 accessHz) {
     U32 cycles = (U32)((hclkHz + accessHz - 1U) / accessHz);
     return cycles < 4U ? 4U : cycles > 18U ? 18U : cycles;
@@ -219,8 +219,8 @@ U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords) {
     while (halfwords) {
         U32 i, part = upTo(address, 8U * REGION, 2U * halfwords) / 2U;
         U32 at = windowAddress(address);
-        /* waits until the posted register writes are done, by reading a register; from then on the
-         * memory window works without NWAIT */
+        /* Reads a register, which waits until the posted register writes are done. After that, the
+         * memory window works without NWAIT. */
         (void)FSMC_read(MAP_SLOT_SYSTEM, SYSTEM_ID);
         setBank(1);
         for (i = 0; i < part; ++i)
@@ -238,7 +238,7 @@ U32 FSMC_streamWrite(U32 address, const U16* data, U32 halfwords) {
     return repeated;
 }
 
-/* Reads halfwords with the timing that the bank has at present. */
+/* Reads halfwords with the current timing of the bank. */
 static void readHalfwords(U32 at, U16* data, U32 halfwords) {
     U32 i;
     for (i = 0; i < halfwords; ++i)

@@ -126,7 +126,7 @@ private:
     // Reads the part of a frame that has arrived so far. `at` is the offset of the frame's
     // delimiter. Returns the number of bytes used, or 0 if the frame is incomplete.
     size_t read(size_t at) {
-        // length and contents of the current frame; a complete frame also has its checksum here
+        // length and contents of the current frame; for a complete frame, also its checksum
         Bytes& plain = contents_;
         isWhole_ = false;
         plain.clear();

@@ -20,8 +20,8 @@ namespace XBeeAT {
 
 namespace {
 
-// intervals between attempts to open a lost port, and between attempts to set up a modem that does
-// not answer, while programs listen but no program connects
+// intervals of two repeated attempts, while programs listen but no program connects: to open a lost
+// port, and to set up a modem that does not answer
 constexpr std::chrono::seconds reopenEvery{1}, retryEvery{5};
 
 std::mutex registryMutex;
@@ -205,9 +205,9 @@ void Engine::waitForReason(std::unique_lock<std::mutex>& lock) {
 }
 
 // Runs the links until the port is lost. A modem that is reset during operation loses the settings
-// of the set-up, because these are not stored in the modem. Here, this looks like a silent peer.
-// The modem is therefore set up again after some time of silence; if this does not help, the next
-// set-up follows later.
+// of the set-up, because these are not stored in the modem. This program then only notices that the
+// peer is silent. After some time of silence, it therefore sets the modem up again. If the peer is
+// still silent, it doubles this time, up to four times the configured time.
 void Engine::fly(std::unique_lock<std::mutex>& lock) {
     const Settings wanted = settings;
     const U32 down = static_cast<U32>(wanted.downMs) * 1000;

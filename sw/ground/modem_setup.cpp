@@ -226,9 +226,10 @@ bool ModemSetup::finish() {
     return pause(10); // the modem changes its rate after it has sent the last OK
 }
 
-// Sets rate and mode of a modem that was found in API mode. Leaves AP 2 unchanged, and also leaves
-// the mode unchanged if the modem rejects the other mode. Each setting takes effect at once, so the
-// reply may arrive at the old or the new rate.
+// Sets rate and mode of a modem that was found in API mode. If the settings request API mode,
+// leaves AP unchanged, which may be 1 or 2. A modem that rejects transparent mode stays in API
+// mode; this is not a failure. Each setting takes effect at once, so the reply may arrive at the
+// old or the new rate.
 bool ModemSetup::finishApi() {
     const int found = rate_;
     for (int attempt = 0; attempt < tries && rate_ != settings_.baud; ++attempt) {

@@ -81,7 +81,7 @@ public:
 
     const LinkKeys& keys() const { return keys_; }
     virtual bool hasLink() const = 0; // true during a session with one vehicle
-    // true during a session of the vehicle, with this or with another ground station
+    // true during a session of the vehicle with any ground station
     virtual bool isHeard() const = 0;
     bool isWanted() const; // true if a program wants a connection
     bool listens() const { return listening_; }
@@ -100,8 +100,9 @@ public:
 protected:
     Peer(Host& host, int address, const LinkKeys& keys);
 
-    // ---- functions of the derived classes ---- Returns true if this station has left the vehicle
-    // to another ground station.
+    // ---- functions of the derived classes ----
+
+    // Returns true if this station has left the vehicle to another ground station.
     virtual bool isYielded() const { return false; }
     virtual bool isReady() const = 0;          // true if channels can be opened
     virtual bool openChannel(int channel) = 0; // opens a channel for a program

@@ -32,10 +32,10 @@ public:
     ProgramConnection& operator=(const ProgramConnection&) = delete;
 
     bool is(State state) const { return state_ == state; }
-    // want and accept take the program's socket, which must be non-blocking. The destructor closes
-    // the socket. `name` is used in log lines. A program that accepts a connection is a server. The
-    // first ValidateConnection that it sends is part of the connection's set-up; later ones are
-    // heartbeats. A message is late if the link has not accepted it within `lateUs`.
+    // want and accept take over the program's socket, which must be non-blocking; the destructor
+    // closes the socket. `name` is used in log lines. A message is late if the link has not
+    // accepted it within `lateUs`. A program that accepts a connection is a server. Its first
+    // ValidateConnection is part of the connection's set-up; later ones are heartbeats.
     static constexpr U32 never = 2000000000;
     void want(int fd, const std::string& name, U32 lateUs = never);
     void call(); // records that the vehicle has opened this connection
@@ -62,7 +62,7 @@ public:
     enum class Kind { Twoway, Oneway, Goodbye, Other }; // Oneway: a call that has no reply
     Kind kind() const;
     const U8* data() const { return out_.data(); }
-    // Returns the size of the next message, also of a malformed one.
+    // Returns the size of the next message, even if the message is malformed.
     U32 size() const { return messageSize(); }
     U32 lateAt() const { return since_ + lateUs_; } // time at which the next message will be late
     // records that the link has accepted the message
@@ -72,12 +72,12 @@ public:
     // messages to read.
     bool give(const U8* message, U32 size, U32 nowUs);
     void write(U32 nowUs);
-    // Sends a heartbeat to the program if it waits for a reply and has received nothing for a
-    // while. A busy server would also send heartbeats, but this heartbeat takes no air time. In
-    // addition, answers any other message of the program, including a heartbeat, by a heartbeat,
-    // because Ice 3.8 closes silent connections. An idle Ice 3.7 program sends no heartbeats and
-    // gets none, so it can close its idle connection. Also ends a closing that takes too long.
-    // Returns the time until the next call, in microseconds.
+    // Sends the heartbeats that are due; closes a connection that has been closing for too long.
+    // Returns the time until the next call, in microseconds. A program that waits for a reply gets
+    // a heartbeat after some time without a message. A busy server would also send this heartbeat,
+    // but over the air. Any other message of the program, including a heartbeat, is also answered
+    // by a heartbeat, because Ice 3.8 closes silent connections. An idle Ice 3.7 program sends no
+    // heartbeats and gets none, so it can close its idle connection.
     U32 beat(U32 nowUs);
     // Returns the time since the program last sent a complete message or read a byte. Returns 0
     // while the program waits for a reply.
@@ -101,9 +101,9 @@ private:
     std::vector<U8> out_; // bytes read from the program: less than one message plus one buffer
     std::vector<U8> in_;  // bytes not written to the program yet
     bool ended_ = false, isServer_ = false, greeted_ = false;
-    bool owesSign_ =
-        false;          // true if the program has sent something since it last received something
-    U32 owesSince_ = 0; // time since which owesSign_ is true
+    // true if the program has received nothing since it last sent something
+    bool owesSign_ = false;
+    U32 owesSince_ = 0;    // time at which owesSign_ became true
     unsigned pending_ = 0; // number of two-way requests of the program that have no reply yet
     U32 heardAt_ = 0;      // time of the last message to the program
     // lateUs_: time after which a message is late. readAt_: time of the last read. since_: time

@@ -45,7 +45,7 @@ public:
         isLost_ = !isUp && hearsOther_ && now - heardAt_ < speaksWithinUs;
     }
 
-    // Returns the next action. `connects` is true while this station tries to begin a session.
+    // Returns the step that is due. `connects` is true while this station tries to begin a session.
     // `callsAgain` is true if the vehicle never calls this station; this station then calls the
     // vehicle again after a minute.
     enum class Step { None, Yield, Resume };
@@ -55,7 +55,8 @@ public:
         if (yields) {
             isYielded_ = true;
             heardAt_ = yieldedAt_ = now;
-            headSize_ = LINK_HEADER; // the packet that is arriving does not count as a HELLO
+            // the rest of the packet that is arriving is not taken for a HELLO
+            headSize_ = LINK_HEADER;
             head_[0] = 0;
             return Step::Yield;
         }
@@ -69,9 +70,10 @@ private:
     // silence after which this station assumes that the other station has lost the vehicle
     static constexpr U32 quietUs = LINK_AGE_LAST;
     static constexpr U32 longestUs = 60'000'000;
-    // Longest silence of a vehicle that has a session, because its station pings a silent vehicle.
-    // After a longer silence, the vehicle has no session with another station: the last bytes then
-    // belong to a frame that a reset of the vehicle has cut off.
+    // Longest time for which a vehicle in a session sends nothing: its station pings a silent
+    // vehicle, and the vehicle answers. After a longer silence, the vehicle has no session with
+    // another station, and the bytes that arrived last belong to a frame that a reset of the
+    // vehicle has cut off.
     static constexpr U32 speaksWithinUs = LINK_PING_AFTER + 4 * LINK_PING_EVERY;
 
     bool isYielded_ = false;

@@ -177,7 +177,7 @@ void VehiclePeer::stop(U32 now) {
 void VehiclePeer::receive(const U8* bytes, size_t size, U32 now) {
     if (!rival_.admits(bytes, size, now))
         return;
-    if (rival_.isYielded()) { // the HELLO that was admitted ends the yielding
+    if (rival_.isYielded()) { // an admitted HELLO shows that the vehicle has no session
         resume(now);
         Link_receive(link_.get(), rival_.hello(), LINK_HEADER, now);
     }

@@ -64,8 +64,8 @@ public:
     }
     IceInternal::AcceptorPtr acceptor(const std::string&) const override {
         // The acceptor's endpoint contains the address of this side. If it contained the peer's
-        // address, Ice would take a proxy to the peer on the same device for a proxy to an object
-        // of this process.
+        // address, Ice would mistake a proxy to the peer on the same device for a proxy to an
+        // object of this process.
         return new Acceptor(instance_, o_,
                             with([](EndpointOptions& o) { o.serial.target = o.serial.source; }));
     }

@@ -21,9 +21,9 @@ public:
             if (!client.hasLeft && client.objects < mostKnown)
                 client.objects += owners_[object].insert(client.connection).second;
     }
-    // Removes a client that has disconnected. Its objects keep an entry without an owner. If there
-    // are too many such entries, drops them; from then on, a client only receives calls to objects
-    // of which it has passed a proxy.
+    // Removes a client that has disconnected. Its objects keep entries without an owner. If there
+    // are too many of these entries, removes them all; after that, a call to an object reaches a
+    // client only if the client has passed a proxy of this object.
     void leave(const Connection& connection) {
         size_t ownerless = 0;
         for (auto& each : owners_) {

@@ -10,7 +10,7 @@ namespace gateway {
 
 namespace {
 
-// number of bytes that is added to the size of each request when shares are computed
+// number of bytes that is added to the size of each request when turns are computed
 constexpr size_t requestCost = 100;
 
 size_t costOf(const Client& client) {

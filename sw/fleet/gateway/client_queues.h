@@ -32,10 +32,10 @@ struct Client {
 class ClientQueues {
 public:
     static constexpr size_t mostBytes = size_t{1} << 18; // limit of the queued bytes of one subject
-    // limit of the clients of a subject that may each queue one request although mostBytes is
-    // reached
+    // limit of the clients of a subject that may each queue one request even if the subject has
+    // reached mostBytes
     static constexpr size_t mostClients = 200;
-    // limit of the threads that wait until the queues have room for requests of one subject
+    // limit of the threads of a subject that may wait for room in the queues
     static constexpr size_t mostBlocked = 16;
 
     // `onClosed` is called when a client's connection has closed, and must acquire the forwarder's

@@ -408,8 +408,8 @@ void Forwarder::connect(int lane) {
     const auto failed = [this, lane](std::exception_ptr why) {
         if (lane == shortCalls)
             return failAll(explained(why));
-        // the lane for long calls gets no connection: the vehicle or this ground station has no
-        // free channel
+        // the lane for long calls has no connection, because the vehicle or this ground station has
+        // no free channel
         {
             std::lock_guard<std::mutex> lock(mutex_);
             lanes_[lane].isConnecting = false;

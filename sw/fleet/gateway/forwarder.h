@@ -47,7 +47,7 @@ public:
     // first call of hold(), requests wait for a connection. After this call, a request that arrives
     // while there is no connection fails with ObjectNotExistException.
     void hold();
-    unsigned session() const; // number of the current connection; 0 without one
+    unsigned session() const; // number of the current connection; 0 if there is none
     void refuseWaiting();     // fails waiting requests with ObjectNotExistException
     // Fails requests in flight that are older than `age`. It is then unknown whether the vehicle
     // has executed them.

@@ -22,7 +22,7 @@ public:
     // `publisher` is the publisher of the topic; null disables events.
     Events(std::string vehicle, std::shared_ptr<Ice::ObjectPrx> publisher)
         : vehicle_(std::move(vehicle)), publisher_(std::move(publisher)) {}
-    // publishes the vehicle's proxy; if the vehicle is not connected, publishes a null proxy
+    // publishes the vehicle's proxy, or a null proxy if the vehicle is not connected
     void tell(bool isHere) const;
     // Publishes a call of the vehicle. In a call of vehicleState, replaces the vehicle's proxy by a
     // proxy with which clients reach the vehicle.

@@ -17,7 +17,7 @@ namespace gateway {
 
 using Connection = std::shared_ptr<Ice::Connection>;
 using Parameters =
-    // first byte of an encapsulation, and the byte after the last one
+    // pointers to the first byte of an encapsulation and to the byte after its last byte
     std::pair<const Ice::Byte*, const Ice::Byte*>;
 using Response = std::function<void(bool, const Parameters&)>;
 using Failure = std::function<void(std::exception_ptr)>;

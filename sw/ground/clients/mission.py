@@ -28,9 +28,8 @@ from mission_log import Air, Log, Patience, report, whole
 from PIL import Image, ImageDraw
 from reasons import reason_of
 
-# Smallest number of corners that a useful test frame must have. With a frame of 121 corners, a
-# faulty core that treats a pixel at the threshold as brighter was not detected; with 313 corners it
-# was.
+# Smallest number of corners of a useful test frame. A faulty core that treats a pixel at the
+# threshold as brighter passes with a frame of 121 corners, and fails with a frame of 313 corners.
 ENOUGH = 300
 
 

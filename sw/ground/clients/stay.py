@@ -37,8 +37,8 @@ def is_viewed(folder):
 
 
 def await_browser(folder):
-    """If a browser has been started but has not loaded the page yet, restarts the time HIDDEN,
-    within which it must load the page."""
+    """If a browser has been started but has not loaded the page yet, gives it HIDDEN seconds from
+    now to load the page."""
     path = os.path.join(folder, "viewed")
     with contextlib.suppress(OSError):
         with open(path) as file:

@@ -294,7 +294,7 @@ void* Ice_Current_allocate(const Ice_Current* current, Ice_Int bytes) {
     void* room;
     is->failed = 0;
     room = bytes > 0 ? Ice_InputStream_allocate(is, bytes, 1) : 0;
-    /* restored, because a lack of room here must not make the reading of the stream fail */
+    /* restored, so that a lack of room here does not make the reading of the parameters fail */
     is->failed = failed;
     return room;
 }

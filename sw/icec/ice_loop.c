@@ -197,7 +197,7 @@ static Role takeRole(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     if (ic->receiver == task) {
         role = ROLE_HAD;
     } else {
-        ++ic->servers; /* when a leader sees this number, it gives the role up */
+        ++ic->servers; /* makes a leader give the role up */
         while (ic->receiver >= 0) {
             Ice_Int left = FOREVER;
             if (timeoutMs != FOREVER)
@@ -251,7 +251,7 @@ void Ice_Communicator_waitForShutdown(Ice_CommunicatorPtr ic) {
     while (role != ROLE_NONE && receiveOne(ic, SERVE) != ICE_CONNECTION_CLOSED) {
     }
     if (role == ROLE_TAKEN)
-        giveRole(ic); /* gives the role to a task that waits for a reply */
+        giveRole(ic); /* wakes another server, or a task that waits for a reply */
 }
 
 Ice_Status Ice_Communicator_poll(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
@@ -291,6 +291,6 @@ Ice_Status icec_await(Ice_CommunicatorPtr ic, int (*waits)(Ice_CommunicatorPtr i
         status = ICE_OK;
     }
     if (leads)
-        giveRole(ic); /* gives the role to the next server */
+        giveRole(ic); /* wakes a server, or another task that waits for a reply */
     return status;
 }

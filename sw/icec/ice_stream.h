@@ -73,7 +73,7 @@ typedef enum Ice_Failed {
     ICE_FAILED_VALUE_TYPES,
     ICE_FAILED_IDENTITY,
     ICE_FAILED_ENDPOINT,
-    ICE_FAILED_CALLS, /* the limit of calls; a reason of ICE_LIMIT, never of a stream */
+    ICE_FAILED_CALLS, /* the limit of calls; the reason of an ICE_LIMIT, never of a failed stream */
     ICE_FAILED_CONNECTIONS,
     ICE_FAILED_NESTING,
     /* the limit of a type in Slice, set by ["c:max:N"]; the stream's `bound` names it */
@@ -94,7 +94,7 @@ typedef struct Ice_OutputStream {
     Ice_Byte sliced;
     Ice_Byte sliceFlags;             /* flags of the current slice */
     const char* bound;               /* text of the reason ICE_FAILED_BOUND */
-    struct Ice_OutputValues* values; /* table of class instances; 0 before the first one */
+    struct Ice_OutputValues* values; /* table of class instances; 0 until the first instance */
 } Ice_OutputStream, *Ice_OutputStreamPtr;
 
 typedef struct Ice_InputStream {
@@ -110,7 +110,7 @@ typedef struct Ice_InputStream {
     Ice_Int arenaUsed, arenaSize;
     /* communicator of the proxies that are read from the stream */
     struct Ice_Communicator* communicator;
-    struct Ice_InputValues* values; /* table of class instances; 0 before the first one */
+    struct Ice_InputValues* values; /* table of class instances; 0 until the first instance */
 } Ice_InputStream, *Ice_InputStreamPtr;
 
 /* ---- writing ---- */

@@ -86,8 +86,8 @@ Link_State Link_state(const Link* link) {
     return (Link_State)link->session.handshake.state;
 }
 
-/* Checks whether a channel can be used: with `mustBeOpen`, only if it is open; otherwise also if it
- * can still be opened. */
+/* Checks the number of a channel, and whether there is a session. With `mustBeOpen`, also checks
+ * whether the channel is open. */
 static Link_Status check(const Link* link, int channel, int mustBeOpen) {
     if (channel < 0 || channel >= LINK_CHANNELS)
         return LINK_CLOSED;
@@ -165,7 +165,7 @@ void Link_poll(Link* link, U32 nowUs) {
         else if (!link->session.sender.hasWork)
             link_pollAck(&link->session.receiver);
     }
-    /* this also sends a frame of the handshake that the radio had no room for earlier */
+    /* also sends a frame of the handshake for which the radio had no room before */
     if (link->pacing.packed)
         (void)link_flush(&link->pacing);
 }
@@ -193,8 +193,8 @@ U32 Link_deadline(const Link* link, U32 nowUs) {
     first = sooner(handshake->isAnswered, handshake->firstAnswer + LINK_NONCE_LIFE, first);
     if (handshake->state == LINK_STATE_UP) {
         first = sooner(1, link_livenessDeadline(&link->session.liveness), first);
-        /* while packets wait for a result from the radio, the result triggers retransmissions, not
-         * the timer */
+        /* while packets wait for the radio's results, these results trigger retransmissions, and
+         * the timer is not used */
         if (!pacing->waiting)
             first = sooner(sender->base != sender->next, sender->timerAt, first);
         if (!pacing->mostWaiting || pacing->radio->waiting < pacing->mostWaiting) {

@@ -143,12 +143,12 @@ void Link_shareRadio(Link* link, Link* with);
  * - 0 if only this side sends, because it need not wait.
  * - LINK_WAIT_SHARED if the peer sends a stream, because two modems would otherwise often begin
  *   packets at the same time. Exception: 0 if both sides send streams and many packets are lost
- *   without failed tries, because the modems then seldom begin at the same time. The exception does
- *   not apply to a modem that encrypts.
+ *   without retries by the modem, because the modems then seldom begin at the same time. The
+ *   exception does not apply to a modem that encrypts.
  * - LINK_WAIT_SHARED if the peer makes calls during a stream of this side, so that the calls get
  *   through.
- * - LINK_WAIT_SHARED if this side sends little and packets are lost, so that an interferer does not
- *   hit all of the packets.
+ * - LINK_WAIT_SHARED if this side sends no stream and packets are lost, so that an interferer does
+ *   not hit all of the packets.
  * `transmit` may call this function. */
 U32 Link_randomWait(Link* link);
 

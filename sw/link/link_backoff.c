@@ -7,11 +7,11 @@
 
 #include "link_config.h"
 
-/* A loss is called quick if the radio reported it as fast as it reports other packets. The modem
- * has then made no retries; if two modems had begun at the same time, it would have made retries.
- * After a loss, a side that sends little must pause. The pause doubles after each further loss, and
- * shrinks to a quarter after each delivered packet. Its limit is longest while the peer is
- * silent. */
+/* A loss is called quick if the radio reported it about as fast as it reports a delivered packet.
+ * The modem has then made no retries, so the loss was no collision: after a collision, the modem
+ * retries. If neither side sends a stream, this side must pause after a loss. The pause doubles
+ * after each further loss, and shrinks to a quarter after each delivered packet. The limit of the
+ * pause grows with the peer's silence. */
 U32 link_noteAnswer(Link_Backoff* c, U32 now, int isDelivered, U32 silence, int isBusy) {
     U32 took = now - c->answeredAt;
     U32 last = LINK_REST_LAST + 4U * silence;
@@ -35,8 +35,9 @@ U32 link_noteAnswer(Link_Backoff* c, U32 now, int isDelivered, U32 silence, int 
     return c->own.isStream || c->peers.isStream ? 0U : c->rest;
 }
 
-/* Decides whether a side sends a stream. `bytes` is the side's total after `spans` complete spans
- * of time; if `spans` is 0, the current span has not ended yet. */
+/* Decides whether a side sends a stream. `bytes` is the total of the bytes that the side has sent.
+ * `spans` is the number of spans of time that have ended since the last update; 0 means that the
+ * current span has not ended yet. */
 static void judge(Link_Traffic* traffic, U32 bytes, U32 spans) {
     U32 more = bytes - traffic->before;
     if (more >= LINK_SPAN_MANY * (spans ? spans : 1U))

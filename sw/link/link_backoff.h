@@ -9,23 +9,24 @@
 #include "base.h"
 #include "link_port.h"
 
-/* Traffic that one side of the link sends: this side (`own`) or the peer (`peers`). */
+/* Traffic in one direction, sent by this side (`own`) or by the peer (`peers`). */
 typedef struct Link_Traffic {
     U32 before;  /* total of bytes at the start of the current span of time */
-    U8 isStream; /* 1: this side sends a stream */
+    U8 isStream; /* 1: the sender of this traffic sends a stream */
 } Link_Traffic;
 
 typedef struct Link_Backoff {
     Link_Traffic own, peers;
     /* start of the current span of time, us; number of messages received before it */
     U32 since, messages;
-    U32 lostAt;     /* time of the last loss, us */
-    U8 hasLost;     /* 1: `lostAt` is recent */
-    U8 isCalled;    /* 1: the peer calls while this side sends a stream */
-    U8 isBusy;      /* 1: the radio has had a packet to send ever since its last result */
+    U32 lostAt;  /* time of the last loss, us */
+    U8 hasLost;  /* 1: `lostAt` is recent */
+    U8 isCalled; /* 1: the peer calls while this side sends a stream */
+    /* 1: the radio has had packets to send, without a pause, since its last result */
+    U8 isBusy;
     U32 answeredAt; /* time of the last result of the radio, us */
     U32 rest;       /* longest pause after the next loss, us */
-    U32 usualUs;    /* mean time until a packet is delivered, us */
+    U32 usualUs;    /* mean time per delivered packet while the radio is busy, us */
     /* share of recent packets that were lost quickly, that is without retries by the modem; 65,536
      * means all packets */
     U32 quick;

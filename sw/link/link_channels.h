@@ -10,7 +10,7 @@
 /* Sets of channels, one bit each. */
 typedef struct Link_Channels {
     U8 open; /* channels on which messages may be sent */
-    /* channels that this side has closed and whose closing by the peer has not arrived yet */
+    /* channels that this side has closed; the peer's closing has not arrived yet */
     U8 closing;
     U8 closeDue; /* closings of this side that are not queued yet */
 } Link_Channels;

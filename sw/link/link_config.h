@@ -74,16 +74,16 @@
 #define LINK_PROOF_LAST 27000000U
 
 /* Age of an unacknowledged fragment at which the session ends (more than LINK_PING_AFTER, below
- * 2^31). Otherwise the peer could execute a call that its caller has abandoned. */
+ * 2^31). Without this limit, the peer could execute a call that its caller has abandoned. */
 #define LINK_AGE_LAST 27000000U
 
-/* With a key: shortest interval between answers to HELLO during a session; and time for which the
- * nonce in such an answer can make a new session. */
+/* With a key: shortest interval between answers to HELLO during a session, and lifetime of the
+ * nonce in such an answer. A session can be made with the nonce only during its lifetime. */
 #define LINK_ANSWER_EVERY 100000U
 #define LINK_NONCE_LIFE 9000000U
 
-/* With a key: numbers at which a session ends and a new one begins: number of fragments sent (below
- * 2^32 - 256), and number of frames with a wrong tag. */
+/* With a key: the session ends, and a new one begins, when one of these numbers is reached:
+ * fragments sent (below 2^32 - 256), and frames with a wrong tag. */
 #ifndef LINK_LAST_NUMBER
 #define LINK_LAST_NUMBER 0xFFFF0000U
 #endif
@@ -94,9 +94,9 @@
 /* Silence after which an incomplete frame is dropped. */
 #define LINK_FRAME_GAP (LINK_IS_FULL ? 25000U : 0x6200U)
 
-/* Budget for trying to open frames in garbage, with a key: on average one round of Ascon per
- * LINK_ROUND_EVERY us; at once, at most LINK_ROUNDS_AT_ONCE rounds (at least 168, the cost of one
- * handshake frame). */
+/* With a key: limit of the work that is spent on garbage that looks like frames: on average one
+ * round of Ascon per LINK_ROUND_EVERY us; at once, at most LINK_ROUNDS_AT_ONCE rounds (at least
+ * 168, the cost of one handshake frame). */
 #define LINK_ROUND_EVERY 30U
 #define LINK_ROUNDS_AT_ONCE 1000U
 
@@ -104,8 +104,8 @@
 #define LINK_POLL_EVERY 1000U  /* while the radio has no room */
 #define LINK_OFFER_EVERY 5000U /* while the program does not accept a message */
 
-/* Pacing (docs/simulation.md): time that the modem needs for a packet, not counting its bytes; the
- * same if the modem encrypts; time per byte on the air. */
+/* Pacing (docs/simulation.md): time that the modem needs for a packet in addition to its bytes,
+ * without and with encryption; time per byte on the air. */
 #define LINK_PACKET_US 7250U
 #define LINK_PACKET_ENCRYPTED_US 13450U
 #define LINK_BYTE_US 32U
@@ -114,8 +114,8 @@
  * (docs/link.md). */
 #define LINK_HEARD_QUARTERS 7U
 
-/* Additional wait after a short packet. With a shorter wait, the modem could join this packet with
- * the next packet, because the modem would not have sent the short packet yet. */
+/* Additional wait after a short packet. Without it, the modem could still hold the short packet
+ * when the next packet arrives, and join both. */
 #define LINK_SHORT_MARGIN 1500U
 
 /* largest number of packets that wait for a result of the radio, for all links of the radio
@@ -126,7 +126,7 @@
  * radio's next result is expected. The value is the packet's time on a line of 250,000 baud (4.3
  * ms) and a margin. */
 #define LINK_HAND_OVER_US 5000U
-#define LINK_HAND_OVER_ENCRYPTED_US 6000U /* the same interval if the modem encrypts */
+#define LINK_HAND_OVER_ENCRYPTED_US 6000U /* the same for a modem that encrypts */
 
 /* Time after which a driver counts a packet without a result as lost. */
 #define LINK_ANSWER_LAST 3000000U
@@ -136,15 +136,15 @@
  * side, and ends with a span of fewer than LINK_SPAN_FEW bytes. A loss affects the choice for a
  * limited time. */
 #define LINK_WAIT_SHARED 2U /* RN that the modem has after set-up */
-/* limit for the share of packets lost without retries; above it, such losses count as frequent;
- * 65,536 means all packets */
+/* share of packets lost without retries above which such losses count as frequent; 65,536 means all
+ * packets */
 #define LINK_QUICK_MANY 12288U
 #define LINK_SPAN 500000U
 #define LINK_SPAN_MANY 1000U
 #define LINK_SPAN_FEW 500U
 #define LINK_LOSS_COUNTS 10000000U
 
-/* Longest pause after a loss for a side that sends little: value after the first loss, and limit.
+/* Longest pause after a loss if neither side sends a stream: value after the first loss, and limit.
  * Four times the peer's silence is added to the limit. */
 #define LINK_REST_FIRST 8000U
 #define LINK_REST_LAST 200000U

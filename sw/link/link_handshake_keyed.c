@@ -40,7 +40,7 @@ static U32 cost(const Link_Handshake* handshake, const U8* frame) {
     const U8* nonces = frame + LINK_HEADER;
     Link_Kind kind = LINK_KIND_OF(frame);
     if (isSameNonce(nonces, handshake->nonce))
-        return 0; /* a frame that this side has sent, and that an attacker has sent back */
+        return 0; /* a frame of this side that an attacker has recorded and sent back */
     if (kind == LINK_KIND_HELLO)
         return (frame[1] & ~LINK_VERSION_UP) == LINK_VERSION ? ROUNDS_HELLO : 0U;
     if (frame[1] != LINK_VERSION)

@@ -18,8 +18,10 @@ typedef struct Link_Liveness {
     U32 askedAt;   /* time of the first PING that has no answer yet, us */
     U32 pingsSeen; /* number of the peer's newest PING */
     U32 heardAt;   /* time of the last sign of life, us */
-    U32 provenAt;  /* latest time at which the peer was certainly there, us */
-    U32 pingAt;    /* earliest time of the next PING, us */
+    /* latest time at which the peer was certainly there, us; with a key, the time of a PING that
+     * was answered */
+    U32 provenAt;
+    U32 pingAt; /* earliest time of the next PING, us */
 } Link_Liveness;
 
 /* Starts the detection with a peer that has just been heard. */

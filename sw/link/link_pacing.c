@@ -6,8 +6,8 @@
 
 #include <string.h>
 
-/* Smallest free space with which a packet waits for another fragment; an acknowledgement with a
- * payload of 9 bytes also fits into it. */
+/* Free space in a packet below which the packet does not wait for another fragment, bytes. An
+ * acknowledgement with a payload of 9 bytes fits into this space. */
 #define LEAST(pacing) (pacing->env.codec->overhead + 10U)
 
 /* After the radio had no room, the modem is assumed to be slow for this number of packets. */
@@ -67,9 +67,10 @@ static int handOverAnswered(Link_Pacing* pacing) {
     return 1;
 }
 
-/* Passes the packet, which contains at least one frame, to the radio. If another packet may follow
- * while the modem still holds this one, pads this packet to the full size. Otherwise the modem
- * would join both packets, and all later packets would begin in the middle of a frame. */
+/* Passes the packet, which contains at least one frame, to the radio. With `isFollowed`, another
+ * packet may follow while a slow modem still holds this one; this packet is then padded to the full
+ * size. Otherwise the modem would join both packets, and all later packets would begin in the
+ * middle of a frame. */
 static int handOver(Link_Pacing* pacing, int isFollowed) {
     U32 size = pacing->packed;
     U32 full = (U32)pacing->longest + pacing->env.codec->overhead;

@@ -11,7 +11,7 @@
 
 struct Link;
 
-#define LINK_STREAM 3U /* number of fragments in flight from which traffic counts as a stream */
+#define LINK_STREAM 3U /* least number of fragments in flight that counts as a stream */
 
 /* Packets whose results the radio has not reported yet. All links of one radio share this list. */
 typedef struct Link_Unanswered {
@@ -42,10 +42,11 @@ typedef struct Link_Pacing {
     struct Link* owner;
     U32 byteTimeUs16; /* time of one byte on the slowest line, in units of 1/16 us */
     U32 fastest;      /* shortest round trip of the session, us */
-    U32 slack;        /* time before paceUntil at which the next packet may already be sent, us */
+    U32 slack;        /* the next packet may be sent this long before paceUntil, us */
     /* time at which the modem will have sent all packets that were passed to it, us */
     U32 paceUntil;
-    U32 early;                 /* largest time by which a received frame shortens the wait, us */
+    /* a received frame ends the wait if less than this time is left, us */
+    U32 early;
     U32 quietUntil;            /* end of the silence that must follow a short packet, us */
     U8 packet[LINK_MAX_FRAME]; /* packet being filled with frames */
     /* list of packets without a result; not used if this link shares the list of another link */

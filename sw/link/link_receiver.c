@@ -23,8 +23,9 @@ static void onChannel(Link_Receiver* receiver, U32 channel, U32 isOpen) {
         env->port->channel(env->context, (int)channel, (int)isOpen);
 }
 
-/* Offers a complete message to the program. Drops a message on a channel that this side has closed.
- * If the program does not accept the message, its last fragment counts as not received. */
+/* Offers a complete message to the program. Drops the message if this side has closed its channel.
+ * If the program does not accept the message, the last fragment of the message counts as not
+ * received. */
 static void deliver(Link_Receiver* receiver) {
     Link_Env* env = &receiver->pacing->env;
     receiver->isHeld = 0;
@@ -124,7 +125,7 @@ static int takeEarly(Link_Receiver* receiver, U32 seq) {
             return 1;
     }
     /* compensates for the increment in accept, because the number of the expected fragment must not
-     * change here */
+     * change */
     --receiver->expected;
     if (!accept(receiver, slot->flags, slot->bytes, slot->size))
         return 0;

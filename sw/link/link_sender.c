@@ -280,8 +280,8 @@ static int markAcked(Link_Sender* sender, U32 advance, const U8* bitmap, U32 siz
         isNew = 1;
         if (f->tries != 1U && elapsed < sender->srtt - sender->srtt / 4U) {
             /* The time since the newest transmission is too short for a round trip, so the
-             * acknowledgement answers an earlier transmission. If the radio reports
-             * losses, it is the first transmission, because the peer has become slower. */
+             * acknowledgement belongs to an earlier transmission. If the radio reports losses, it
+             * belongs to the first transmission, and the peer has become slower. */
             elapsed = sender->pacing->env.now - f->firstAt;
             if (sender->pacing->mostWaiting && !sender->pacing->backoff.own.isStream &&
                 elapsed < LINK_RTO_FIRST)
@@ -355,7 +355,7 @@ static int nextFragment(Link_Sender* sender, U32* seq) {
 }
 
 /* Sends the oldest fragment in flight again if the timer has expired. Returns 0 if this fragment
- * was first sent so long ago that the session must end: the peer could otherwise execute a message
+ * was first sent so long ago that the session must end. Otherwise the peer could execute a message
  * that its sender has abandoned. */
 static int pollWindow(Link_Sender* sender, U32 now) {
     Link_Fragment* oldest = FRAGMENT(sender, sender->base);

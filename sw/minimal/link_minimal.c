@@ -151,8 +151,8 @@ static void takeFrame(Link* link, const U8* frame, U32 size) {
 }
 
 void Link_receive(Link* link, const U8* bytes, U32 size, U32 nowUs) {
-    /* A new frame begins after a silence. The first byte also begins a frame if the length in its
-     * header equals the size of the whole portion. */
+    /* A frame begins at the first byte after a silence. It also begins at the first byte of a
+     * portion if the length in the header there matches the size of the portion. */
     if (nowUs - link->inputAt > LINK_FRAME_GAP || LINK_LENGTH(bytes) + LINK_OVERHEAD == size)
         link->inputCount = 0;
     link->inputAt = nowUs;

@@ -13,8 +13,8 @@
 
 int UAV_providePeer(int role, U32 address, const U8* key) {
     UAV_store(UAV_ADDRESS_AT(role), 0);
-    /* in the role of the group, the number of the newest call is kept; otherwise the vehicle would
-     * accept calls again that an attacker has recorded */
+    /* For the group, the number of the newest call is kept. Otherwise the vehicle would accept
+     * calls again that an attacker has recorded. */
     if (role != UAV_GROUP)
         UAV_store(UAV_STATE_AT(role), 0);
     UAV_writeKey(role, 1, 0);

@@ -24,7 +24,7 @@ static void unlock(TcpEndpoint* self) {
 }
 
 /* Closes a connection; the caller holds the lock. If another task is sending on this connection,
- * only shuts the socket down; the slot becomes free when that task has noticed. */
+ * only shuts the socket down; when the other task notices this, it frees the slot. */
 static void closeOne(TcpEndpoint_Connection* c) {
     if (c->fd >= 0 && c->sending) {
         (void)shutdown(c->fd, SHUT_RDWR);
@@ -71,7 +71,7 @@ static Ice_Int frontSize(TcpEndpoint_Connection* c) {
         return -1;
     if (size <= ICE_MESSAGE_MAX && !isCompressed)
         return size <= c->have ? size : 0;
-    if (c->have < ICEC_HEADER + 4) /* the request id, which a refusal contains, is not there yet */
+    if (c->have < ICEC_HEADER + 4) /* the refusal needs the request id, which has not arrived yet */
         return 0;
     return TcpEndpoint_refuse(c, size) ? 0 : -1;
 }
@@ -255,7 +255,7 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
     if (fd < 0)
         return ICE_CONNECTION_LOST;
     lock(self);
-    /* another task may have connected to this peer in the meantime */
+    /* another task may have taken the free slot in the meantime */
     slot = TcpEndpoint_freeSlot(self);
     if (slot >= 0) {
         use(&self->connections[slot], fd, 0);

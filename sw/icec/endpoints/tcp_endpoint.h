@@ -29,8 +29,8 @@ typedef struct TcpEndpoint_Connection {
     /* accepted: 1 if the peer made the connection; reported: 1 if the event OPENED has been
      * delivered */
     Ice_Byte accepted, reported;
-    /* sending: 1 while a task sends on the connection; over: 1 if the connection is closed and only
-     * this task still uses it */
+    /* sending: 1 while a task sends on the connection; over: 1 if the connection was closed
+     * meanwhile, so that the sending task must free the slot */
     Ice_Byte sending, over;
     Ice_Byte spoke;  /* 1 if this side has sent a message */
     Ice_Byte served; /* 1 if a request or reply was sent or received */

@@ -90,7 +90,7 @@ int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size) {
     sprintf(reason, "::Ice::MemoryLimitException: over ICE_MESSAGE_MAX (%d)", ICE_MESSAGE_MAX);
     fprintf(stderr, "icec: refused a %s of %d bytes: %s\n", what, size, reason);
     if (type != ICEC_REQUEST || memcmp(c->data + ICEC_HEADER, noId, 4) == 0)
-        return 0; /* the error cannot be reported in a reply, so the connection is closed */
+        return 0; /* no reply can report the error, so the connection is closed */
     sendReason(c, reason);
     c->served = 1;
     c->usedMs = TcpEndpoint_nowMs(0);
@@ -99,7 +99,7 @@ int TcpEndpoint_refuse(TcpEndpoint_Connection* c, Ice_Int size) {
     return 1;
 }
 
-/* Returns whether bytes have arrived that belong to a message which was not handled yet. */
+/* Returns whether a message is arriving, or has arrived and was not handled yet. */
 static int isArriving(const TcpEndpoint_Connection* c) {
     Ice_Byte byte;
     return c->have > 0 || c->skip > 0 || recv(c->fd, &byte, 1, MSG_PEEK | MSG_DONTWAIT) > 0;

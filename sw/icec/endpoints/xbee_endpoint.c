@@ -24,8 +24,8 @@
 static const Ice_Byte head[HEAD] = {
     XBEE_ENDPOINT_TYPE & 0xFF, XBEE_ENDPOINT_TYPE >> 8, 6 + BODY, 0, 0, 0, 1, 1};
 
-/* Bit that represents a pending event. The lowest bit is delivered first; bit 0 is the event of a
- * message. */
+/* Bit of a pending event in `events`. The event with the lowest bit is delivered first. Bit 0 is
+ * the event of a message. */
 #define EVENT(kind, channel) \
     (2U << (((U32)(kind) - ICE_EVENT_CLOSED) * XBEE_CONNECTIONS + (U32)(channel)))
 
@@ -184,8 +184,8 @@ void XBeeATEndpoint_dial(XBeeATEndpoint* self, int peer, U32 nowUs) {
     }
 }
 
-/* Returns whether the connection of the message to be sent has ended, even if the receiving task
- * does not know this yet. The channel may already belong to another connection. */
+/* Returns whether the connection of the message that is being sent has ended. The receiving task
+ * may not know this yet, and the channel may already belong to another connection. */
 static int hasEnded(const XBeeATEndpoint* self, int connection) {
     return (self->events & EVENT(ICE_EVENT_CLOSED, connection)) || self->offered != connection;
 }
@@ -227,7 +227,8 @@ static Ice_Status offer(XBeeATEndpoint* self, int connection, const Ice_Byte* me
         (void)self->port->wait(self->context, 20);
         lock(self);
     }
-    /* The wait above may have consumed the receiver's signal, so the signal is sent again. */
+    /* The waits above may have consumed a signal for the receiving task, so the signal is sent
+     * again. */
     if (tries)
         self->port->signal(self->context);
     return status == LINK_OK ? ICE_OK : status == LINK_TOO_LONG ? ICE_LIMIT : ICE_CONNECTION_LOST;

@@ -62,7 +62,8 @@ Ice_Status Ice_ObjectPrx_ice_flushBatchRequests(Ice_ObjectPrxPtr prx) {
     int connection;
     if (!batch || batch->count == 0)
         return ICE_OK;
-    prx->batch = 0; /* hidden from ice_getConnection, which then connects as for any call */
+    /* hides the batch from ice_getConnection, which then connects as for any other call */
+    prx->batch = 0;
     status = Ice_ObjectPrx_ice_getConnection(prx, &connection);
     prx->batch = batch;
     if (status != ICE_OK)

@@ -272,7 +272,7 @@ static const Ice_ValueType* knownType(Ice_InputStreamPtr is, Ice_UnknownSlice** 
         SliceHead head;
         startSlice(is, &head);
         if (is->minor == 0 && head.isObject && !isFirst) {
-            readEnd10(is); /* the dropped instance must not be referred to by any pointer */
+            readEnd10(is); /* no pointer may refer to the dropped instance */
             return 0;
         }
         if (is->failed || (head.isObject && !isFirst)) {

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# orders: list folder-of-a-core...   Tests these cores, builds a chip of them in the ORDERS (listed,
-# backwards, shuffled by SEED), and flies each: Python calls every core by radio. CHIP=1: also
-# prints the cost of each in the listed chip.
+# orders: list folder-of-a-core...   Tests these cores. For each of the ORDERS (listed, backwards,
+# shuffled by SEED), builds a chip with the cores in this order and flies it: Python calls every
+# core by radio. CHIP=1: also prints the cost of each core in the listed chip.
 set -eu
 case ${1:-} in '' | -h | --help) sed -n '3,5s/^# //p' "$0" && exit 0 ;; esac
 here=$(cd "$(dirname "$0")" && pwd)

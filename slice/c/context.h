@@ -137,15 +137,15 @@ struct CContext {
 
     CContext(const Unit& ofFile, const CFileNames& ofFiles);
     std::string header() const;
-    // Returns the name of the table of the classes that this unit knows; only their instances can
-    // be received.
+    // Returns the name of the table of the classes in this unit. Only instances of these classes
+    // can be received.
     std::string valueTable() const;
     bool usesClasses() const;
     Writer begin(const std::string& what) const;
     Writer beginSource(const std::string& what) const;
-    // Returns the prefix ("M_I_op") of the union of the exceptions that an operation throws.
-    // Operations that throw the same exceptions share one union, named after the first of these
-    // operations in the file; an assignment is then enough to rethrow an exception.
+    // Returns the prefix ("M_I_op") in the name of an operation's exception union. Operations that
+    // throw the same exceptions share one union, named after the first of these operations in the
+    // file; an assignment is then enough to rethrow an exception.
     const std::string& thrownAs(const Operation& o) const { return thrown_.at(&o); }
 
     // Calls `f` for each declaration of kind `kind` in the main file, except local declarations.

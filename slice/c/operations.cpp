@@ -79,8 +79,8 @@ bool throwsPreserved(const Unit& unit, const Operation& o) {
                        [](const Declaration* e) { return e->preserves(); });
 }
 
-// Returns whether this exception is the first exception of its name in the union; only the first
-// one keeps its name unchanged. Declared exceptions come before derived ones, so a new derived
+// Returns whether this exception is the first one in the union with its name; only the first one
+// keeps its name unchanged. Declared exceptions come before derived ones, so a new derived
 // exception never renames a declared exception.
 static bool isFirstOfName(const Operation& o, const std::vector<const Declaration*>& family,
                           const Declaration& exception) {

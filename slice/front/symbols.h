@@ -53,8 +53,8 @@ public:
     Symbol* innermost(const std::string& scope, const std::string& written);
     // Returns true, and reports an error, if `user` has used the name with another meaning before.
     bool hasChanged(const std::string& user, const std::string& name, const Location& at);
-    // Enumerators by their bare name: Ice still allows an enumerator without the name of its enum.
-    // declareBare adds an enumerator to `scope` and its enclosing scopes; bare returns the
+    // Functions for enumerators that are written without the name of their enum, which Ice still
+    // allows. declareBare adds an enumerator to `scope` and its enclosing scopes; bare returns the
     // enumerators of this name that are visible in `scope`.
     void declareBare(const std::string& scope, const std::string& name, Symbol* enumerator);
     const std::vector<Symbol*>& bare(const std::string& scope, const std::string& name) const;

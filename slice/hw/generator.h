@@ -156,8 +156,8 @@ void addCount(std::vector<Word>& words, const Type& type, const std::string& nam
               const std::string& c, bool isOut, unsigned most, unsigned offset);
 // Appends the code of the exception that was thrown, 1 to `count`; 0 means that none was thrown.
 void addCode(std::vector<Word>& words, size_t count);
-// Returns the name of the port with the address of a sequence: "a_base" if `count`, the field with
-// the number of elements, is "a_count".
+// Returns the name of the port with the address of a sequence. `count` is the field with the number
+// of elements: if its name is "a_count", the port is "a_base".
 std::string baseName(const Piece& count);
 
 bool isSequence(const Type& type);

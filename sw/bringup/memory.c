@@ -3,7 +3,7 @@
  * memory: tests DDR3, and names faulty lines. A faulty data line shows as a bit that is wrong in
  * all beats of a burst. A faulty address line shows as two addresses that reach the same place.
  *
- * A halfword is a beat on DQ15..DQ0. Of a byte address, bits 10..1 are the column, 13..11 the bank,
+ * A halfword is a beat on DQ15..DQ0. In a byte address, bits 10..1 are the column, 13..11 the bank,
  * 26..14 the row (MIG's ROW_BANK_COLUMN). Row and column share the lines A9..A0.
  */
 #include "bringup.h"

@@ -7,9 +7,8 @@
 
 #include <string.h>
 
-/* Rank of a servant's entry for a request: an entry with exactly this identity is preferred to the
- * default servant of the category, and the default servant of the category to the default servant
- * of all categories. */
+/* Rank of a servant's entry for a request. The best entry has exactly the identity of the request.
+ * Next come the default servant of the category, and then the default servant of all categories. */
 enum { NO_MATCH, DEFAULT_OF_ALL, DEFAULT_OF_CATEGORY, EXACT };
 
 static int match(const Ice_Servant* entry, const Ice_Current* current, Ice_Status* status) {

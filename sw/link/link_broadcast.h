@@ -10,8 +10,9 @@
  *     last LINK_TAG tag
  *
  * Vehicles do not acknowledge the packet, so the ground station sends several copies. A vehicle
- * stores the newest number that it has accepted, also without power, and accepts only newer
- * numbers. Each message is therefore executed at most once. Without keys, a key of zeros is used.
+ * stores the newest number that it has accepted in memory that keeps it without power, and accepts
+ * only newer numbers. Each message is therefore executed at most once. Without keys, a key of zeros
+ * is used.
  */
 #pragma once
 

@@ -67,8 +67,9 @@
  * minimal layer uses times with few 1 bits, so that each time fits into an instruction. */
 #define LINK_DEAD_AFTER (LINK_IS_FULL ? 9000000U : 0x890000U)
 
-/* With a key: time without an authenticated reply to a PING, after which the peer is considered
- * lost. Other frames do not count, because an attacker may have recorded them. */
+/* With a key: time without an answered PING after which PINGs are sent, their interval, and the
+ * time after which the peer counts as lost. Other frames do not prove that the peer is there,
+ * because an attacker may have recorded them. */
 #define LINK_PROOF_AFTER 5000000U
 #define LINK_PROOF_EVERY 1000000U
 #define LINK_PROOF_LAST 27000000U

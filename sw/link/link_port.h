@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * link_port: the interface of the link layer to the radio and the program of its caller, and the
- * statistics.
+ * link_port: the functions with which the link layer reaches the radio and the caller's program,
+ * the types that they use, and the statistics.
  */
 #pragma once
 

@@ -53,9 +53,9 @@ static const U8* unseal(const Link_Search* search, const U8* frame, U8* copy, U3
     return 0;
 }
 
-/* Returns whether a frame without a tag that was found by the search can be trusted; its checksum
- * might match by coincidence. The frame is trusted if the bytes end after it, or if a valid frame
- * follows. Returns 1 if so, 0 if not, and -1 if this is not known yet. */
+/* Returns 1 if a frame without a tag that the search has found can be trusted, 0 if not, and -1 if
+ * this is not known yet. The checksum of such a frame might match by coincidence. The frame is
+ * therefore trusted only if the bytes end after it, or if a valid frame follows. */
 static int isConfirmed(const Link_Search* search, const U8* next, U32 left, int isEnd) {
     const Link_Codec* codec = search->session->handshake.pacing->env.codec;
     U32 size, attempt;

@@ -121,10 +121,10 @@ static int cut(Link_Sender* sender, int onlyAhead) {
     return 1;
 }
 
-/* Returns n: one of n transmissions requests an acknowledgement. Each acknowledgement takes
- * time on the air. n is smaller in three cases: losses block the window; a message that has
- * overtaken others is not acknowledged yet; or the queue is full of short messages before the
- * window is full. */
+/* Returns n: one of n transmissions requests an acknowledgement, which takes time on the air. n is
+ * smaller if many messages are queued, because short messages fill the queue before the window is
+ * full. If the radio reports no results, n is also smaller while losses block the window, or while
+ * a message that has overtaken others is not acknowledged yet. */
 static U32 askEvery(const Link_Sender* sender) {
     U32 ahead = sender->ahead;
     if (!sender->pacing->mostWaiting &&
@@ -137,8 +137,8 @@ static U32 askEvery(const Link_Sender* sender) {
 }
 
 /* Returns whether a fragment should request an immediate acknowledgement. This applies to one of
- * every n fragments (askEvery), to the last fragment that the credit allows, and to the last
- * fragment of a retransmission. */
+ * every n fragments (askEvery) and to the last fragment that the credit allows. If the radio
+ * reports no results, it also applies to the last fragment of a retransmission. */
 static int mustAsk(const Link_Sender* sender, U32 seq) {
     if (sender->unasked + 1U >= askEvery(sender) || seq - sender->base + 1U >= sender->credit)
         return 1;

@@ -7,8 +7,7 @@
  *       of one kind, and `current`. It returns a status. The operation is setParameterA, as in
  *       Figure 3.
  *   [2] The figure leaves the arguments of FSMC_write(...) open. Here it writes word 1 of the
- *       vision
- *       core's slot, the threshold.
+ *       vision core's slot, the threshold.
  *   [3] xbeeInit is called by the radio task (uav_modem.c, with the same xbeeConf), which repeats
  *       the call when the modem has lost its settings.
  *   [4] XBeeATEndpoint_init(&ic, "xbee-at") also starts the link below the endpoint, and its task.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// addressees: finds the client that receives a request of the vehicle. This is the only client that
-// has passed the vehicle a proxy of the called object. If no client has ever passed such a proxy,
-// it is the only client with a two-way call in progress. After the owner of an object has
+// addressees: finds the client that receives a request of the vehicle: the only client that has
+// passed a proxy of the called object to the vehicle. If no client has ever passed such a proxy, it
+// is the only client with a two-way call in progress. After the owner of an object has
 // disconnected, no client receives a call to this object. Addressees has no lock: the forwarder
 // holds a lock whenever it calls Addressees.
 

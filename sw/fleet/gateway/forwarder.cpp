@@ -13,7 +13,7 @@ namespace gateway {
 
 namespace {
 
-// type that an interface with metadata [":maintenance"] has
+// type id of interfaces with metadata [":maintenance"]
 const char* const maintenanceType = "::IceSoC::Maintenance";
 
 // size in bytes above which a call or reply uses the lane for long messages
@@ -235,8 +235,8 @@ void Forwarder::ask(const Connection& connection, const Object& object) {
 }
 
 // Handles the requests that waited for an object's type: fails them if the object is a maintenance
-// object, otherwise sends them. If the question for the type has failed with the error `why`, fails
-// them with this error.
+// object, otherwise sends them. If the vehicle could not be asked for the type, fails them with the
+// error `why`.
 void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
                          std::exception_ptr why) {
     Requests waiting;
@@ -262,7 +262,7 @@ void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
 // ---- the lanes ----
 
 // Records the client as an owner of the objects whose proxies a request passes to the vehicle.
-// Skips operations of every object, such as ice_ping, because they pass no proxies.
+// Skips the operations that every object has, such as ice_ping, because they pass no proxies.
 void Forwarder::recordProxies(const Request& request) {
     if (!request.client || request.current.operation.compare(0, 4, "ice_") == 0)
         return;
@@ -486,9 +486,9 @@ void Forwarder::failLateRequests() {
     failWaiting(std::chrono::steady_clock::now() - wait_,
                 unknown("waited " + std::to_string(wait_.count()) +
                         " s for the radio (limit: --wait); the call was not sent to the vehicle"));
-    // Calls in flight count against the limits of their lane, even if the vehicle replies late. A
-    // ping is therefore sent: its reply confirms that these calls have arrived, so that they no
-    // longer count.
+    // Calls in flight count against the limits of their lane until they have arrived, even if the
+    // vehicle replies late. A ping is therefore sent: its reply confirms that these calls have
+    // arrived.
     for (int number = 0; number < lanes; ++number) {
         Ice::Current last;
         {

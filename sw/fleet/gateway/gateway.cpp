@@ -246,7 +246,7 @@ public:
                                  ? ic->stringToProxy("uav@" + name)
                                  : opened->createDirectProxy(Ice::stringToIdentity("uav"));
         if (ic->getDefaultLocator())
-            opened->destroy(); // Registration opens it again when the vehicle is connected
+            opened->destroy(); // Registration opens the adapter again when the vehicle is connected
         else
             adapters_.push_back(opened);
         if (!o.maintenance.empty())

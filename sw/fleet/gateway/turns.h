@@ -40,8 +40,8 @@ public:
         if (entry == entries_.end())
             return;
         entry->second.isWaiting = false;
-        // removes each flow that does not wait and whose tag is not above the clock: when such a
-        // flow waits again, it gets the clock as its tag, like a new flow
+        // removes flows that do not wait and whose tags are not above the clock: a flow that waits
+        // again later gets the clock as its tag, as a new flow does
         for (auto each = entries_.begin(); each != entries_.end();) {
             const bool isOver = !each->second.isWaiting && each->second.tag <= clock_;
             each = isOver ? entries_.erase(each) : std::next(each);

@@ -7,9 +7,12 @@
  *
  * If a peer does not read, sending waits for sendMs; then the connection is closed. A heartbeat is
  * sent on a silent connection every heartbeatMs, because Ice 3.8 closes silent connections after 60
- * s. If all connections are in use, a new peer displaces the connection that has been idle longest.
- * A connection that was used before can be displaced at once, any other one after idleMs. A peer
- * that has vanished is detected within about a minute.
+ * s. A peer that has vanished is detected within about a minute.
+ *
+ * If all connections are in use, a new peer displaces the connection that has been idle longest,
+ * among those that peers have made and on which no reply is outstanding. If a request or a reply
+ * has already passed on this connection, it can be displaced at once. If none has passed, or if a
+ * message is arriving, it can be displaced after idleMs.
  *
  * A message that is too long or compressed is refused, and reported on standard error. A caller
  * that waits for a reply gets an UnknownLocalException that names the limit; otherwise the

@@ -121,7 +121,7 @@ static void skip(Ice_InputStreamPtr is) {
 }
 
 /* Reads the indirection table that follows a slice. The table contains the instances to which the
- * slice's members refer. These references are the patches from patchBegin. */
+ * slice's members refer. The pointers in these members are the patches patchBegin to patchEnd. */
 static void readTable(Ice_InputStreamPtr is) {
     Ice_InputValues* values = is->values;
     Ice_Int count = Ice_InputStream_readSequence(is, 1), first = values->patchBegin;

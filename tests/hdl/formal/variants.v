@@ -1,10 +1,95 @@
 // SPDX-License-Identifier: MIT
 //
-// variants: compares the variants of cdc_bit, or of cdc_copy (COPY), for the simulation, for proofs
-// and for the chip (variants.sh).
+// variants: compares the variants of cdc_bit, cdc_copy (COPY) or core_gate (GATE) for the
+// simulation, for proofs and for the chip, and checks the variant of core_clock for the simulation
+// (CLOCK); see variants.sh.
 
 `default_nettype none
 
+`ifdef GATE
+module same (
+    input wire clk_i,
+    input wire rst_i,
+    input wire access_i,
+    input wire idle_i,
+    input wire ungated_i // the simulation's option +ungated
+);
+    (* gclk *) wire step;
+    wire simulated, proven, chip;
+    simulated u_simulated (.clk_i(clk_i), .rst_i(rst_i), .access_i(access_i), .idle_i(idle_i),
+                           .clk_o(simulated), .\g_gate.ungated (ungated_i));
+    proven    u_proven (.clk_i(clk_i), .rst_i(rst_i), .access_i(access_i), .idle_i(idle_i),
+                        .clk_o(proven));
+    chip      u_chip (.clk_i(clk_i), .rst_i(rst_i), .access_i(access_i), .idle_i(idle_i),
+                      .clk_o(chip));
+    (* hierconn *) wire [4:0] \u_simulated.g_gate.rest , \u_proven.g_gate.rest ;
+    (* hierconn *) wire [4:0] \u_chip.g_gate.rest ;
+    (* hierconn *) wire \u_simulated.g_gate.open , \u_proven.g_gate.closed ;
+    (* hierconn *) wire \u_chip.g_gate.u_buffer.passes ;
+
+    reg  past = 1'b0, was_clk = 1'b0, was_proven = 1'b0;
+    reg  reset   = 1'b0; // the first edge of clk_i, with rst_i, has passed
+    reg  stopped = 1'b0; // the chip's gate has stopped the last edge of clk_i
+    reg  [2:0] was_in = 3'd0;
+    wire rises = past && clk_i && !was_clk;
+    always @(posedge step) begin
+        past       <= 1'b1;
+        was_clk    <= clk_i;
+        was_proven <= proven;
+        was_in     <= {rst_i, access_i, idle_i};
+        if (rises) begin
+            reset   <= 1'b1;
+            stopped <= !chip;
+        end
+    end
+    always @* begin
+        assume (past || !clk_i);
+        // the inputs are registers of clk_i
+        assume (!past || rises || {rst_i, access_i, idle_i} == was_in);
+        assume (reset || rises || rst_i);
+        // both gated clocks are equal; with +ungated, the clock is never stopped
+        if (reset || rises)
+            assert (simulated == (ungated_i ? clk_i : chip));
+        // The registers are equal from the first edge of clk_i on, which the gate passes.
+        if (reset || rises) begin
+            assert (\u_simulated.g_gate.rest == \u_proven.g_gate.rest );
+            assert (\u_chip.g_gate.rest == \u_proven.g_gate.rest );
+        end
+        if (past)
+            assert (!clk_i || \u_simulated.g_gate.open == \u_chip.g_gate.u_buffer.passes );
+        if (reset && !rises)
+            assert (\u_proven.g_gate.closed == stopped);
+        // The clock of the proof is high before an edge that the gate stops, if the gate has passed
+        // the previous edge, and at no other edge.
+        if (rises && reset)
+            assert (was_proven == (!chip && !stopped));
+        if (rises && !reset)
+            assert (chip);
+    end
+endmodule
+`elsif CLOCK
+module same (
+    input wire clk_i // every edge of the chip's clock
+);
+    wire made;
+    simulated u_simulated (.clk_i(clk_i), .clk_o(made));
+    (* hierconn, init = 10'd0 *) wire [9:0] \u_simulated.phase ;
+    // After n edges of the chip's clock, floor(n * MULTIPLY / DIVIDE) edges were made. The sums
+    // wrap at 2**16.
+    reg [15:0]  due = 16'd0, paid = 16'd0; // n * MULTIPLY, and the number of edges * DIVIDE
+    reg         was = 1'b0;
+    wire [15:0] now = paid + (made != was ? 16'd`DIVIDE : 16'd0);
+    always @(posedge clk_i) begin
+        due  <= due + 16'd`MULTIPLY;
+        paid <= now;
+        was  <= made;
+    end
+    always @* begin
+        assert (due == now + {6'd0, \u_simulated.phase });
+        assert (\u_simulated.phase < `DIVIDE);
+    end
+endmodule
+`else
 module same (
     input wire              clk_i,
     input wire [`WIDTH-1:0] bits_i,
@@ -48,3 +133,4 @@ module same (
     end
 `endif
 endmodule
+`endif

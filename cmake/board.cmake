@@ -13,7 +13,8 @@ if(NOT EXISTS ${board_file})
   message(FATAL_ERROR "BOARD=${BOARD}: ${board_file} is missing; ./icesoc board list names the "
     "boards")
 endif()
-# FSMC_DEFINES: definition that selects the settings of the bridge and of the driver for this board.
+# FSMC_DEFINES: preprocessor definition that selects this board's settings of the FSMC bridge and of
+# its driver.
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${board_file})
 execute_process(COMMAND ${PYTHON} -m icesoc.board.make ${board_file}
   OUTPUT_VARIABLE board_fsmc OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)

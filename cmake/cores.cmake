@@ -25,10 +25,10 @@ foreach(line IN LISTS lines)
   endif()
 endforeach()
 list(REMOVE_DUPLICATES CHIP_CORES)
-# ICE_SERVANTS is the number of servants in the object adapter: the servants of the vehicle and of
-# all cores, but at least 8, the default of sw/icec/ice_config.h. ARM_DEFINES passes it to the
-# firmware, and the host's library icec uses the same number. ICE_CONNECTIONS is the number of
-# connections: four for a ground station, four for a second ground station, and four for another
+# ICE_SERVANTS is the number of servants in the object adapter: one for each servant of the vehicle
+# and for each core. It is at least 8, the default in sw/icec/ice_config.h. ARM_DEFINES passes it to
+# the firmware, and the library icec on the host uses the same number. ICE_CONNECTIONS is the number
+# of connections: four for a ground station, four for a second ground station, and four for another
 # vehicle.
 set(ARM_DEFINES ICE_CONNECTIONS=12)
 # The FSMC bridge of the chip, and the driver's settings for it (docs/fsmc.md).
@@ -168,9 +168,9 @@ macro(icesoc_core_test)
   endif()
 endmacro()
 
-# icesoc_read_manifests(FILE...): reads the manifests of several cores for icesoc_core(). Otherwise,
-# each icesoc_core() reads one manifest. Starting Python takes longer than reading, so all manifests
-# of a folder are read in one call.
+# icesoc_read_manifests(FILE...): reads the manifests of several cores in one call of Python. A
+# later icesoc_core() uses the stored result. Without a stored result, icesoc_core() starts Python
+# to read its own manifest, and starting Python takes longer than reading.
 function(icesoc_read_manifests)
   execute_process(COMMAND ${PYTHON} -m icesoc.chip.manifest ${ARGN}
     OUTPUT_VARIABLE facts ERROR_VARIABLE error RESULT_VARIABLE status)
@@ -181,9 +181,9 @@ function(icesoc_read_manifests)
 endfunction()
 
 # icesoc_core([FOLDER]): adds the core described by core.toml in FOLDER (default: the current source
-# folder); docs/hw-mapping.md lists the keys. The core is a module or entity with the name in the
-# manifest and the ports of a slot. A test adds the target test_ip_<NAME> and the model
-# V<NAME>_slot.
+# folder); docs/hw-mapping.md lists the keys. The core is a module or entity that has the ports of a
+# slot and the name given in the manifest. If the core has a test, this function also adds the
+# target test_ip_<NAME> and the model V<NAME>_slot.
 function(icesoc_core)
   set(folder ${CMAKE_CURRENT_SOURCE_DIR})
   if(ARGC)
@@ -207,7 +207,7 @@ function(icesoc_core)
     set_property(GLOBAL APPEND PROPERTY ICESOC_IDLE_CORES ${name})
   endif()
   set(files ${A_VERILOG})
-  set(headers ${A_VERILOG}) # headers are included by `include, so they are not passed as sources
+  set(headers ${A_VERILOG}) # the sources include the headers, so headers are not passed as sources
   list(FILTER files EXCLUDE REGEX "[.]([sS]?[vV]?[hH]|[iI][nN][cC])$")
   list(FILTER headers INCLUDE REGEX "[.]([sS]?[vV]?[hH]|[iI][nN][cC])$")
   set(targets ${A_DEPENDS})
@@ -250,7 +250,8 @@ function(icesoc_core_folder folder binary)
   add_subdirectory(${folder} ${binary})
 endfunction()
 
-# icesoc_chip_property(OUT KIND): sets OUT to the files of this kind of all listed cores.
+# icesoc_chip_property(OUT KIND): sets OUT to the values of the property KIND (files, slices, ...)
+# of all cores in the list.
 function(icesoc_chip_property out what)
   set(all)
   foreach(name IN LISTS CHIP_CORES)
@@ -261,8 +262,8 @@ function(icesoc_chip_property out what)
   set(${out} ${all} PARENT_SCOPE)
 endfunction()
 
-# icesoc_chip(): called after all cores; generates the address map, soc_cores.vh and the library
-# soc_cores with the firmware's table of cores.
+# icesoc_chip(): generates the address map, soc_cores.vh, and the library soc_cores, which contains
+# the firmware's table of cores. Call it after all cores have been added.
 function(icesoc_chip)
   get_property(known GLOBAL PROPERTY ICESOC_CORES)
   set(options)
@@ -284,7 +285,7 @@ function(icesoc_chip)
     file(GLOB own CONFIGURE_DEPENDS ${folder}/*.ucf)
     list(APPEND inputs ${manifest} ${regs} ${own})
   endforeach()
-  # When the chip is built, this step checks that no two files contain a module of the same name.
+  # Building the chip runs this check that no two files contain a module of the same name.
   icesoc_chip_property(files files)
   icesoc_chip_property(targets targets)
   add_custom_command(OUTPUT ${GEN_DIR}/cores.checked

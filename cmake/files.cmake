@@ -11,8 +11,8 @@ set(sources)
 foreach(file IN LISTS files)
   string(STRIP "${file}" file)
   file(STRINGS "${file}" line REGEX "^`line 1 \".*\"" LIMIT_COUNT 1)
-  # `file` is a copy made for the simulator (testbench/sim/rest.awk); its `line directive names the
-  # original
+  # `file` is a copy that was made for the simulator (testbench/sim/rest.awk); its `line directive
+  # names the original
   if(line MATCHES "\"(.*)\"")
     set(file "${CMAKE_MATCH_1}")
   endif()

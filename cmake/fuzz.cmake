@@ -5,9 +5,9 @@
 # icesoc_fuzz(NAME HARNESS file.cpp SOURCES file... [INCLUDES dir...] [DEFINES name...] RUNS n
 #             [SEEDS file-or-folder] [DICT file] [LENGTH bytes] [LIBS file...] [LABELS ...]
 #             [DEPENDS ...])
-# Builds the program NAME, and adds the test fuzz.NAME, which runs RUNS inputs of up to LENGTH (400)
-# bytes, drawn by SEED. The test ends after this number of inputs, not after a time. The inputs in
-# SEEDS run first.
+# Builds the program NAME, and adds the test fuzz.NAME, which runs RUNS inputs of up to LENGTH bytes
+# (default 400). The inputs in SEEDS run first; the others are random and depend only on the
+# environment variable SEED. The test ends after RUNS inputs, however long they take.
 function(icesoc_fuzz name)
   cmake_parse_arguments(A "" "HARNESS;DICT;RUNS;SEEDS;LENGTH"
     "SOURCES;INCLUDES;DEFINES;LIBS;LABELS;DEPENDS" ${ARGN})

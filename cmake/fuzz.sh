@@ -5,7 +5,7 @@
 # Usage: fuzz.sh program runs seeds|- option...
 # seeds: a folder of inputs, or a file with one input per line in hex ("#" begins a comment).
 # FUZZ=600 runs for 600 s, starting from the inputs that earlier runs stored (~/.cache/icesoc/fuzz).
-# Prints an input that fails.
+# If an input fails, prints its bytes.
 set -eu
 program=$1 end=-runs=$2 seeds=$3
 shift 3
@@ -28,7 +28,8 @@ for number, line in enumerate(sys.stdin):
     seeds=$work/seeds
 fi
 # libFuzzer also tries values that the program compares, and these values can be addresses. If the
-# system allows it, every run therefore uses fixed addresses, so that every run has the same inputs.
+# system allows it, setarch therefore turns off address randomisation, so that every run has the
+# same inputs.
 alike=$(setarch -R true 2>/dev/null && echo "setarch -R" || :)
 $alike "$program" -seed="${SEED:-1}" "$end" -timeout=60 -print_final_stats=1 \
     -artifact_prefix="$work/" "$@" "$found" $seeds >"$work/log" 2>&1 || {

@@ -3,9 +3,9 @@
 # icesoc.cmake: the functions that build each kind of source.
 
 # icesoc_needs(PACKAGE VARIABLE program|library|path NAME): finds a file of a Debian package, or
-# stops with an error that names the package. Nothing is skipped silently, so that the list of tests
-# is the same on every machine. Programs used only by a test script (gdb-multiarch, xmllint) are not
-# checked here.
+# stops with an error that names the package. A missing package is always an error, so that every
+# machine has the same list of tests. Programs that only a test script uses (gdb-multiarch, xmllint)
+# are not checked here.
 function(icesoc_needs package variable kind name)
   cmake_language(CALL find_${kind} ${variable} ${name})
   if(NOT ${variable})
@@ -37,13 +37,14 @@ icesoc_needs(clang CLANGXX program clang++)
 find_package(GTest REQUIRED)
 include(GoogleTest)
 
-# Python that finds our tools: ${PYTHON} -m icesoc.regs.generate
+# Runs Python with the modules of this tree, for example ${PYTHON} -m icesoc.regs.generate
 set(PYTHON ${CMAKE_SOURCE_DIR}/tools/python)
 set(TOOLS ${CMAKE_SOURCE_DIR}/tools/icesoc)
 set(FETCH ${PYTHON} -m icesoc.util.fetch)
 set(FETCH_FILES ${TOOLS}/__init__.py ${TOOLS}/util/fetch.py)
 
-# Compiles for any CPU of this architecture (for packages), or for the CPU of this machine.
+# Code is compiled for the CPU of this machine or, with PORTABLE (for packages), for any CPU of this
+# architecture.
 set(TUNE -march=native)
 set(SAME_BYTES)
 if(PORTABLE)
@@ -56,8 +57,8 @@ file(MAKE_DIRECTORY ${GEN_DIR})
 set(CMAKE_GTEST_DISCOVER_TESTS_DISCOVERY_MODE PRE_TEST)
 
 set(HOST_WARNINGS -Wall -Wextra -Wshadow -Wconversion -Wno-sign-conversion)
-# Tools and tests take longer to compile than to run, mostly because of library templates, so they
-# are optimised less.
+# Compiling tools and tests takes longer than running them, mostly because of library templates, so
+# they are optimised less.
 set(TOOL_OPTIONS ${HOST_WARNINGS} -O1)
 set(C90_WARNINGS -std=c90 -pedantic -Wall -Wextra -Wconversion -Wstrict-prototypes
     -Wmissing-prototypes -Wdeclaration-after-statement -Werror)
@@ -75,8 +76,8 @@ elseif(SANITIZE)
   add_link_options(-fsanitize=address,undefined)
 endif()
 
-# icesoc_folders(PATTERN...): adds the folders that match and have a CMakeLists.txt, in the order of
-# their names.
+# icesoc_folders(PATTERN...): adds each folder that matches a pattern and has a CMakeLists.txt, in
+# the order of the names.
 function(icesoc_folders)
   list(TRANSFORM ARGN APPEND /CMakeLists.txt)
   file(GLOB found CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} ${ARGN})
@@ -86,8 +87,8 @@ function(icesoc_folders)
   endforeach()
 endfunction()
 
-# icesoc_c90(NAME SOURCES... [INCLUDES dir...] [LIBS lib...]): static library of a firmware layer,
-# compiled as strict C90.
+# icesoc_c90(NAME SOURCES... [INCLUDES dir...] [LIBS lib...]): adds the static library of a firmware
+# layer, compiled as strict C90.
 function(icesoc_c90 name)
   cmake_parse_arguments(A "" "" "SOURCES;INCLUDES;LIBS" ${ARGN})
   add_library(${name} STATIC ${A_SOURCES})
@@ -113,8 +114,8 @@ function(icesoc_test name)
   target_link_libraries(${name} PRIVATE ${A_LIBS} GTest::gtest GTest::gmock GTest::gtest_main)
   gtest_discover_tests(${name} TEST_PREFIX "${name}." EXTRA_ARGS ${A_ARGS}
                        DISCOVERY_TIMEOUT 60)
-  # CTest reads this file after the cases are known. It sets the labels, because
-  # gtest_discover_tests itself keeps only the first of several labels.
+  # CTest reads this file after it has discovered the cases. The file sets the labels, because
+  # gtest_discover_tests keeps only the first of several labels.
   set(labels ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
   list(GET A_SOURCES 0 first)
   cmake_path(ABSOLUTE_PATH first)
@@ -217,11 +218,12 @@ endmacro()
 #                 [REGS block...] [DEPENDS target-or-file...] [FLAGS ...] [FAST] [CLASS class])
 # Builds a Verilated model of a module as the library NAME with the class V<NAME>, or V<CLASS>. Lint
 # (-Wall) is on, and its warnings are errors. FAST is for the model of the whole chip. With
-# COVERAGE, a FAST model counts only soc.v, because the test of each block counts the block. With
-# all counters, a few simulated seconds of flight took minutes.
+# COVERAGE, a FAST model has coverage counters only in soc.v and platform.v, because the other
+# blocks are counted by their own tests. With counters in all modules, a few simulated seconds of
+# flight take minutes.
 #
-# Clang compiles the model. Compiling takes 0.6 of the time of g++ (measured with fir), and the code
-# is 1.18 times as fast (measured with the chip).
+# Clang compiles the model. Compared with g++, compiling takes 0.6 of the time (measured with fir),
+# and the compiled model is 1.18 times as fast (measured with the chip).
 function(icesoc_verilate name)
   cmake_parse_arguments(A "FAST" "TOP;CLASS" "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;FLAGS" ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name})
@@ -261,15 +263,15 @@ function(icesoc_verilate name)
     set(without_tree COMMAND find ${dir} -name "*.cpp" -exec sed -i
       "s|MT(\"${CMAKE_SOURCE_DIR}/|MT(\"|" {} +)
   endif()
-  # The generated code of these files runs only once. With counters it is several megabytes long,
-  # and compiling it with -O1 took minutes.
+  # -O level of code that runs only once. With coverage counters this code is several megabytes
+  # long, and compiling it with -O1 takes minutes.
   set(slow -O1)
   if(COVERAGE)
     set(slow -O0)
   endif()
-  # Verilator's makefile appends -Os; OPT_FAST overrides it (measured: twice the speed). The headers
-  # are declared as by-products, so that ninja compiles the files that include them in the same run,
-  # not in the next one.
+  # Verilator's makefile appends -Os; OPT_FAST overrides it, which doubles the measured speed. The
+  # headers are declared as by-products, so that ninja compiles the files that include them in the
+  # same run, not in the next one.
   add_custom_command(OUTPUT ${lib} BYPRODUCTS ${dir}/${class}.h ${dir}/${class}___024root.h
     COMMAND ${VERILATOR} ${flags} ${A_PARAMS} ${sources}
     ${without_tree}
@@ -300,9 +302,9 @@ set(STATE_MEMBERS ${CMAKE_SOURCE_DIR}/testbench/common/state_members.awk)
 
 # icesoc_netlist(NAME DESIGN design [PARAMS NAME=value...] [DEPENDS target...] [TOP module SOURCES
 # file... INCLUDES dir...] [FLAGS ...] [CLASS class]): builds a Verilated model of a netlist, as
-# icesoc_verilate does for a module. The netlist is the one that `make synth` measures for a design,
-# or one with other parameters. Each primitive in the netlist has a Verilog model. With TOP, the
-# model is of a module that contains the netlist.
+# icesoc_verilate does for a module. The netlist is that of the design as `make synth` measures it,
+# unless PARAMS sets other parameters. Each primitive in the netlist has a Verilog model. With TOP,
+# the model is of a module that contains the netlist.
 function(icesoc_netlist name)
   cmake_parse_arguments(A "" "DESIGN;TOP;CLASS" "PARAMS;DEPENDS;SOURCES;INCLUDES;FLAGS" ${ARGN})
   if(NOT A_TOP)
@@ -323,7 +325,7 @@ function(icesoc_netlist name)
     DEPENDS ${scripts} ${made} ${A_DEPENDS}
     DEPFILE ${CMAKE_CURRENT_BINARY_DIR}/netlist_${name}/${A_DESIGN}.d
     VERBATIM COMMENT "Netlist of ${A_DESIGN}")
-  # Lint checks the RTL only; here it would report the style of Yosys.
+  # Lint is off, because it would only report the style of the Verilog that Yosys writes.
   icesoc_verilate(${name} TOP ${A_TOP} SOURCES ${A_SOURCES} ${netlist} INCLUDES ${A_INCLUDES}
     CLASS ${A_CLASS} FLAGS ${A_FLAGS} -Wno-lint -Wno-style -Wno-UNOPTFLAT)
 endfunction()

@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: MIT
 # vhdl_test: runs the entity <core>_tb under GHDL, and stops at its first failure.
 # Usage: vhdl_test.sh core GHDL vectors-program folder file.vhd...
-# vectors-program: gets the folder and SEED, and writes the test bench's input into the folder
-# COVERAGE_DIR: folder for GHDL's file of lines that ran
+# vectors-program: gets the folder and SEED as arguments, and writes the input of the test bench into
+# the folder
+# COVERAGE_DIR: folder for GHDL's coverage file, which lists the lines that ran
 # WAVE: file for a waveform (*.fst)
 set -eu
 core=$1 ghdl=$2 vectors=$3 work=$4

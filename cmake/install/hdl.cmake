@@ -8,9 +8,9 @@ set(hdl_out ${CMAKE_CURRENT_BINARY_DIR}/hdl)
 
 # icesoc_hdl_core(NAME TOP module PURPOSE text FILES file... [INCLUDES file...] [DEPENDS block...]
 #                 [CONSTRAINTS file...])
-# Adds a block. A file is given as FOLDER/FILE. FOLDER is bus, a folder of hdl/ such as cdc, or (for
-# a generated file) the folder into which the file is installed. Sets CORE_FILES_<name>, which the
-# file lists of other blocks use.
+# Adds a block. Each file is given as FOLDER/FILE. FOLDER is either bus or a folder of hdl/ such as
+# cdc; for a generated file, it is the folder into which the file is installed. Sets
+# CORE_FILES_<name> and CORE_FOLDERS_<name>, which the file lists of dependent blocks use.
 function(icesoc_hdl_core name)
   cmake_parse_arguments(A "" "TOP;PURPOSE" "FILES;INCLUDES;DEPENDS;CONSTRAINTS" ${ARGN})
   set(core "CAPI=2:\n# SPDX-License-Identifier: MIT\nname: icesoc:hdl:${name}:${ICESOC_VERSION}\n"

@@ -13,16 +13,16 @@ set(headers ${icec}/icec.h ${icec}/ice_config.h ${icec}/ice_objects.h ${icec}/ic
 
 icesoc_c90(icec_host SOURCES ${sources} INCLUDES ${icec} ${top}/sw/base)
 icesoc_c90(icec_host_tcp SOURCES ${tcp_sources} INCLUDES ${icec} ${icec}/endpoints ${top}/sw/base)
-target_compile_options(icec_host_tcp PRIVATE -Wno-conversion) # htons and similar functions are
-                                                              # macros that convert implicitly
+# htons and similar macros contain implicit conversions
+target_compile_options(icec_host_tcp PRIVATE -Wno-conversion)
 set_target_properties(icec_host PROPERTIES OUTPUT_NAME icec)
 set_target_properties(icec_host_tcp PROPERTIES OUTPUT_NAME icec_tcp)
 list(APPEND installable icec_host icec_host_tcp)
 install(TARGETS icec_host icec_host_tcp ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   COMPONENT ${component})
 install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/icec COMPONENT ${component})
-# Sources for other machines, in the folders of the source tree; the radio endpoints need the
-# sources of the link.
+# The sources, for compiling IceC for other machines; the folders are those of the source tree. The
+# radio endpoints are left out, because they need the sources of the link layer.
 install(DIRECTORY ${icec} DESTINATION ${CMAKE_INSTALL_DATADIR}/icec/src COMPONENT ${component}
   FILES_MATCHING PATTERN *.c PATTERN *.h PATTERN xbee_* EXCLUDE)
 install(FILES ${top}/sw/base/base.h DESTINATION ${CMAKE_INSTALL_DATADIR}/icec/src/base

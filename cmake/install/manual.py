@@ -22,8 +22,8 @@ def roff(text):
 
 
 def options(lines):
-    """Returns the parts of a help text in order. A paragraph is a string, options are a list with
-    their texts, and examples are a tuple of lines."""
+    """Returns the parts of a help text in order. A string is a paragraph, a list [option, text] an
+    option, and a tuple the lines of the examples."""
     parts = []
     for line in lines:
         if parts and isinstance(parts[-1], tuple):  # examples are the last part of a help text
@@ -46,8 +46,9 @@ def options(lines):
 
 
 def page(name, section, purpose, version, text, program):
-    """Returns the manual page of a program. `text` is the output of the program's --help; `program`
-    is the name by which this output calls the program."""
+    """Returns the manual page of a program. `name`: installed name of the program. `text`: output
+    of the program's --help. `program`: name of the program in this output, which the page replaces
+    by `name`."""
     text = re.sub(rf"\S*\b{re.escape(program)}\b", name, text)
     usage = re.search(r"^usage: *(.*(?:\n +\S.*)*)\n", text, re.M | re.I)
     rest = text.replace(usage[0], "", 1) if usage else text

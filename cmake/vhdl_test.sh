@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 # vhdl_test: runs the entity <core>_tb under GHDL, and stops at its first failure.
 # Usage: vhdl_test.sh core GHDL vectors-program folder file.vhd...
-# vectors-program: gets the folder and SEED as arguments, and writes the input of the test bench into
+# vectors-program: gets the folder and SEED as arguments, and writes the test bench's input into
 # the folder
 # COVERAGE_DIR: folder for GHDL's coverage file, which lists the lines that ran
 # WAVE: file for a waveform (*.fst)

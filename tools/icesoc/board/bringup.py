@@ -12,7 +12,8 @@ ENDS = {"mcu": "microcontroller", "fpga": "FPGA", "modem": "modem"}
 
 
 class Report:
-    """A report, built line by line. Its `result` is passed, failed, or stopped."""
+    """A report, built from the lines of the console. data["result"] is "passed", "failed" or
+    "stopped"."""
     def __init__(self, board):
         self.board = board  # a board of board.model, or None if unknown
         self.data = {"board": board.name if board else "", "result": "stopped", "steps": []}

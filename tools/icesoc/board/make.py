@@ -21,7 +21,7 @@ def for_build(board):
 
 
 def for_bench(board):
-    """Returns the files that one needs at the bench, as {name: text}."""
+    """Returns the files for assembling and debugging the board, as {name: text}."""
     return {"wiring.html": wiring.table(board), "wiring.svg": picture.draw(board),
             "bom.csv": wiring.bom(board), "openocd.cfg": firmware.openocd(board),
             "page.md": wiring.page(board)}

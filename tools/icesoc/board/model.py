@@ -28,8 +28,9 @@ class Pin:
     number: str = ""  # number in the package; empty for a ball
     functions: dict = field(default_factory=dict)  # name of each alternate function -> its number
     bank: int | None = None
-    description: str = ""  # Xilinx's name, such as IO_L41P_GCLK9_IRDY1_M1RASN_1, or the kind of the
-                           # ball
+    # Xilinx's name of a ball, such as IO_L41P_GCLK9_IRDY1_M1RASN_1 or VCCO_0; for a pin of a
+    # microcontroller, empty if it is an I/O pin
+    description: str = ""
 
     @property
     def is_io(self):
@@ -140,9 +141,9 @@ def rows(path):
 
 
 def part_file(name, column, where, boards):
-    """Returns the path of a part's facts. `column` is the column by which files of this kind of
-    part are recognised. Raises Wrong if boards/parts has no part of this kind and name; `where`
-    starts the message."""
+    """Returns the path of the CSV file about a part. `column`: a column that only files about this
+    kind of part have. Raises Wrong if boards/parts has no part of this kind and name; the message
+    begins with `where`."""
     known = {path.stem: path for path in sorted((boards / "parts").glob("*.csv"))
              if column in rows(path)[0]}
     if name not in known:
@@ -153,7 +154,7 @@ def part_file(name, column, where, boards):
 
 def read_module(name, part, where, boards):
     """Returns the Module with this name. Raises Wrong if boards/modules has no such module, or if
-    the module has another part than `part`; `where` starts the message."""
+    its part is not `part`; the message begins with `where`."""
     known = {path.stem: path for path in sorted((boards / "modules").glob("*.toml"))}
     if name not in known:
         raise Wrong(f"{where}.module: expected {' or '.join(known)}, got '{name}'"

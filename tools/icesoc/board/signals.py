@@ -11,12 +11,13 @@ class Signal:
     name: str
     driver: str  # MCU, FPGA, BOTH, MODEM, or OTHER (the part that `to` names)
     port: str = ""  # pad of the chip, spelled as in UCF; empty: not connected to the FPGA
-    function: str = ""  # function in the words of ST, or GPIO; empty: not connected to the CPU
-    pin: str = ""  # pin that the firmware requires (sw/), such as PA9; empty: any pin with the
-                   # function
+    function: str = ""  # ST's name of the function, or GPIO; empty: not connected to the CPU
+    # pin that the firmware (sw/) requires, such as PA9; empty: any pin that has the function
+    pin: str = ""
     modem: str = ""  # pin of the modem's socket
     is_clock: bool = False  # an edge of the signal clocks registers of the FPGA
-    # an edge of the signal ends an access, so a slow or noisy edge could cause an additional access
+    # an edge of the signal ends an access to the FPGA, so a slow or noisy edge could cause an
+    # additional access
     is_strobe: bool = False
     needed: bool = True  # True: every board must connect the signal
 

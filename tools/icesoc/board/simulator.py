@@ -7,17 +7,17 @@ KNOWN = {signal.function for signal in SIGNALS.values() if signal.function.start
 
 
 def at_pin(pin, function):
-    """Returns the first alternate function of a pin that any signal of boards uses. The net may
-    expect another function: a wire at the wrong pin carries the signal of that pin. Returns
-    `function` if no signal uses a function of the pin."""
+    """Returns the FSMC function that a pin has, even if the net at this pin expects another one: a
+    wire at a wrong pin carries the signal of that pin. If the pin has no FSMC function, returns
+    `function`, or "-" if that is empty."""
     return next((name for name in pin.functions if name in KNOWN), function or "-")
 
 
 def wires(board: Board):
-    """Returns the wires as text. The first lines are the oscillator, whether address and data are
-    multiplexed (1) or not (0), and the kind of modem if it is known. Then each net has a line: the
-    pin, the number and the name of its alternate function ("-" if it has none), the net, the ball,
-    its bank, and the supply of the bank in V."""
+    """Returns the wires as text. The first lines contain the frequency of the oscillator in Hz,
+    whether address and data are multiplexed (1) or not (0), and, if known, the kind of modem. Then
+    each net has a line: the pin, the number and the name of its alternate function ("-" if it has
+    none), the net, the ball, its bank, and the supply of the bank in V."""
     lines = [f"# Wires of {board.name}: pin, alternate function, its name, net, ball, bank, volts",
              f"oscillator {board.facts['mcu']['hse_hz']}", f"muxed {int(board.muxed)}"]
     if board.modem:

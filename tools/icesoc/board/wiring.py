@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""wiring: generates what one needs at the bench: the wiring table, the bill of materials, and the
-page of the board."""
+"""wiring: generates the wiring table, the bill of materials, and the page of a board."""
 import csv
 import html
 import io
@@ -113,7 +112,7 @@ def bom(board: Board):
 
 
 def plain(text):
-    """Returns a text, escaped so that it begins no HTML tag in Markdown."""
+    """Returns a text, escaped so that Markdown does not take a part of it as an HTML tag."""
     return str(text).replace("<", "&lt;")
 
 

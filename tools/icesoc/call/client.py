@@ -113,7 +113,8 @@ class Client:
             settings, self.target.plugin, self.target.guard, self.target.key))
 
     def made(self):
-        """Returns the proxy of the object; asks the object for its interface if that is unknown."""
+        """Returns the proxy of the object; if the object's interface is unknown, asks the object
+        for it."""
         mode = " -o" if self.options.oneway else ""
         text = self.target.proxy(self.each.identity, mode, self.options.facet or "")
         try:
@@ -159,7 +160,7 @@ class Client:
                 for (called, kind), value in zip(outputs, answers)}, milliseconds
 
     def guarded(self, function, operation=None):
-        """Calls a function; turns each exception of Ice into a Failure with a plain text."""
+        """Calls a function. Raises a Failure with a plain text instead of any exception of Ice."""
         try:
             return function()
         except Ice.UserException as error:

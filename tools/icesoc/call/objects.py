@@ -15,15 +15,16 @@ from icesoc import TREE
 from icesoc.call.slices import Slices, listed
 from icesoc.util.errors import Stop, nearest
 
-# interface for a core without a servant; it reads and writes the registers of the core by name
+# interface of a core without a servant; its operations read and write the core's registers by name
 REGISTERS = "::Hw::Registers"
 ACCESSES = {"get": ("ro", "rw", "w1c", "w1s"), "set": ("rw", "w1c", "w1s", "ws")}
-LIVE = "live.json"  # file in the folder of a flight, present during the flight
+LIVE = "live.json"  # file in the folder of a flight; it exists only during the flight
 VIEWED = "viewed"  # file in the same folder, which is rewritten while a browser shows the page
 
 
 def read_json(path):
-    """Returns the JSON in a file, or None if the file does not exist."""
+    """Returns the parsed content of a JSON file, or None if the file cannot be read or is not
+    JSON."""
     try:
         return json.loads(Path(path).read_text())
     except (OSError, ValueError):
@@ -33,14 +34,15 @@ def read_json(path):
 @dataclass
 class Object:
     identity: str
-    interface: str = ""  # empty: unknown; the object is asked for its interface
+    interface: str = ""  # empty: unknown, so the program asks the object for its interface
     registers: str = ""  # path of the *.regs.json of the object's core
     core: str = ""  # name of the object's core and of the core's register block
 
 
 def only_interface(slices, files):
-    """Returns the interface of a core's servant: the interface with the metadata [":hw"], or the
-    only interface of the files. Returns "" if neither of these is unique."""
+    """Returns the interface of a core's servant: the only interface with the metadata [":hw"], or
+    else the only interface in the files. Returns "" if the files have several candidates or
+    none."""
     folders = {os.path.realpath(file) for file in files}
     found = [name for name in slices.interfaces()
              if os.path.realpath(slices.get(name)["file"]) in folders]
@@ -97,8 +99,8 @@ class Catalogue:
 
     def unknown(self, identity, operation):
         """Returns an object that the build does not list. If exactly one interface in the files of
-        --slice declares the operation, this is the interface of the object. Otherwise the object is
-        asked for its interface later."""
+        --slice declares the operation, the object gets this interface. Otherwise, the program asks
+        the object for its interface later."""
         declare = [name for name in self.slices.interfaces()
                    if os.path.realpath(self.slices.get(name)["file"]) in self.given
                    and any(o["name"] == operation for o in self.slices.get(name)["operations"])]
@@ -130,7 +132,7 @@ def registers(each):
     except (Wrong, OSError):
         return found
     for register in block.registers:
-        # Bits above the last field do nothing.
+        # Bits above the last field have no effect, so the width ends there.
         width = max((f.lsb + f.width for f in register.fields), default=register.width)
         found[register.name] = register.access, width
         for field in register.fields:

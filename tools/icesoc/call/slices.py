@@ -24,7 +24,8 @@ OBJECT = [{"name": "ice_ping", "result": "void", "parameters": [],
 
 
 def listed(words, most=12):
-    """Returns words separated by commas, but at most the first `most` of them."""
+    """Returns words as a list with commas. If there are more than `most` words, the list ends after
+    that number, with the total count."""
     words = list(words)
     more = f", ... ({len(words)} in all)" if len(words) > most else ""
     return ", ".join(words[:most]) + more
@@ -108,8 +109,9 @@ class Slices:
         return next((int(limit) for limit in limits if limit), None)
 
     def named(self, kind):
-        """Returns a readable name of a type, such as Cores.Fir. A sequence or dictionary is named
-        after its element type, and a small enum is listed by its enumerators."""
+        """Returns a readable name of a type, such as Cores.Fir. For a sequence or dictionary, the
+        name contains the type of the elements. For an enum with at most four enumerators, the
+        enumerators are the name."""
         each = self.get(kind)
         if each["kind"] == "sequence":
             return f"sequence<{self.named(each['element'])}>"

@@ -12,7 +12,7 @@ from icesoc.util.errors import Stop
 
 @dataclass
 class Target:
-    """The target of a call: the properties of the communicator, and the address in proxies."""
+    """The target of a call: properties for the communicator, and the address for proxies."""
     place: str  # for messages
     suffix: str = ""  # part of the proxy after the identity: ":tcp -h ..." or "@uav1"
     properties: dict = field(default_factory=dict)
@@ -20,7 +20,7 @@ class Target:
     plugin: str = ""  # folder of the radio plugin
     key: str = ""
     guard: int = 1000
-    # endpoints at which the vehicle calls this program; empty: the vehicle calls back over the
+    # endpoints at which this program receives calls from the vehicle; empty: the vehicle uses the
     # connection that this program has opened
     callbacks: str = ""
 
@@ -59,7 +59,7 @@ def of_device(values):
 
 
 def of_gateway(values):
-    """Returns the target of a gateway at HOST:PORT, or at endpoints of Ice."""
+    """Returns the target of a gateway, given as HOST:PORT or as endpoints of Ice."""
     text = values.gateway
     if " " in text:
         return Target(text, ":" + text, build=values.build)

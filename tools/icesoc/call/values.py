@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""values: converts the arguments of a call from texts to checked values and then to values of stock
-Ice, and results in the other direction.
+"""values: converts the arguments of a call from texts to checked values, and results to text.
+mapping.py converts between checked values and values of stock Ice.
 
 A checked value consists of the types that JSON has, and of bytes for a sequence<byte>. Every value
 is checked against Slice before a communicator is created: "threshold: expected 0 to 255, got 300".
@@ -26,7 +26,7 @@ class Refused(Stop):
 
 
 def short(value):
-    """Returns a value, shortened for a message."""
+    """Returns a value as a short text for a message."""
     text = value if isinstance(value, str) else json.dumps(value, default=repr)
     text = text.encode("utf-8", "replace").decode().replace("\n", " ")
     text = text if len(text) <= 60 else text[:57] + "..."

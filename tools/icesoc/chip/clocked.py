@@ -14,7 +14,8 @@ from icesoc.util.errors import reason_of
 
 
 def clocked(block, has_clk_hz):
-    """Returns a module with the ports of a slot that contains a block with a separate clock."""
+    """Returns the Verilog of a module that has the ports of a slot and contains a block with a
+    separate clock."""
     check(not block.description.get("memory_port"),
           "a core with a memory port uses the chip clock, as the port does; for a part of the core "
           "with a separate clock use hdl/cdc/async_fifo.v, as ip/camera does")

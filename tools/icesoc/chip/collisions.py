@@ -2,7 +2,7 @@
 """collisions: rejects a chip in which two cores, or a core and the platform, would have the same
 name in the generated files.
 
-For example, core `a_b` with the output `c_o` and core `a` with the output `b_c_o` would both have
+For example, the output `c_o` of a core `a_b` and the output `b_c_o` of a core `a` would both get
 the wire pin_a_b_c_o. The error message contains both names.
 """
 import re
@@ -46,8 +46,9 @@ def constant_names(block):
 
 
 def check(chip, base, blocks):
-    """Raises Wrong if two cores would have the same name in a generated file; the error names the
-    line of the second one. `blocks`: the register blocks of the platform."""
+    """Raises Wrong if two cores, or a core and the platform, would have the same name in a
+    generated file. The message contains the line of the later core in ip/cores.list. `blocks`: the
+    register blocks of the platform."""
     scopes, registers = {}, Spelled()
     for block in blocks:
         for name, owner in constant_names(block):

@@ -63,7 +63,8 @@ def add_memory(block, facts):
 
 
 def places(block):
-    """Returns {name: (offset in words, width in bits, access)} of the registers and fields."""
+    """Returns {name: (place, width in bits, access)} of the registers, fields and events. The place
+    is a text such as "word 3, from bit 4"."""
     there = {}
     for r in block.own_registers:
         word = f"word {r.word}" + (f", PAGE 0x{r.page:X}" if r.page >= 0 else "")
@@ -95,7 +96,8 @@ def compare(old, new):
             breaking.append(f"{name} has {now_width} bits, and had {width}")
         elif now_width > width:
             compatible.append(f"{name} has {now_width} bits, and had {width}")
-        # A change from read-only to writable does not break software.
+        # A change from ro to rw does not break software. A field that changes together with its
+        # register is not reported separately.
         register = name.split(".")[0]
         follows = "." in name and (access, now_access) == tuple(
             names.get(register, ("", 0, ""))[2] for names in (before, after))

@@ -32,7 +32,8 @@ def declared(width, name):
 
 
 def source_net(pin):
-    """Returns the wire of the output, core.pin, that drives this input."""
+    """Returns the name of the wire that drives an input. The input's `source` names an output of
+    another core as CORE.PIN."""
     return "pin_" + pin.source.replace(".", "_", 1)
 
 
@@ -79,14 +80,14 @@ def contract_of(block):
 
 
 def change_words(probe):
-    """Returns the number of 64-bit words in one entry of a probe: 1, 2 or 4, for 31, 95 or 223 bits
-    (ip/probe/probe.v)."""
+    """Returns the number of 64-bit words in one entry of a probe: 1, 2 or 4 words for up to 31, 95
+    or 223 recorded bits (ip/probe/probe.v)."""
     recorded = sum(width for _, width in probe.signals)
     return 1 if recorded <= 31 else 2 if recorded <= 95 else 4
 
 
 def names_of(probe):
-    """Returns the hash of the names and widths of a probe's signals."""
+    """Returns a hash of the names and widths of a probe's signals."""
     return hash_of("".join(f"{name}:{width}\n" for name, width in probe.signals))
 
 
@@ -103,8 +104,8 @@ def recorded(probe):
 
 
 def taps_of(probe):
-    """Returns (wire, hierarchical name, width of this signal, width of the wire) for each signal
-    that a probe records."""
+    """Returns (wire, hierarchical name of the signal, width of the signal, width of the wire) for
+    each signal that a probe records."""
     return [*((f"{probe.name}_{i}", name, width, width)
               for i, (name, width) in enumerate(probe.signals)),
             (f"cycles_{probe.name}", "u_system_slot.cycles", 64, 32)]
@@ -168,8 +169,8 @@ def places(core):
 
 
 def own_constraints(core):
-    """Returns the timing constraints of a core. In the core's UCF file, @name@ stands for the
-    instance, and @port@ for the pads of that port. For a bus, the pads are a list."""
+    """Returns the timing constraints in a core's UCF file. In the file, @name@ stands for the
+    instance, and @PORT@ for the list of the pads of that port."""
     s = core.constraints.replace("@name@", core.name)
     for pin in core.pins:
         s = s.replace(f"@{pin.name}@", '" : "'.join(pads(pin)) if pin.is_pin else "")
@@ -179,8 +180,9 @@ def own_constraints(core):
 def clock_constraints(core):
     """Returns the timing constraints of the separate clock of a core: its period and its crossings.
 
-    A path between this clock and the chip clock may take at most 8 ns. Two bits of a crossing, or a
-    word and its flag, then arrive at most one clock of 10 ns apart.
+    A path between this clock and the chip clock may take at most 8 ns, which is less than a period
+    of the chip clock (10 ns). Bits that cross together, or a word and its flag, therefore arrive at
+    most one clock apart.
     """
     if not core.own_clock:
         return ""
@@ -208,8 +210,8 @@ def waits(core):
 
 
 def instances_of(chip, slots):
-    """Returns the firmware's table of cores. A core without a servant gets the common servant that
-    accesses registers by name."""
+    """Returns the firmware's table of cores. A core without a servant gets the common servant,
+    which accesses the core's registers by name."""
     headers = set()
     for core in chip.cores:
         headers |= ({core.servant["header"]} if core.servant else
@@ -231,7 +233,7 @@ def render(template, **values):
 
 def description_of(chip, slots, registers, slices):
     """Returns the chip as JSON, for programs on the PC: its slots with their register descriptions,
-    the objects that a client can call with their Slice files, and the signals of its probes.
+    the objects that a client can call (with their Slice files), and the signals of its probes.
     registers: maps the name of a block to its *.regs.json; slices: pairs of folder and Slice
     file."""
     return json.dumps({

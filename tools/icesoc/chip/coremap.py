@@ -31,11 +31,11 @@ PROBE_BITS = 223
 
 @dataclass
 class Pin:
-    name: str  # port of the core; its suffix gives the direction
+    name: str  # port of the core; the suffix _i or _o gives the direction
     width: int = 1
-    internal: bool = False  # True: only for connections to other cores, never a pin; unconnected
-                            # inputs are 0
-    lsb: int = 0  # index of the first bit in core_pins_i or core_pins_o; number of bits
+    # True: never connected to a pin, only to other cores; an unconnected input is 0
+    internal: bool = False
+    lsb: int = 0  # index of its first bit in core_pins_i or core_pins_o
     source: str = ""  # output of another core that drives this input, instead of a pin
     places: list = field(default_factory=list)  # locations of its bits on the board, bit 0 first
 
@@ -58,21 +58,21 @@ class Core:
     port: int = -1  # memory port; -1: no port
     memory: int = 0  # DDR3 byte address of the buffers, a multiple of memory_bytes
     memory_bytes: int = 0  # size of the buffers in bytes, a power of two; 0: no buffers
-    is_placed: bool = False  # the address was given by memory= in the list
-    servant: dict = None  # C type and header of the servant; default: the servant of
-                          # sw/hw/registers
+    is_placed: bool = False  # True: the list gives the address with memory=
+    # C type and header of the servant; None: the common servant in sw/hw/registers
+    servant: dict = None
     pins: list = field(default_factory=list)
     constraints: str = ""  # text of the core's *.ucf
     has_clock: bool = False  # the module has the parameter CLK_HZ
-    # highest frequency of its separate clock, Hz; 0: it has no separate clock and uses the chip
-    # clock
+    # highest frequency of the core's separate clock, Hz; 0: the core uses the chip clock
     own_clock: int = 0
     # clock_hz is the chip clock * multiply / divide; 0: the clock comes from pin clock_i, the last
     # pin of the core
     multiply: int = 0
     divide: int = 1
     says_idle: bool = False  # the module has the output idle_o
-    has_gate: bool = False  # the clock of the core stops while the core is idle, also on the board
+    # the clock of the core stops while the core is idle, in the simulator and on the board
+    has_gate: bool = False
     is_probe: bool = False  # the core is a probe: its module has cycles_i and signals_i
     signals: list = field(default_factory=list)  # signals of a probe, bit 0 first: (name below soc,
                                                  # width)
@@ -115,11 +115,11 @@ class Chip:
         self.registers = constants["CONTROL_WINDOW"]  # the processor's address of slot 0
         # number of bits used in core_pins_i ("i") and core_pins_o ("o")
         self.pins = {"i": 0, "o": 0}
-        # names in use -> line number in the list
+        # name in use -> its line in the list; 0: a slot of the platform
         self.names = {n[5:].lower(): 0 for n in constants if n.startswith("SLOT_")}
         self.identities, self.places, self.cores = set(), {}, []
-        for n, line in enumerate(text.split("\n"), 1):  # unlike splitlines(), does not split at
-                                                        # form feeds
+        # splitlines() would also split at form feeds
+        for n, line in enumerate(text.split("\n"), 1):
             words = line.split("#")[0].split()
             if words:
                 self.cores.append(self.read(n, words[0], words[1:]))
@@ -298,8 +298,8 @@ class Chip:
         """Assigns the addresses of the buffers in DDR3.
 
         A core's wrapper keeps only the address bits above the size of its buffers, so their address
-        is a multiple of this size. Buffers with memory= are placed first, the others then fill the
-        gaps, in the order of the list.
+        is a multiple of this size. Buffers with memory= are placed first. The others follow in the
+        order of the list, each at the next free address after the one before.
         """
         placed = []
 
@@ -338,7 +338,9 @@ class Chip:
         names = [c.name for c in self.cores]
         for pin in core.pins:
             if pin.source and pin.internal and pin.source.split(".")[0] not in names:
-                pin.source = ""  # an input from a core that is not in the chip stays unconnected
+                # the core that would drive this input is not in the chip, so the input stays
+                # unconnected
+                pin.source = ""
             elif pin.source:
                 origin = outputs.get(pin.source)
                 core.check(origin and origin.width == pin.width,

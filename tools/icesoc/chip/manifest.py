@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """manifest: reads a core's core.toml, the only description of the core (docs/hw-mapping.md).
 
-For CMake, `python -m icesoc.chip.manifest ip/fir/core.toml ip/probe/core.toml` prints a global
-property for each manifest. Its value is CMake code that sets variables to the facts. Python
-programs use read() and block_of().
+For CMake, `python -m icesoc.chip.manifest ip/fir/core.toml ip/probe/core.toml` prints CMake code
+that defines a global property for each manifest. The property's value is again CMake code, which
+sets variables to the facts. Python programs use read() and block_of().
 """
 import json
 import re
@@ -26,8 +26,7 @@ FILE_LISTS = "verilog", "vhdl", "includes", "tests"
 
 @dataclass
 class Manifest:
-    """The facts of one core. File names are absolute; either a registers file or an interface file
-    is present."""
+    """The facts of one core. A core has either a register description or a Slice interface."""
 
     path: Path
     name: str
@@ -38,7 +37,7 @@ class Manifest:
         return self.path.parent
 
     def file(self, name):
-        """Returns the absolute name of a file that is given relative to the manifest."""
+        """Returns the absolute path of a file; `name` is relative to the manifest's folder."""
         return str(self.folder / name)
 
     def pins(self):
@@ -134,8 +133,8 @@ def block_of(manifest, registers):
 
 
 def quoted(words):
-    """Returns words as arguments for CMake. In each word, @NAME@ becomes a reference to CMake's
-    variable NAME."""
+    """Returns words as quoted arguments for CMake. In each word, @NAME@ becomes ${NAME}, a
+    reference to a variable of CMake."""
     text = (str(word).replace("\\", "\\\\").replace('"', '\\"').replace("$", "\\$")
             .replace(";", "\\;") for word in words)
     return " ".join('"' + re.sub("@([A-Z_]+)@", r"${\1}", word) + '"' for word in text)

@@ -19,7 +19,8 @@ ROOMS_OF_PROGRAMS = "bus;slice;sw;hdl;ip;testbench;tests"
 
 
 def writable(folder, otherwise):
-    """Creates a folder. Fails if the folder is not writable; `otherwise` advises what to do."""
+    """Creates a folder. Fails if the folder is not writable; the message then ends with the advice
+    `otherwise`."""
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
     except OSError:
@@ -76,8 +77,8 @@ class BuildFolder:
             if not (self / "build.ninja").exists():
                 run(["cmake", "-S", ".", "-B", self.folder, "-G", "Ninja", *arguments])
         commands = Path("compile_commands.json")
-        # Editors look for compile_commands.json in the tree. A build folder outside the tree does
-        # not change the tree.
+        # Editors look for compile_commands.json in the tree. No link is made to a build folder
+        # outside the tree.
         if not commands.exists() and self.folder.absolute().is_relative_to(Path.cwd()):
             with contextlib.suppress(OSError):
                 commands.unlink(missing_ok=True)
@@ -118,9 +119,10 @@ class BuildFolder:
                 for core in cores_in(Path(folder).absolute())]
 
     def chip_list(self):
-        """Returns the path of the list of the chip's cores if the command changes it, otherwise
-        None. It is the cores.list of the first repository among the folders that the command names.
-        It is ip/cores.list if the command selects the cores of the tree again (`none`)."""
+        """Returns the path of the list of the chip's cores, or None if the command does not change
+        it. If the command names folders, the result is the cores.list of the first folder that has
+        one. If it names `none`, which selects only the cores of the tree, the result is
+        ip/cores.list."""
         if self.core_folders == "none":
             return Path("ip/cores.list").absolute() if self.cached("CORES") else None
         lists = (Path(folder).absolute() / "cores.list" for folder in self.core_folders.split(";"))
@@ -140,9 +142,9 @@ class BuildFolder:
         self.set(**variables)
 
     def for_board(self, name):
-        """Returns the build folder with the simulator and the firmware of a board: the name of a
-        folder of boards/, or a file board.toml. It is this folder if it was configured for the
-        board; otherwise it is another folder with the same chip."""
+        """Returns the build folder with the simulator and the firmware of a board. `name`: a folder
+        in boards/, or a file board.toml. If this folder is configured for the board, returns this
+        folder; otherwise configures and returns another folder with the same chip."""
         path = Path(name)
         if name == (self.cached("BOARD") or DEFAULT_BOARD):
             return self
@@ -180,7 +182,7 @@ class BuildFolder:
 
 
 def configured(values, *targets, tests=False):
-    """Returns the build folder of a command after building targets in it."""
+    """Builds targets in the build folder of a command, and returns this folder."""
     build = BuildFolder(values.build, values).prepare(tests=tests)
     if targets:
         build.ninja(*targets)

@@ -30,11 +30,12 @@ def texts(folders, *endings):
     return [path.read_text(errors="replace") for path in files(folders, *endings)]
 
 
-NOUNS = {}  # noun for the names that each function returns, for messages
+# function -> text for error messages about the names that it returns, such as "the name of a core"
+NOUNS = {}
 
 
 def expecting(noun):
-    """Returns a decorator that stores the noun for a function's results, for messages."""
+    """Returns a decorator that stores the text for error messages about a function's names."""
     def declare(function):
         NOUNS[function] = noun
         return function
@@ -87,7 +88,7 @@ def labels(values=None):
 
 
 def has_label(text, values):
-    """Returns whether an expression matches a label."""
+    """Returns whether a regular expression matches a label."""
     try:
         return any(re.search(text, label) for label in labels())
     except re.error:
@@ -105,7 +106,8 @@ def benches(values=None):
 @expecting("a block with seeded bugs, or block/bug")
 def seeded(values=None):
     """Returns the names of the blocks and cores with seeded bugs, and each bug as block/name. With
-    --draw, a block is an expression for the names of proofs, so every block is accepted."""
+    --draw, returns an empty list, because a block is then an expression for names of proofs; an
+    empty list accepts every name."""
     if values and values.draw:
         return []
     from icesoc.mutants.run import read_bugs  # not part of the installed icesoc-call
@@ -136,8 +138,8 @@ def words_of_tests(values=None):
 
 def may_name_test(text, values):
     """Returns whether a text may match a test. A regular expression may always match. A plain word
-    may match if each part of it occurs in the source of a test, or if the build has cores outside
-    the tree, because their tests may have any name."""
+    may match if each part of it occurs in the source of a test. If the build has cores outside the
+    tree, every word may match, because their tests may have any name."""
     from icesoc.cli.build_folder import BuildFolder  # the installed icesoc-call does not contain
                                                      # this module
     if not re.fullmatch(r"[A-Za-z]\w*", text) or \

@@ -14,19 +14,19 @@ from icesoc.cli.options import ARGUMENTS, BUILT, PATHS, SWITCH
 from icesoc.util.console import warn
 from icesoc.util.errors import Stop, nearest
 
-COMMANDS = {}  # commands by name, such as "core new", in the order of their declaration
-GROUPS = {}  # help text of each group of commands, by the first word of their names
-DEFAULTS = {}  # name of a group -> the command that runs if no further word follows
-SECTIONS = {  # sections of the overview by purpose: title -> commands and groups
+COMMANDS = {}  # name such as "core new" -> Command, in the order of declaration
+GROUPS = {}  # first word of the names of a group of commands -> help text of the group
+DEFAULTS = {}  # name of a group -> the command that runs if only the group is named
+SECTIONS = {  # sections of the overview: title -> commands and groups
     "Fly": ("run", "call", "replay", "gdb", "key", "fly"),
     "Add cores, look at the chip": ("core", "contract", "synth", "board"),
     "Build and test": ("build", "test", "regress", "bisect", "check", "bench", "nightly"),
     "The project": ("setup", "docs", "package", "release", "clean", "commands")}
-ALIASES = {}  # further goals of make: goal -> the switch that it sets
+ALIASES = {}  # further goals of make: goal -> (goal of the command, switch that the goal sets)
 
 
 class Command:
-    """A command, with the function that carries it out for the values of its options.
+    """A command, with its options and the function that runs it.
 
     make: goal of the command in make, or "". when: variable that selects this command if several
     commands have the same goal. takes_environment: an option that is not given is read from the
@@ -86,7 +86,7 @@ class Command:
         return parser
 
     def example(self, text):
-        """Returns the command line of an example, which may run another command."""
+        """Returns the command line of an example. An example may also run another command."""
         is_own = text.startswith(self.name)
         return self.program + text.removeprefix(self.name) if is_own else f"./icesoc {text}"
 
@@ -132,7 +132,8 @@ class Command:
                 values.given.add(option.field)
                 called = option.name.upper() if option.positional else called
             elif self.takes_environment and (option.variable != "LANG" or option.variable in (
-                    # LANG in the environment is ignored: it is the user's language, not the option
+                    # LANG counts only on make's command line; in the environment, it is the user's
+                    # language
                     makes or ())):
                 text, called = os.environ.get(option.variable), option.variable
                 if text and option.variable in (makes or ()):
@@ -182,7 +183,7 @@ def by_words(words, place):
     """Returns (command, values) of a command line."""
     found, rest = find(words)
     flags = {word.partition("=")[0] for word in rest}
-    # as with `make run REPLAY=`, `run --replay` selects the command replay
+    # `run --replay` selects the command replay, as `make run REPLAY=` does
     for each in COMMANDS.values():
         if each.when and each.make == found.make and f"--{each.when.lower()}" in flags:
             found = each

@@ -221,9 +221,9 @@ def complete(values):
 
 
 def take_board(values):
-    """Completes the options of a flight with a board or with faults. The flight runs the ARM
-    binary, because only this sets the pins, and has the board's kind of modem. Writes the board's
-    wires into OUT/board."""
+    """Completes the options of a flight with a board or with faults. Such a flight runs the ARM
+    binary, because only the ARM binary configures the pins, and uses the board's kind of modem,
+    unless other options are given. Writes the board's wires into OUT/board."""
     if (values.board or values.fault) and "cpu" not in values.given:
         values.cpu = "m3"
     values.described = values.board if values.board.endswith(".toml") else ""
@@ -239,9 +239,10 @@ def take_board(values):
 
 
 def kit(folder, described=""):
-    """Returns the board for which the simulator and the firmware must be built: the name or the
-    file of a multiplexed board, because its bridge and its firmware differ. Returns an empty text
-    for other boards. `folder` is made by board make, `described` is the board's file if known."""
+    """Returns the name or the file of the board for which the simulator and the firmware must be
+    built, or an empty text if those of any board fit. Only a board with multiplexed address and
+    data needs a separate build, because its bridge and its firmware differ. `folder`: output of
+    `./icesoc board make`. `described`: the board's file, if known."""
     try:
         text = (Path(folder) / "board.wires").read_text() if folder else ""
     except OSError as error:
@@ -261,8 +262,8 @@ def check_chip(values, build):
 
 
 def take_key(values, build):
-    """Sets the key of the mission to the demo key, if the mission is not open and no key is given.
-    The demo key is created once."""
+    """If the flight is neither open nor has a key, uses the demo key. A missing demo key is
+    created."""
     if values.open or values.key or values.app != "uav":
         return
     keys.rescue(build.folder.parent)
@@ -310,9 +311,9 @@ def write(values, build):
 
 
 def last_span(out):
-    """Returns the options FROM= and TO= for the end of a flight. FROM is the last checkpoint that
-    is at least 10 ms before the end. Returns None if the recording is incomplete, for example after
-    the disk was full."""
+    """Returns the options FROM= and TO= that select the end of a recorded flight. FROM is the last
+    checkpoint that is at least 10 ms before the end. Returns None if the recording is incomplete,
+    for example after the disk was full."""
     last = before = finish = 0.0
     recording = (Path(out) / "flight.jsonl").read_text()
     if not recording.endswith("\n"):

@@ -49,7 +49,7 @@ def make_gave():
 
 
 def declare(words):
-    """Declares only the commands that a command line needs, so that `call` starts quickly."""
+    """Declares the commands. For `call`, declares only this command, so that it starts quickly."""
     if words[:1] == ["call"] and "_ARGCOMPLETE" not in os.environ:
         from icesoc.cli.commands import call  # noqa: F401
     else:
@@ -106,8 +106,8 @@ def main(words, function=act):
 
 def path_of(error):
     """Returns the path of the file to which an exception refers. If a write fails, for example on a
-    full disk, the exception has no path. The path is then guessed: a file that the innermost
-    function of the traceback has open, or a local variable of this function that is a path."""
+    full disk, the exception contains no path. The path is then guessed from the local variables of
+    the innermost function that has an open file or a path among them."""
     found = error.filename or ""
     for frame, _ in [] if found else traceback.walk_tb(error.__traceback__):
         local = frame.f_locals.values()

@@ -37,10 +37,11 @@ class Option:
     # False: the option is only for tests of this project, and the help does not list it
     listed: bool = True
     completer: typing.Callable = None  # completer for argcomplete
-    # function that takes the values of all options and returns the known names (choices.py)
+    # function in choices.py that returns the valid names, given the values of all options
     choices: typing.Callable = None
-    has_name: typing.Callable = None  # function that returns whether a value is valid although it
-                                      # is not among the choices
+    # function that accepts further values: it returns whether a value that is not among the choices
+    # is valid
+    has_name: typing.Callable = None
     is_checked: bool = True  # False: the choices are for completion only
 
     def __post_init__(self):
@@ -62,8 +63,8 @@ class Option:
                        2) from None
 
     def check_names(self, value, values):
-        """Rejects a name that is not among the choices, before anything is built. If the tree has
-        no choices, every name is accepted."""
+        """Rejects a name that is not among the choices, before anything is built. If `choices`
+        returns no names, every name is accepted."""
         if not self.choices or not self.is_checked or not value:
             return
         names = None

@@ -30,7 +30,8 @@ def role(name, port):
 
 
 def problem(top, ports, roles):
-    """Returns the error in the module's streams or settings, or None."""
+    """Returns an error message if the module's streams or settings do not fit the slot, otherwise
+    None."""
     widths = [len(p["bits"]) for n, p in ports.items() if roles[n] in ("s_tdata", "m_tdata")]
     if widths[0] != widths[1] or widths[0] not in ELEMENTS:
         return (f"tdata of {top} has {widths[0]} and {widths[1]} bits: expected 8, 16, 32 or 64 in "
@@ -45,7 +46,7 @@ def camel(name):
 
 def setting(name):
     """Returns the name of a setting in snake_case: the name of its port without i_ or _i. The
-    operation that sets the port has `set` before this name."""
+    operation that sets it is named `set` plus this name in CamelCase."""
     return re.sub(r"^i_|_i$", "", name.lower())
 
 

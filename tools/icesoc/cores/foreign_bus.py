@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """foreign_bus: writes the files of a core with registers on a bus, for new_foreign.py.
 
-The slot has a Wishbone or an AXI4-Lite adapter. A few gates convert other buses to Wishbone. A core
-without an acknowledge answers at once, after some clocks, or in APB's access phase.
+The slot has a Wishbone or an AXI4-Lite adapter. A few gates convert other buses to Wishbone. If the
+core has no acknowledge, the wrapper generates it: at once, after some clocks, or in APB's access
+phase.
 """
 import json
 
@@ -20,10 +21,11 @@ ADDRESSES = ("adr", "words", "bytes", "awaddr", "araddr")
 
 class Core:
     """A third-party core. `roles`: role of each port. `latency`: number of clocks after which a
-    core without ack answers. `address`: "words", "bytes" or None. `macros`: result of macros_of."""
+    core without ack answers. `address`: "words", "bytes" or None. `macros`: names and values as
+    macros_of returns them."""
 
     def __init__(self, name, top, bus, ports, roles, latency, params, clock, address, macros):
-        # There may be one ack for reads and another for writes, or one for both.
+        # The core may have one ack for reads and another for writes, or one for both.
         acks = [n for n in ports if roles[n] == "ack"]
         self.acks = {n: f"ack_{i}" for i, n in enumerate(acks)} if len(acks) > 1 else {}
         self.name, self.top, self.bus, self.ports = name, top, bus, ports
@@ -87,12 +89,13 @@ class Core:
 
 
 def connection(core, role, port, interrupts):
-    """Returns the expression for a port with a role. For an interrupt, also appends its wire to
-    `interrupts`."""
+    """Returns the expression that is connected to a port with a role. For an interrupt, also
+    appends (width, wire, value) to `interrupts`."""
     width = len(port["bits"])
     if role in LOW:
         return f"{{{width}{{!({connection(core, role[:-2], {'bits': [0]}, interrupts)})}}}}"
-    strobes = core.has_strobes  # if the core has no select, its read and write are strobes
+    # True: the core has no select, so its read and write signals start an access
+    strobes = core.has_strobes
     own = {"strobe": "stb", "re": "stb && !we" if strobes else "!we",
            "we": "stb && we" if strobes else "we"}
     # such a port may have one bit per byte; all bits get the same value
@@ -117,8 +120,8 @@ def connection(core, role, port, interrupts):
 
 
 def answers(core):
-    """Returns the declarations, the lines, and the expressions of ack and err. For a core that does
-    not answer, the lines generate the answers."""
+    """Returns declarations, lines, and the expressions of ack and err. For a core without an
+    acknowledge, the lines generate it."""
     if core.acks:
         acks = list(core.acks.values())
         return [f"    wire {', '.join(acks)};"], [], {"ack": " || ".join(acks)}
@@ -149,7 +152,8 @@ def answers(core):
 
 
 def connected(core, name, port, interrupts):
-    """Returns the expression for a port; a port without a role is connected to a pin."""
+    """Returns the expression that is connected to a port. A port without a role is connected to a
+    pin."""
     role = core.roles[name]
     return connection(core, role, port, interrupts) if role else pin_name(name, port)
 

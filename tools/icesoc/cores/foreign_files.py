@@ -54,7 +54,7 @@ def check_number(name, value):
     does not fit its size. Tools disagree about such numbers, and some print no message."""
     m = re.fullmatch(r"([-+]?)(\d*)'?([sS]?)([bodhBODH]?)([\w?]+)", value)
     if not m or not (m[4] or m[5].replace("_", "").isdigit()):
-        return  # a text, or a number with a fraction
+        return  # a text or a number with a fraction needs no check
     base = {"b": 2, "o": 8, "h": 16}.get(m[4].lower(), 10)
     digits = (m[5] if m[4] else m[2] + m[5]).replace("_", "").lower()
     bits = int(m[2]) if m[4] and m[2] else 32
@@ -164,9 +164,9 @@ def packages_first(files):
 
 
 def filled(file, defines):
-    """Returns the text of a file, with two changes. The result begins with definitions of the
-    macros `defines`. Paths in $readmemh are absolute, because a simulation may run in any
-    folder."""
+    """Returns the text of a file with two changes. Paths of existing files, such as those of
+    $readmemh, become absolute, because a simulation may run in any folder. If the file contains a
+    module, the macros `defines` are defined before the text and undefined after it."""
     def path(m):
         there = os.path.join(os.path.dirname(file), m.group(1))
         return f'"{there}"' if os.path.isfile(there) else m.group()
@@ -190,10 +190,10 @@ def macros_of(files):
 
 
 def names_of(top, files, core):
-    """Returns the names of the core's registers by word address. The names come from constants in
-    the file of module `top` whose width is the width of the address. If there are no such
-    constants, they come from the macros. If two names such as KEY0 and KEY7 are 7 words apart, the
-    words between them get the names KEY1 to KEY6."""
+    """Returns the names of the core's registers by word address. The names come from localparams in
+    the file of module `top` that are as wide as the address. If there are no such constants, they
+    come from the macros. If two names such as KEY0 and KEY7 are 7 words apart, the words between
+    them get the names KEY1 to KEY6."""
     text = next((t for t in map(text_of, files) if re.search(rf"^\s*module\s+{top}\b", t, re.M)),
                 "")
     text = re.sub(r"//.*", "", text)
@@ -233,9 +233,10 @@ def pin_name(name, port):
 
 
 def connected_ports(ports, connection):
-    """Returns the connections of an instance, and wires for unused parts of its outputs. A packed
-    structure is connected as the concatenation of its members. The function `connection` takes the
-    name of a port or member and returns its connection."""
+    """Returns the port connections of an instance, and declarations of wires for unused members of
+    structures. A packed structure is connected as the concatenation of its members. `connection`:
+    function that returns the expression for a port or member, given its name and its
+    description."""
     parts, wires = {}, []
     for name, port in ports.items():
         whole, _, member = name.partition(".")
@@ -249,7 +250,7 @@ def connected_ports(ports, connection):
 
 
 def overrides(params):
-    """Returns the parameters of an instance, as Verilog."""
+    """Returns the parameter list of an instance in Verilog."""
     return f" #({', '.join('.{}({})'.format(*p.split('=', 1)) for p in params)})" if params else ""
 
 

@@ -189,7 +189,9 @@ def without_initial(text):
 
 
 def copies_in(folder, files, change):
-    """Returns the files. A file that `change` alters is replaced by a changed copy in `folder`."""
+    """Returns the list of files, in which a changed copy in `folder` replaces each file that the
+    function `change` alters. A file with a byte order mark is also replaced by a copy, without the
+    mark."""
     copies = []
     for number, file in enumerate(files):
         text = text_of(file)
@@ -243,8 +245,8 @@ def modules_by_yosys(top, files, headers, params, defines, is_whole, work):
     folders = ["-I" + d for d in folders_of([*files, *headers])] + ["-D" + d for d in defines]
     check = "hierarchy -check" if is_whole else "hierarchy"
     elaborate = [f"{check} -top {top}"]
-    # an instance of TOP sets the parameters, because -chparam accepts neither texts nor negative
-    # numbers
+    # the parameters are set by an instance of TOP, because -chparam accepts neither texts nor
+    # negative numbers
     if params:
         instance = os.path.join(work, "instance.v")
         Path(instance).write_text(f"module icesoc_top; {top}{overrides(params)} u (); endmodule")
@@ -262,7 +264,7 @@ def modules_by_yosys(top, files, headers, params, defines, is_whole, work):
     is_system = any(end_of(f) == ".sv" for f in files)
     short, whole = (copies_in(work, files, change) for change in (without_initial, str))
     accepted = elaborates(short, short == whole and not is_system)
-    # runs again on the complete files, so that the message shows their line numbers
+    # runs again on the complete files, so that Yosys's message is about them
     if accepted is False and short != whole:
         accepted = elaborates(whole, not is_system)
     if accepted is None:
@@ -274,8 +276,9 @@ def modules_by_yosys(top, files, headers, params, defines, is_whole, work):
 
 
 def copies_for_verilator(top, files, headers, defines):
-    """Returns {file: text to use instead}. A text has macros, absolute paths of data and, if
-    Verilator needs it, keywords of SystemVerilog that are allowed as names."""
+    """Returns {file: text} for the files that Verilator does not accept unchanged. The text has
+    macros and absolute paths of data (see filled). If Verilator rejects these texts, they are
+    marked as Verilog 2005, so that keywords of SystemVerilog are allowed as names."""
     lint = lint_of(top, [*files, *headers], defines)
     copies = {f: t for f in files if (t := filled(f, defines)) != text_of(f) or has_mark(f)}
     if run_tool("Verilator", "read", top, [*lint, "--lint-only", *files], False):

@@ -9,7 +9,7 @@ from icesoc.cores.foreign_files import fail
 
 CLOCK = r"[aph]?(clk|clock)g?"
 RESET = r"[aph]?n?(rst|reset)[nb]?"
-# Words in a signal's name which show that it is no clock or reset: clk_en, gate_clk_pad_i.
+# A signal with one of these words in its name is not a clock or reset: clk_en, gate_clk_pad_i.
 NO_CLOCK = {"en", "ena", "enable", "ce", "sel", "div", "gate", "ext", "pad"}
 INTERRUPTS = {"int", "inta", "intr", "irq", "interrupt"}
 AXI = ["awvalid", "awready", "awaddr", "awprot", "wvalid", "wready", "wdata", "wstrb", "bvalid",
@@ -43,8 +43,8 @@ MEMORY = {"cs": "stb", "ce": "stb", "we": "we", "address": "adr", "addr": "adr",
 AVALON = {"chipselect": "stb", "read": "re", "write": "we", "address": "adr", "addr": "adr",
           "writedata": "wdata", "byteenable": "sel", "readdata": "rdata", "waitrequest": "stall",
           "readdatavalid": "valid"}
-# Words for ROLE=port. A select is high until the answer, a strobe is high for one clock. A core
-# without select and strobe is selected by read and write.
+# Words for ROLE=port. A select is high until the answer, a strobe for one clock. In a core with
+# neither, read and write also select the core.
 ROLES = {"select": "stb", "strobe": "strobe", "read": "re", "write": "we", "address": "adr",
          "enables": "sel",
          "wdata": "wdata", "rdata": "rdata", "ack": "ack", "error": "err", "clock": "clock",
@@ -71,8 +71,8 @@ def is_answer(signal):
 
 def with_members(ports, bus, given):
     """Returns the ports with each packed structure replaced by its members, such as req_i.psel, if
-    one of them is a signal of the bus, or is named by the user. The members of a structure without
-    such a signal stay one port."""
+    one of them is a signal of the bus, or if the user names one of them. Any other structure stays
+    one port."""
     found = {}
     for name, port in ports.items():
         members = {f"{name}.{member}": {"direction": port["direction"], "bits": [0] * bits}
@@ -138,8 +138,8 @@ def roles_of(top, bus, ports, given):
 
 
 def take_given(top, bus, ports, roles, given):
-    """Changes the roles of the ports that the user names. Returns the number of clocks in
-    ack=CLOCKS, or None."""
+    """Sets the roles that the user gives as ROLE=port. Returns CLOCKS if the user gives ack=CLOCKS,
+    otherwise None."""
     # Names of the bus's signals are also accepted, unless a role has the same name.
     words = {**{r: r for r in NEEDED[bus] + {"axil": AXI, "axis": foreign_axis.ROLES}.get(bus, [])},
              **ROLES}
@@ -194,7 +194,7 @@ def check_needed(top, bus, ports, roles, latency):
 
 
 def check_limits(top, bus, ports, roles, latency):
-    """Fails if the adapter of the bus cannot serve the ports."""
+    """Fails if the ports exceed what the adapter of the bus supports."""
     if bus == "apb" and latency:
         fail("PORTS: an APB core without PREADY ends each transfer in its access phase: leave out "
              "ack=")

@@ -41,7 +41,7 @@ USAGE = ("usage: make new-foreign NAME=my_uart TOP=module "
          "BUS=wishbone|axil|apb|avalon|memory|own|axis FILES='a.v b.v' [PORTS='write=we ...']")
 
 
-# Names of outputs that may be interrupts.
+# Words in the name of an output that may be an interrupt.
 ASKED = re.compile("irq|(?<!po)(?<!pr)(?<!h)int(r|errupt)?s?(_?n)?(_?o)?$|(^|_)int(_|$)|ev(en)?t|"
                    "alarm|attention", re.I)
 

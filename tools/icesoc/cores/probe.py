@@ -21,7 +21,7 @@ from icesoc import TREE
 from icesoc.util.errors import reason_of
 
 RING_BYTES, READ_BYTES = 1 << 18, 4096  # probe.regs.json, probe_servant.h
-# gap: True if changes directly before this change were lost
+# gap: 1 if changes directly before this change were lost, otherwise 0
 Change = collections.namedtuple("Change", "clock gap value")
 
 
@@ -92,9 +92,8 @@ def signed(value):
 
 
 def read(probe, state, before, after):
-    """Returns the change that triggered, up to `before` changes before it and up to `after` changes
-    after it. If the trigger has not occurred, the newest change is used instead of the change that
-    triggered."""
+    """Returns the change that triggered, with up to `before` changes before it and up to `after`
+    changes after it. If the trigger has not occurred, returns the changes around the newest one."""
     size = 8 * state.words
     ring = RING_BYTES // size
     count = ring if state.wrapped else state.next

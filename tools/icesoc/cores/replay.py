@@ -86,8 +86,8 @@ def read_vcd(path):
 
 
 def captured(path):
-    """Returns the widths of a probe's signals by name, and for each time of a change (clock, {name:
-    bits})."""
+    """Returns {name: width} of a probe's signals, and a list of (clock, {name: bits}) with one
+    entry for each time at which signals change."""
     head, signals, moments = read_vcd(path)
     hz = re.search(r"clk_hz (\d+)", head)
     if not hz or not moments:

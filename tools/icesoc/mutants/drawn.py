@@ -20,7 +20,7 @@ TESTS = {
     "axis_filter": "test_ip_foreign_axis", "modem_api_": "test_modem_api",
     "modem_": "test_modem test_modem_api", "camera_|async_fifo": "test_ip_camera",
     "fsmc_": "test_fsmc_bridge test_fsmc_modes", "cdc_": "test_fsmc_bridge"}
-# s; least limit of CPU time for each step of a mutant's proof
+# s; lower bound of the CPU-time limit for each step of a mutant's proof
 SECONDS = "20"
 DRAW = """setattr -set keep 1 w:f_*
 opt_clean
@@ -29,7 +29,8 @@ write_json plain.json
 select -set proof {module}/t:$ass* {module}/t:$cover {module}/t:$check {module}/t:$any* {lines}
 select -set source {module}/c:* @proof %d
 mutate -list {number} -seed {seed} -o list @source"""
-# Yosys script for the module or its mutant: unconstrained signals become inputs that both share.
+# Yosys script that prepares the module or its mutant for the comparison. Signals without a driver
+# become inputs, so that both sides get the same values.
 SIDE = """{change}
 chformal -assert -cover -live -fair -remove
 {assume}flatten
@@ -69,8 +70,8 @@ class Proof:
                    for folder in ("bus", "hdl", "ip"))
 
     def run(self, folder, mutant, seconds=None):
-        """Runs prove.sh; the Yosys commands `mutant` run after the files are read and before the
-        proof. Returns exit status and output of prove.sh."""
+        """Runs prove.sh; `mutant`: Yosys commands that prove.sh runs after it has read the files
+        and before the proof. Returns exit status and output of prove.sh."""
         limit = {"PROVE_SECONDS": seconds} if seconds else {}
         ran = subprocess.run(
             [self.script, self.module, self.depth, self.source, folder, *self.parameters],
@@ -102,8 +103,8 @@ class Proof:
     def differs(self, folder, mutant):
         """Returns whether the mutant's outputs differ from the module's for some input that the
         proof's assumptions allow."""
-        # If the proof cuts off parts of the module, each named wire counts as an output, because
-        # the missing parts may read the wire.
+        # If the proof removes parts of the module, each named wire counts as an output, because a
+        # removed part may read the wire.
         seen = "expose w:* w:$* %d\n" if any("delete" in text for text in self.parameters) else ""
         # commands of prove.sh that map to flip-flops and gates
         to_state = (self.work / "state.ys").read_text()
@@ -133,8 +134,9 @@ def attempt(proof, index, mutant):
     """Tries one mutant, and returns its result."""
     start = time.monotonic()
     folder = proof.work / str(index)
-    # The limit is four times the CPU time of the proof without a mutant, because a mutant that only
-    # makes the proof slower is not caught.
+    # A proof that exceeds the limit counts as failed. The limit is four times the CPU time of the
+    # proof without a mutant, so that a mutant that only makes the proof slower does not count as
+    # caught.
     limit = max(int(SECONDS), int(4 * float((proof.work / "cpu").read_text())))
     status, text = proof.run(folder, mutant, str(limit))
     if status and not re.search("an assertion fails|not proven|not reached", text):
@@ -143,7 +145,7 @@ def attempt(proof, index, mutant):
     else:
         result = "caught" if status else "SURVIVED" if proof.differs(folder, mutant) else "same"
     said = re.findall(r"-(\w+) (\S+)", mutant)
-    first = dict(reversed(said))  # first value of an option that occurs more than once
+    first = dict(reversed(said))  # an option may occur more than once; the first value counts
     source = dict(said).get("src")
     line = re.sub(r"(:\d+)\..*", r"\1", os.path.relpath(source, proof.source)) if source else ""
     cell = first["cell"].split("$")
@@ -165,7 +167,8 @@ def programs(row):
 
 def by_tests(rows, copy, pool):
     """Runs the modules' tests on the mutants that the proofs missed. If a test catches a mutant,
-    changes the mutant's result and test. Returns the programs that fail without a mutant."""
+    changes the mutant's result and test. Returns the test programs that fail even without a
+    mutant."""
     os.chdir(run.TOP)
     run.prepare(copy, f"-DVERILATOR={TREE}/tools/icesoc/mutants/model.py")
     results.write(copy / "build/drawn.xml", rows)
@@ -210,7 +213,7 @@ def by_tests(rows, copy, pool):
 
 
 def progress(tried, number):
-    """Returns the results. Prints the progress each time another tenth is done."""
+    """Returns the results in `tried` as a list. Prints the progress after each tenth."""
     start, rows = time.monotonic(), []
     for row in tried:
         rows.append(row)
@@ -225,7 +228,8 @@ def progress(tried, number):
 
 def measure(proofs, options, out):
     source = pathlib.Path(proofs[0].tree)
-    tree = tree_state(source, "bus hdl tests")  # measured tree, for the regression's status
+    # state of the measured tree, for the status of mutants in the regression
+    tree = tree_state(source, "bus hdl tests")
     # A copy of the tree is used, because any edit during the run would change the names of cells.
     shutil.rmtree(out / "drawn", ignore_errors=True)
     for folder in ("bus", "hdl", "ip"):
@@ -281,7 +285,7 @@ def main():
                  "`make build` first")
     proofs = [Proof(test, out / "drawn") for test in json.loads(shown.stdout)["tests"]
               if any(word.endswith("/prove.sh") for word in test["command"])]
-    # Proofs of several modules together, and of generated modules, are left out.
+    # Proofs of several modules together, and proofs of generated modules, are left out.
     proofs = [proof for proof in proofs
               if not proof.module.endswith("_proof") and proof.is_in_tree()]
     if not proofs:

@@ -4,10 +4,11 @@
 modules. When a test begins, the environment variable MUTANT selects one by number. Without MUTANT
 the module is unchanged.
 
-A mutant was drawn in the module as the proof reads it. In a model, its cell is found by kind,
-source line, signal (flip-flops only), and position among the cells that are alike in these. If the
-mutated bit does not exist there, the last bit is used. The environment variable DRAWN names the
-results that drawn.py has written.
+drawn.py draws a mutant in the module as the proof reads it: a change of one bit of one cell. In the
+model, the same cell is found by its kind, its source line, its signal (flip-flops only), and its
+position among the cells with the same three properties. If the cell has fewer bits in the model,
+the last bit is changed. The environment variable DRAWN is the path of the results that drawn.py has
+written.
 """
 import collections, json, os, pathlib, re, shutil, subprocess, sys, tempfile
 
@@ -54,13 +55,13 @@ def cells(path):
     found = {}
     for module, content in json.loads(pathlib.Path(path).read_text())["modules"].items():
         alike = found[module] = collections.defaultdict(list)
-        signals = {}  # name and index of each bit; the first name, if there are several
+        signals = {}  # bit -> its name and index; if it has several names, the first one
         for name, net in sorted(content["netnames"].items()):
             for index, bit in enumerate(net["bits"] if not net["hide_name"] else []):
                 signals.setdefault(bit, f" {name}[{index}]")
         for name, cell in sorted(content["cells"].items(), key=made):
-            # Of several locations, the last is that of the cell: Yosys puts the location of a
-            # condition that it could not resolve in front of it.
+            # The last of several locations is that of the cell. Yosys puts the location of a
+            # condition that it could not resolve before the cell's location.
             source = cell["attributes"].get("src", "").split("|")[-1]
             source = re.sub(r".*/((bus|hdl|ip)/)", r"\1", source)
             widths = {port: len(bits) for port, bits in cell["connections"].items()}

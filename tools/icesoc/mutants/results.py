@@ -3,8 +3,9 @@
 mutants that Yosys has drawn.
 
 A mutant is a test case that passes if a test or proof catches the mutant. A case is skipped if the
-mutant is not a bug. Attributes of a case: name, classname (the test or proof), time, file and line.
-A failure has the result as its message. What else is known of a mutant is in its properties.
+mutant behaves like the module, so that it is not a bug. Attributes of a case: name, classname (the
+test or proof), time, file and line. A failure has the result as its message. Properties of the case
+contain all other facts about the mutant.
 """
 import collections
 import dataclasses
@@ -13,7 +14,7 @@ import xml.etree.ElementTree as xml
 from icesoc.util.errors import Stop
 from icesoc.util.files import write as write_file
 
-GATE = 95  # per cent; smallest share of the drawn mutants of a module that must be caught
+GATE = 95  # per cent; share of the drawn mutants of each module that must at least be caught
 PASSED, SKIPPED = "caught", "same"
 
 

@@ -84,7 +84,7 @@ def bugs(chosen):
 def prepare(copy, *options):
     """Creates a copy of the tree for a worker, with a separate build folder."""
     copy.mkdir(parents=True, exist_ok=True)
-    for kept in copy.rglob("*.orig"):  # files left by an interrupted run
+    for kept in copy.rglob("*.orig"):  # an interrupted run leaves such files
         restore(kept.with_suffix(""))
     listed = subprocess.run(
         ["git", "grep", "--no-index", "--exclude-standard", "--no-color", "-lz", ""],
@@ -110,7 +110,7 @@ def environment(copy):
 
 
 def restore(file):
-    """Restores a file. The file's time is the current time, so that the next build compiles it
+    """Restores a file, and sets its time to the current time, so that the next build compiles it
     again."""
     os.replace(f"{file}.orig", file)
     os.utime(file)
@@ -167,8 +167,8 @@ def try_bug(bug, copy):
 
 
 def check(chosen, build):
-    """Checks that each bug fits the current tree and that a build folder has its test; builds
-    nothing."""
+    """Checks, without building, that the lines of each bug are in its files and that the build
+    folder `build` (if given) has its test. Returns 1 if a check fails."""
     bad, tests = 0, ""
     if build:
         tests = subprocess.run(["ctest", "--test-dir", build, "-N"], stdout=subprocess.PIPE,
@@ -253,7 +253,7 @@ def main():
         return check(chosen, options.check)
     with only_one(WORK, "mutants"):
         if options.block == "*":
-            # folders that the results depend on, for the status summary of the regression
+            # the status of mutants in the regression is out of date if one of these folders changes
             measured = "bus hdl ip slice sw testbench tests tools"
             write_state(WORK, tree_state(TOP, measured))
         return try_all(chosen, options.jobs)

@@ -23,9 +23,9 @@ class Blocks:
         return "/".join(path.split("/")[:-1][:2])
 
     def of_module(self, name):
-        """Returns the block of the module `name`. If there is no such module, uses a module whose
-        name is the beginning of `name`, or else a module that begins with the first word of `name`.
-        Returns "" if there is none."""
+        """Returns the block of the module `name`. If there is no such module, uses the module with
+        the longest name that `name` begins with, or else the first module that begins with the
+        first word of `name`. Returns "" if neither exists."""
         first = name.partition("_")[0] + "_"
         while name and name not in self.modules:
             name = name.rpartition("_")[0]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""changes: lists the files of a failed test that have changed since it last passed: usually the
-best hint at the cause."""
+"""changes: lists the files that a failed test uses and that have changed since the test last
+passed. They are usually the best hint at the cause."""
 import functools
 import re
 
@@ -103,8 +103,8 @@ class Changes:
                       if each and self.differing(each) is not None), None)
         if not since or not (end or self.differing(since)):
             return ""
-        # A script may read files that are not known here. All changes are therefore listed if none
-        # of the known files has changed.
+        # The list of files that a script uses is incomplete. If none of the listed files has
+        # changed, all changes are therefore shown.
         files = self.of_test(test, since) or self.differing(since)
         text = "the commit; it is not known to have passed" if not end else \
             f"it passed at {commit}" + (

@@ -34,12 +34,12 @@ class Share:
 
 class File:
     def __init__(self):
-        # covered share of the lines, toggles and points, by kind
+        # kind ("lines", "toggles" or "points") -> covered share
         self.shares = collections.defaultdict(Share)
-        self.counts = collections.Counter()  # counts of the named cover points: `name: cover
-                                             # property` in the RTL
-        self.missed = []  # signals that never toggled, lines that never ran, points that were never
-                          # reached
+        # name of a cover point (`name: cover property` in the RTL) -> how often it was reached
+        self.counts = collections.Counter()
+        # each uncovered toggle, line or point, as text that begins with the line number
+        self.missed = []
         # reason -> number of points that are not counted for this reason
         self.explained = collections.Counter()
 
@@ -68,7 +68,8 @@ class Explanations:
         return ""
 
     def stale(self):
-        """Returns the rules without effect: all their points are covered, or no longer exist."""
+        """Returns a text for each rule that has become useless, because its points are covered or
+        no longer exist."""
         return [f"{below}: {points.pattern} ({'reached' if seen[True] else 'no such point'})"
                 for below, points, _, seen in self.rules if not seen[False]]
 
@@ -104,7 +105,7 @@ def read_verilator(path, root, files, explanations):
 
 
 def read_info(path, root, files, _):
-    """Reads a .info file of lcov: SF:file, DA:line,count"""
+    """Reads the lines SF:file and DA:line,count of a .info file of lcov."""
     file = ""
     for text in open(path, errors="replace"):
         if text.startswith("SF:"):

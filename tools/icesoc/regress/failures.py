@@ -10,8 +10,8 @@ import shutil
 from icesoc.regress.junit import Result
 from icesoc.util.files import write
 
-# Lines that a test runner prints, or that end the log of a flight. Names, times and counts in them
-# may differ although the cause is the same.
+# Lines that a test runner prints, or that end the log of a flight. They cannot be the reason of a
+# failure, because names, times and counts in them differ between failures with the same cause.
 RUNNERS = re.compile(
     r"^\[|^at clock cycle|tests? (ran|FAILED|PASSED)|^\s*\d+ FAILED|note:|trace: |Running main|"
     r"^The mission failed|^To (write|debug) |^icesoc-sim: Cortex-M3: |"
@@ -19,15 +19,15 @@ RUNNERS = re.compile(
     r"^-- \S+ \S+ XBeeAT: |^[\s{}()\[\];=-]*$|^(ERROR|FAIL): test_|^FAILED[ :]|^Ran \d+ test|"
     r"^g?make(\[\d+\])?: \*\*\*|^ninja: build stopped|^collect2: |^terminate called|as expected$|"
     r"^#\d|^Thread \d|^Stack of |^Google Test trace:|stands at clock", re.I)
-# A message of a compiler or of lint that names a line of a file
+# A message of a compiler, a linter or a sanitizer about a place in a file.
 OF_FILE = re.compile(
     r"^%(Error|Warning)[^ ]*: [^ ]+:\d+:|"
     r"^[^ ]+:\d+:(\d+:)? *((fatal|runtime) error|error|warning):|"
     r"^SUMMARY: \S+Sanitizer: |^[^ ]+\.vhdl?:\d+:\d+:|: undefined reference to ")
-# A message of a test about a value, or an exception of Python or Ice
+# A message of a test about a value, or an exception of Python or Ice.
 OF_VALUE = re.compile(r"\berror\b|(?<!as )\bexpected\b|\bdiffers?\b|"
                       r"^(\S+: )*(\w+\.)*(::\w+)*\w*(Error|Exception):|^what\(\): ", re.I)
-# GoogleTest's lines about two unequal values, and GoogleTest's lines about a condition
+# GoogleTest's lines about two unequal values, and about a condition.
 EQUALITY = re.compile(r"(?m)^Expected equality of these values:"
                       r"\n +(.*)(?:\n +Which is: (.*))?\n +(.*)(?:\n +Which is: (.*))?$")
 CONDITION = re.compile(r"(?m)^Value of: (.*)\n +Actual: (.*)\nExpected: (.*)$")
@@ -78,8 +78,8 @@ def comparison(match):
 def reason_of(log):
     """Returns the reason in a test's log: GoogleTest's lines after the first "Failure"; otherwise a
     compiler's first message about a file, the first line about an error, or the last line. If an
-    exception ends in a colon, the next line is included. If the line belongs to a diff, its next
-    line is included."""
+    exception ends in a colon, the next line is included. From a diff, the first removed line and
+    the line that replaces it are included."""
     last, of_file, of_value, failure = "", "", "", None
     log = CONDITION.sub(r"\1 is \2, not \3", EQUALITY.sub(comparison, log))
     log = re.sub(r"((?:Error|Exception)\b.*:)\n+ *(?=\S)", r"\1 ", log)
@@ -105,8 +105,8 @@ def reason_of(log):
 
 def find_assertion(failure):
     """Adds the failing assertion to the failure of a proof: its location and text, its instance,
-    and whether it is in the proven module itself. Yosys names the cell of an assertion by instance,
-    file and line, and adds the lines of all enclosing cells."""
+    and whether it is in the proven module itself. Yosys's message contains the instance, file and
+    line of the assertion, and the lines of all enclosing instances."""
     match = re.search(
         r"Assert failed in \S+: (\S+) \((?:\$flatten/)?(?:(\S*?)\.?\$assert\$(\S+)\$)?",
         failure.result.log)
@@ -129,10 +129,10 @@ def find_assertion(failure):
 
 
 def rank(failure, tests):
-    """Returns the position of a failure in the reading order. Proofs come first, because they name
-    the property; the proof of an inner module comes before the proofs of the modules that contain
-    it. Then come checks of sources, tests of one block, of the chip and of the firmware, and whole
-    missions."""
+    """Returns the sort key of a failure; failures with a lower key should be read first. Proofs
+    come first, because they name the property; the proof of an inner module comes before the proofs
+    of the modules that contain it. Then come checks of sources, tests of one block, of the chip and
+    of the firmware, and whole missions."""
     test = tests.get(failure.result.name)
     text = " ".join([failure.result.name, *([test.place, *test.labels] if test else [])])
     order = ("^formal[.]", "^(lint|tree)[.]", "^(vhdl|slice)[.]|(hdl|bus|ip)/?.* rtl", " rtl",

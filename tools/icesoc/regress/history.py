@@ -30,7 +30,7 @@ class History:
         self._index()
 
     def _index(self):
-        self.ends = collections.defaultdict(list)  # results by test, newest last: (end, run)
+        self.ends = collections.defaultdict(list)  # name of a test -> [(end, run)], newest last
         for run in self.runs:
             for name, *end in run["ends"]:
                 self.ends[name].append((end, run))
@@ -47,8 +47,9 @@ class History:
         return self.ends[name][-1][0][0] if self.ends[name] else ""
 
     def now(self, test, seed=None):
-        """Returns how a test's last run with the current sources (and with this seed) ended.
-        If there is no such run, returns "f" if the test failed in its last run."""
+        """Returns how a test ended in its last run with the current sources and, if given, with
+        this seed. Without such a run, returns "f" if the test failed in its last run, otherwise
+        ""."""
         return next((end[0] for end, _ in reversed(self.ends[test.name])
                      if end[2] == test.print and seed in (None, end[3])),
                     "f" if self.last(test.name) == "f" else "")

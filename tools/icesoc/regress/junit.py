@@ -17,7 +17,7 @@ class Result:
     status: str  # "passed", "failed", "skipped"
     seconds: float
     log: str = ""
-    end: str = ""  # for a failed test: "SegFault", "Hang, ..."; "" if it ended by itself
+    end: str = ""  # how a failed test was ended: "SegFault", "Hang, ..."; "" if it ended by itself
     seed: str = ""
 
 

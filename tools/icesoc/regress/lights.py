@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """lights: summarises a run in seven statuses: tests, proofs, plan, mutants, coverage, size, speed.
-A status is green, red, or grey (not measured, or the sources have changed since). Each status
-depends only on its own figures, so that a bug of one kind turns only one status red."""
+A status is green, red, or grey (not measured, or the sources have changed since). Each status is
+computed from separate figures, so that one kind of bug turns only one status red."""
 from icesoc.util.tree import tree_state
 
 
@@ -14,8 +14,8 @@ def missing(name, command):
 
 
 def judge(name, good, wrong, bad):
-    """Returns a green status with the text `good` if `bad` is empty, otherwise a red status with
-    the first few errors."""
+    """Returns a green status with the text `good` if the list `bad` is empty. Otherwise returns a
+    red status with the first few entries of `bad`."""
     if not bad:
         return light(name, "green", good)
     return light(name, "red", f"{len(bad)} {wrong}: {', '.join(bad[:3])}{', ...' * (len(bad) > 3)}")
@@ -40,8 +40,8 @@ def of_tests(data, name):
 
 
 def of_mutants(rows, drawn, source):
-    """Returns the status of mutants. The scores of modules with drawn mutants count only if the
-    sources have not changed since the mutants were drawn."""
+    """Returns the status of mutants. The scores of drawn mutants count only if the sources have not
+    changed since the mutants were drawn."""
     tree = drawn.get("tree", "")
     if tree and tree_state(source, tree.split(":")[0]) == tree:
         if bad := [m for m, s in drawn["modules"].items() if s["score"] < drawn["gate"]]:
@@ -83,8 +83,8 @@ def of_entries(name, entries, command):
 
 
 def of_size(utilisation):
-    """Returns the status of size, which depends on the result of `make synth`. In that result, a
-    design without a figure counts as failed."""
+    """Returns the status of size, from the result of `make synth`. Designs that failed turn it red;
+    designs that were not measured with the current sources turn it grey."""
     if not utilisation:
         return missing("size", "make synth")
     if utilisation["failures"]:

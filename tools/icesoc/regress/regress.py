@@ -94,8 +94,8 @@ class Regression:
         return Changes(self.options.source, self.options.build, self.options.out)
 
     def choose(self, tests, built=True):
-        """Returns the tests that the options select. Before the build, the cases of some programs
-        are unknown; for these programs, the whole program is selected."""
+        """Returns the tests that the options select. The cases of a program that is not built are
+        unknown, so all of the program is selected."""
         o, chosen = self.options, []
         exact = any(test.name == o.name.text for test in tests)
         for test in tests:
@@ -119,8 +119,9 @@ class Regression:
         return chosen
 
     def _outdated(self, tests, known):
-        """Returns a test of each further program that is older than its sources, if its sources may
-        contain a case with the requested name."""
+        """Finds programs, other than those in `known`, that are older than their sources and whose
+        sources may contain a case with the requested name. Returns one test of each of these
+        programs, so that the program is built."""
         o, found, known = self.options, {}, set(known)
         for test in tests:
             if test.program in known or test.unbuilt \
@@ -143,8 +144,8 @@ class Regression:
 
     def _changed(self, test, built):
         """Returns whether --changed selects a test. It selects a test that failed in its last run,
-        and a test that has passed but not with the current sources. If a test has never passed
-        here, it is selected if its files differ from the commit."""
+        and a test that has passed, but not with the current sources. A test that has never passed
+        here is selected if its files differ from those of the last commit."""
         passed = self.history.last_pass(test.name)
         if self.history.last(test.name) == "f":
             return True
@@ -153,14 +154,15 @@ class Regression:
         return self.changes.touched(test, passed)
 
     def build(self):
-        """Builds the targets of the chosen tests, or lists them. After a build, the cases of all
-        programs are known."""
+        """Builds the targets of the chosen tests or, with --list, only lists them. After the build,
+        the cases of these programs are known."""
         o = self.options
         tests = list_tests(o.build)
         outputs = {line.rpartition(":")[0] for line in collect(
             ["ninja", "-C", o.build, "-t", "targets", "all"])[1].splitlines()}
         chosen, found = self.choose(tests, built=False), set()
-        # the loop also visits the tests that set up fixtures, which are appended here
+        # tests that set up the fixtures of chosen tests are appended, and the loop visits them as
+        # well
         for test in chosen:
             found.update(targets_of(test, o.build, outputs))
             chosen += [other for other in tests if set(other.sets) & set(test.needs) and

@@ -29,8 +29,9 @@ def read(path):
 
 
 def proofs_of(results):
-    """Returns the results that proofs print: "X: proven, 47 clauses with 33 flops", "X: 2 covers
-    reached"."""
+    """Returns a row for each proof: [name, status, clocks of a bounded proof, text after "proven",
+    number of covers reached, s]. The logs contain lines such as "X: proven, 47 clauses with 33
+    flops" and "X: 2 covers reached"."""
     def said(log, what):
         return (re.search(what, log) or ["", "-"])[1]
     return [[r.name[7:], r.status, said(r.log, "bounded, ([0-9]+) clocks"),
@@ -39,10 +40,10 @@ def proofs_of(results):
 
 
 def measurements(build):
-    """Returns the results that other commands left in build/, with the state of the tree that they
-    measured."""
+    """Returns the results that other commands have stored in build/, with the state of the tree at
+    the time of each measurement."""
     data = {name: found for name, path in MEASURED.items() if (found := read(build / path))}
-    # details of a file after the first 40 are only in the coverage summary
+    # the page lists at most 40 uncovered places of a file; the coverage summary has all of them
     for file in data.get("coverage", {}).get("files", []):
         if (more := len(file["missed"]) - 40) > 0:
             file["missed"][40:] = [f"and {more} more"]
@@ -64,8 +65,8 @@ def gather(history, tests, results, failures, source):
             "proofs": proofs_of(results)}
     del data["ends"]
     known = {test.name: test for test in tests}
-    # tests of this run with their seeds; their failures are in the results already, so the list of
-    # failing seeds omits them
+    # (test, seed) pairs of this run; the list of failing seeds omits them, because the results
+    # already contain their failures
     now = {(r.name, r.seed) for r in results}
     data["seeds"] = [kept for test, kept in history.failing(tests).items()
                      if test not in now or len({r.seed for r in results}) > 1]
@@ -93,7 +94,7 @@ def gather(history, tests, results, failures, source):
 
 
 def reasons_of(run):
-    """Returns the reasons why a run of the history is not green: where it was stopped, and its
+    """Returns the reasons why a run in the history is not green: that it was stopped, and its
     failures."""
     stopped = run.get("stopped")
     return [*([f"stopped {stopped}"] if stopped else []), *run.get("reasons", [])]
@@ -101,7 +102,7 @@ def reasons_of(run):
 
 def write_reports(data, failures, libraries, out):
     style, script = page_parts(libraries)
-    # bytes of the page that remain for the drawings
+    # number of bytes that the drawings may take on the page
     rest = LARGEST - len(style) - len(script) - len(json.dumps(data)) - 60_000
     drawn = [i for i, failure in enumerate(failures) if failure.wave]
     for i in drawn:

@@ -14,7 +14,7 @@ from icesoc.util.errors import Interrupted, Stop
 from icesoc.util.process import children, collect, descendants, end_descendants
 from icesoc.util.progress import Line, clock, is_tenth
 
-# s; shortest CPU time, or time without use of the CPU, after which a test may be ended
+# s; a test may be ended only after this CPU time, or after this time without using the CPU
 SHORTEST_HANG = 30
 IDLE = 10  # s; a test that uses less than 1 s of CPU time within this period counts as idle
 
@@ -27,12 +27,12 @@ class Progress:
         self.jobs, self.total, self.done, self.failed = jobs, len(tests), 0, 0
         self.seconds = {test.name: history.seconds(test.name) for test in tests}
         self.usual = {test.name: history.usual(test.name) for test in tests}
-        self.running = {}  # start time by name, oldest first
-        self.due = {}  # age in s at which a test is reported as late, by name
-        # test name -> (CPU time, when this CPU time was reached); updated after each second of CPU
-        # time
+        self.running = {}  # name -> start time, oldest first
+        self.due = {}  # name -> age in s at which the test is next reported as late
+        # name -> (CPU time, time at which this CPU time was reached); updated after each second of
+        # CPU time
         self.busy = {}
-        self.hangs = {}  # test name -> (reason why the test was ended, stacks)
+        self.hangs = {}  # name -> (reason why the test was ended, stacks)
         self.line = Line()
 
     def start(self, name):
@@ -41,9 +41,9 @@ class Progress:
         self.due[name] = 60 if usual is None else max(10, 3 * usual)
 
     def watch(self, done, build):
-        """Watches the running tests until `done` is set. Prints the name and age of a test that
-        takes three times its usual time (60 s if this time is unknown), and again whenever the age
-        has doubled. Ends tests that hang."""
+        """Watches the running tests until `done` is set. If a test takes three times its usual time
+        (or 60 s if this time is unknown), prints its name and age, and prints them again whenever
+        the age has doubled. Ends tests that hang."""
         def cpu_of(name):
             return cpu_time(process_of(name, self.running))
         while not done.wait(1):
@@ -57,8 +57,8 @@ class Progress:
     def late(self, cpu_of):
         """Prints the names of late tests, and yields (name, reason) for each test that hangs. A
         test hangs if its CPU time reaches ten times its usual time, or if it has run for that long
-        and does not use the CPU. A test that waits for a CPU does not hang. `cpu_of`: function that
-        returns the CPU time of a running test, given its name."""
+        and no longer uses the CPU. A test that waits for a CPU does not hang. `cpu_of`: function
+        that returns the CPU time of a running test, given its name."""
         for name, begin in list(self.running.items()):
             now, usual = time.monotonic(), self.usual.get(name)
             age, known = now - begin, "unknown" if usual is None else f"{usual:.1f} s"
@@ -82,13 +82,15 @@ class Progress:
                 yield name, f"{age:.0f} s without using the CPU, usually {known}"
 
     def limit(self, name):
-        """Returns the time after which a test hangs, s."""
+        """Returns the CPU time, or time without using the CPU, after which a test counts as
+        hanging, s."""
         usual = self.usual.get(name)
         return max(SHORTEST_HANG, 10 * (60 if usual is None else usual))
 
     def left(self):
-        """Returns the estimated time left. If the times of some tests are unknown, returns the
-        number of tests left. If a test is late, returns the time left until the test is ended."""
+        """Returns the estimated time left as text. If a test is late, returns the longest time
+        until a late test is ended. If the times of some tests are unknown, returns the number of
+        tests left."""
         late = {name: time.monotonic() - begin for name, begin in list(self.running.items())
                 if time.monotonic() - begin >= max(10, 3 * (self.usual.get(name) or 20))}
         known = all(each is not None for each in self.seconds.values())
@@ -112,7 +114,7 @@ class Progress:
                        f"{' '.join(sorted(self.running))}", keep)
 
 
-# errors that occur if a test has just ended and its processes no longer exist
+# exceptions that mean that a test has just ended and its processes no longer exist
 GONE = (OSError, StopIteration, ValueError)
 
 
@@ -127,8 +129,8 @@ def cpu_time(process):
 
 
 def process_of(name, running):
-    """Returns the process of a running test; CTest prints the tests in the order in which it starts
-    them."""
+    """Returns the process of a running test, or 0 if it is unknown. CTest prints the tests in the
+    order in which it starts them, so the position in `running` identifies the process."""
     ctest = next(pid for pid in children(os.getpid())
                  if pathlib.Path(f"/proc/{pid}/comm").read_text() == "ctest\n")
     processes = children(ctest)

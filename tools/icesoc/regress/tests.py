@@ -41,7 +41,7 @@ class Test:
     name: str
     command: list
     folder: str = ""  # working directory; the test may write there
-    place: str = ""  # the same folder relative to tests/, such as "hdl/modem"
+    place: str = ""  # the same folder as a path relative to tests/, such as "hdl/modem"
     labels: list = dataclasses.field(default_factory=list)
     needs: list = dataclasses.field(default_factory=list)  # CTest's fixtures
     sets: list = dataclasses.field(default_factory=list)
@@ -78,22 +78,22 @@ class Test:
         return ("bus", "hdl", "ip", "slice", "sw", "testbench", "tools", own)
 
     def compiles(self):
-        """For a test that GHDL runs, returns the files that its command names, and its programs.
-        For any other test, returns an empty result."""
+        """For a test that GHDL runs, returns the absolute paths in its command: its sources and
+        programs. For any other test, returns an empty list."""
         return [word for word in self.command if word.startswith("/")] \
             if self.name.startswith("vhdl.") else []
 
     def blocks(self):
-        """Returns the words with which --block is compared: the words of the test's folder, and the
-        words of its name up to the name of the case."""
+        """Returns the words that --block may select this test by: the words of its folder, and
+        those of its name up to the name of the case."""
         kind, _, rest = self.name.partition(".")
         more = rest if kind in ("formal", "lint", "wave") else ""
         return set(re.findall("[A-Za-z0-9]+", f"{self.place}/{kind}/{more}"))
 
     def _may_begin(self, pattern):
-        """Returns whether the name of a case of this program may match `pattern`. The answer is no
-        only if each alternative of the pattern begins with `^` and letters that do not fit the
-        program's name."""
+        """Returns whether the name of a case of this program may match `pattern`. The result is
+        False only if each alternative of the pattern begins with `^` and letters that the program's
+        name does not begin with."""
         for some in re.findall(r"(?:\([^()]*\)|[^|()])+", pattern):
             begins = re.match(r"\^(?:\(([\w|]+)\)(?![?*{])|((?:\w(?![?*{]))+))", some)
             if not begins or any(word.startswith(self.program) or self.program.startswith(word)
@@ -103,8 +103,8 @@ class Test:
 
     def may_hold(self, name, sources):
         """Returns whether a case of a program may match a Name, if the program is not built or is
-        older than its sources. `sources`: texts of the program's source files. The name of a case
-        for several values or types is composed of words from different places of the text. Names of
+        older than its sources. `sources`: texts of the program's source files. The name of a
+        parameterised or typed case is composed of words from different places of the text. Names of
         suites and cases begin with capitals."""
         if not self._may_begin(name.pattern):
             return False
@@ -158,9 +158,9 @@ def list_tests(build):
 
 
 def targets_of(test, build, outputs):
-    """Returns the targets that ninja must build for a test. These are `Test.targets` or, without
-    them, the `outputs` of the build folder that the test's command names. The target is "all" if
-    the command names the build folder itself, or an unknown file in it."""
+    """Returns the targets that ninja must build for a test. These are `Test.targets` or, if that is
+    None, those of the build's `outputs` that the test's command names. The target is "all" if the
+    command names the build folder itself, or an unknown file in it."""
     if test.unbuilt:
         return [test.program]
     if test.name.startswith("formal."):
@@ -240,8 +240,8 @@ class Requirement:
     patterns: list  # test names; * matches anything
 
     def matches(self, test):
-        """Returns whether a test proves this requirement. A program that is not built counts as all
-        of its cases."""
+        """Returns whether a test proves this requirement. A program that is not built matches if
+        one of its cases could match."""
         return any(may_match(pattern, test) for pattern in self.patterns)
 
 
@@ -274,8 +274,8 @@ def unmatched(requirement, tests):
 
 
 def judge_plan(plan, tests, history):
-    """Returns a row for each requirement with the last results of its tests; results with the
-    current sources are preferred."""
+    """Returns a row for each requirement: proven if all its tests passed with the current sources,
+    failed if one failed or a pattern matches no test, otherwise open."""
     rows = []
     for each in plan:
         mine = [test for test in tests if each.matches(test)]

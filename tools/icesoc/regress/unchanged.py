@@ -4,7 +4,8 @@ only the other tests.
 
 When a test passes, a digest of its inputs is stored. The inputs are:
 - for a test program: its bytes, and all files in the tree or the build folder whose absolute
-  paths these bytes contain (from compile definitions). A folder stands for all files in it.
+  paths these bytes contain (from compile definitions). If a path is a folder, all files in the
+  folder are inputs.
 - for any other test: all files of the tree, and the programs of the build.
 - for both: the seed, and the versions of the packages in cmake/setup.sh and of all packages that
   these depend on. Other packages of the machine do not count.
@@ -22,7 +23,8 @@ from icesoc.util.process import collect
 from icesoc.util.tree import tracked
 
 STATUS = pathlib.Path("/var/lib/dpkg/status")
-# Files of the build that programs use; excludes files that only later steps of the build use
+# Files of the build that test programs may use. Files that only later steps of the build use do not
+# match.
 USED = re.compile(r"\.(so|elf|bin|json|vh|list|inc)$|/(?!test_|fuzz_)[\w-]+$")
 
 
@@ -70,7 +72,8 @@ class Inputs:
         write(self.path, json.dumps(self.kept))
 
     def file(self, path, names=False):
-        """Returns the digest of a file, and with `names` the paths that it contains."""
+        """Returns (digest of a file, paths that the file contains). The paths are only computed
+        with `names`."""
         try:
             status = os.stat(path)
             state = [status.st_size, status.st_mtime_ns]

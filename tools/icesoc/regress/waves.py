@@ -27,13 +27,13 @@ class Scene:
     program: str  # target in the build with waveforms; "" for a test under GHDL
     clock: int
     flight: str = ""  # folder of the recording
-    slot: int = 0  # number of the slot whose core was last reported to the processor; 0: no core
+    slot: int = 0  # slot of the core whose event was last reported to the processor; 0: no core
     before: int = 2000
     after: int = 20
 
 
 def scene_of(failure, test):
-    """Returns the Scene of a failure; None if the failure has no waveform."""
+    """Returns the Scene of a failure, or None if no waveform of the failure can be recorded."""
     log = failure.result.log
     if failure.result.end.startswith("Hang"):  # the repetition would hang as well
         return None
@@ -45,8 +45,8 @@ def scene_of(failure, test):
                 event = json.loads(line)
             except ValueError:
                 continue
-            # slot of the last core that was reported to the processor; without one, the modem is
-            # shown
+            # the core whose event was last reported to the processor is shown or, without one, the
+            # modem
             slot = event.get("slot", -1)
             if slot >= FIRST_CORE or slot >= 0 and not scene.slot:
                 scene.clock = event["ns"] // 10
@@ -74,8 +74,9 @@ def instance_in(slot, build):
 
 
 def instances(changed, source, build):
-    """Returns the names of the instances of all modules and entities that a text of changed files
-    names, in the order of these files. At the top of a model, the name of the module is used."""
+    """Yields the names of all instances of the modules and entities in changed files. `changed`:
+    text with the paths of these files. At the end, yields the names of the modules, because the top
+    of a model is named after its module."""
     texts = None
     for path in re.findall(r"((?:hdl|bus|ip)/[^\s:,]*\.(?:sv|vhdl|v|vhd))(?=[:, ]|$)", changed):
         file = source / path
@@ -107,9 +108,9 @@ def rows_below(scope, signals):
 
 
 def save_file(wave, build, folder, first):
-    """Returns the text of GTKWave's save file: the rows `first`, then the ports of the models that
-    are below `folder` or below the folder of the tested block. For example, tests/hdl/fifo tests
-    hdl/fifo."""
+    """Returns the text of GTKWave's save file: the rows `first`, then the ports of the test's
+    models. The models are below the test's folder, such as tests/hdl/fifo, or below the folder of
+    the tested block, such as hdl/fifo."""
     rows = [*first]
     for place in sorted({folder, folder.removeprefix("tests/")}) if folder else []:
         for header in sorted((build / place).rglob("verilated_*/V*.h")):
@@ -122,8 +123,8 @@ def save_file(wave, build, folder, first):
 
 
 def repeat(failure, scene, source, tested, jobs, wave):
-    """Repeats a failed test with a waveform. Returns the build folder and the names of instances
-    that may be shown first."""
+    """Repeats a failed test with a waveform. Returns the build folder, and names of instances to
+    show; the first one in the waveform is used."""
     first, last = max(0, scene.clock - scene.before), scene.clock + scene.after
     build = (source / "build/trace").resolve() if scene.program else tested
     if scene.program:
@@ -229,11 +230,11 @@ def drawing_of(failure, room):
     ...]], ...], first: number of signals listed before the tree of instances, more: number of
     signals left out}.
 
-    First come the rows of the program, the signals that the failure's text names, and the signals
-    that change below the failure's instance, except for words of memories. Then come other signals
-    that change, and constant signals. Each group begins with the outermost signals. Signals that
-    a converter has named are left out. If the drawing exceeds `room` bytes, its older changes are
-    left out, then the last signals."""
+    The first signals are those of the program, those that the failure's text names, and those that
+    change below the failure's instance, except for words of memories. They are followed by the
+    other signals that change, and by constant signals. Each group begins with the outermost
+    signals. Signals with names that a converter has invented are left out. If the drawing exceeds
+    `room` bytes, its older changes are left out, then the last signals."""
     try:
         signals, moments = read_vcd(collect(["fst2vcd", "-f", failure.wave])[1]
                                     if failure.wave.endswith(".fst")

@@ -71,11 +71,11 @@ def address_of(r):
 
 
 def split(slot):
-    """Returns two lists: the registers in the slot, and the registers that an adapter makes
-    accessible.
+    """Returns two lists: the registers that are in the slot, and those that are accessed through an
+    adapter.
 
-    All registers behind an adapter share a few addresses in the slot. They therefore have a
-    separate address map, <SLOT>_PAGES, in which each has its byte address in the core.
+    All registers behind an adapter share a few addresses in the slot. They are therefore described
+    in a separate address map, <SLOT>_PAGES, with their byte addresses in the core.
     """
     registers = slot.block.registers
     return ([r for r in registers if r.page < 0], [r for r in registers if r.page >= 0])
@@ -95,8 +95,8 @@ def rdl_register(r):
 
 
 def rdl_access(r, f):
-    """Returns the access to a field in SystemRDL's terms. If the core stores the register, its
-    hardware may also change the value."""
+    """Returns the access to a field as properties of SystemRDL. If the core stores the register,
+    the core may also change the value, so the field has hw=rw."""
     more = "".join(f" {flag};" for flag in ("hwset", "hwclr") if getattr(f, flag))
     if f.access == "rw" and r.storage == "core":
         return "sw=rw; hw=rw;" + more

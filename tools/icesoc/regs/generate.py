@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""generate: writes the files that describe the registers of a block to hardware and software.
+"""generate: writes the files that hardware and software use to access the registers of a block.
 
 <block>_regs.vh (Verilog localparams), <block>_regs.h (C90 macros), <block>_regs_pkg.vhd (VHDL
 package) and <block>_regs.md (page for people). With --block, also writes the register block itself:

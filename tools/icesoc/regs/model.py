@@ -20,7 +20,7 @@ ACCESSES = {
     "w1s": "write 1 to set",
     "ws": "write acts, reads as 0",
 }
-# Parts of the hardware that may hold a register's value, by the register's access. The first is the
+# Access of a register -> parts of the hardware that may store its value; the first one is the
 # default.
 STORAGES = {
     "ro": ("core",),
@@ -89,9 +89,11 @@ class Register:
     fields: list = field(default_factory=list)
     reset: int | None = 0  # reset value of a register without fields
     storage: str = ""
-    lock: str = ""  # name of the input that blocks writes while it is high
-    registered: bool = False  # True: pulses come from flip-flops, one clock after the write
-    # "read", "write": kinds of access for which an output is high in the clock of the access
+    lock: str = ""  # name of an input; while it is high, writes have no effect
+    # True: the outputs of pulses are flip-flops, so a pulse comes one clock after the write
+    registered: bool = False
+    # "read" and "write": for each of them, the block has an output that is high in the clock of
+    # such an access
     strobes: tuple = ()
 
     @property
@@ -125,8 +127,8 @@ class Register:
         return [p for p in self.parts if self.holds(p)]
 
     def port(self, part):
-        """Returns the common part of the port names of a field: status_busy for STATUS.BUSY, page
-        for PAGE.PAGE."""
+        """Returns the name of a field's ports without _i or _o: status_busy for STATUS.BUSY, but
+        page for PAGE.PAGE, the only field of its register."""
         alone = len(self.fields) <= 1 and part.name in ("", self.name)
         return self.lower if alone else f"{self.lower}_{part.name.lower()}"
 
@@ -140,8 +142,8 @@ class Register:
         return [p for p in self.parts if self.is_pulse(p)]
 
     def written_bits(self, part):
-        """Returns whether the field has an output that carries the written value; the core itself
-        must store this value."""
+        """Returns whether the register block only passes the written value of the field to the core
+        by an output. The core must then store the value."""
         return (part.access != "ro" and self.storage == "core" and bool(part.name)
                 and not self.is_pulse(part))
 
@@ -196,7 +198,8 @@ class Block:
     """The registers of a block."""
 
     def __init__(self, description, is_built=False):
-        """`is_built`: the build has already checked the description against the schema."""
+        """`is_built`: the build has already checked the description against the schema, so this is
+        not done again."""
         if not is_built and (found := problems(description, SCHEMA)):
             raise Wrong("; ".join(found))
         check(("type" in description) == ("version" in description),
@@ -238,7 +241,8 @@ class Block:
             raise Wrong("expected JSON in UTF-8 without long numbers or deep brackets") from None
 
     def common_registers(self):
-        """Returns the three registers that every slot begins with."""
+        """Returns the three registers that every slot begins with, or an empty list if the block is
+        not a slot."""
         if not self.is_slot:
             return []
         def events(access):
@@ -271,8 +275,8 @@ class Block:
 
     @property
     def ram_bits(self):
-        """Returns the number of address bits of the LUT RAM: as few low bits of the word number as
-        distinguish the words in the RAM."""
+        """Returns the number of address bits of the LUT RAM: the smallest number of low bits, at
+        least 2, in which the word numbers of all words in the RAM differ."""
         words = [r.word for r in self.stored_in("ram")]
         return next(n for n in range(2, 5) if len({w % (1 << n) for w in words}) == len(words))
 

@@ -149,7 +149,8 @@ def register_of(instance, word):
     made = {"word": word, "name": name, "access": kinds.pop() if len(kinds) == 1 else "rw",
             "doc": text_of(register)}
     if set(found.accesses) == {"ro", "ws"} and found.overlap:
-        made["storage"] = "core"  # software reads a value other than the one that it wrote
+        # ro and ws fields overlap: software reads another value than it has written
+        made["storage"] = "core"
     elif len(found.accesses) > 1 and len(set(found.accesses)) > 1:
         others = set(found.accesses) - {"ro"}
         if len(others) > 1 or others == {"ws"}:
@@ -205,8 +206,8 @@ def addresses_of(component):
 
 
 def unit_of(placed, component):
-    """Returns the difference between the addresses of consecutive words, in bytes. It is the same
-    for all registers of a bus."""
+    """Returns the distance between consecutive words in bytes, which is the same for all registers
+    of an addrmap."""
     sizes = {size for *_, size in placed}
     if all(address % 4 == 0 for _, address, _ in placed) and max(sizes) <= 4:
         return 4 if len(placed) > 1 else min(sizes)

@@ -14,8 +14,8 @@ TAKEN = {
 # registers have in any case.
 WITHOUT_EFFECT = {"donttest", "dontcompare", "hdl_path", "hdl_path_slice", "hdl_path_gate",
                   "hdl_path_gate_slice", "encode", "littleendian", "lsb0", "internal"}
-# Values for which software sees the same behaviour as without the property; other values are
-# errors. A property that is set to false counts as missing.
+# Values with which a property has no effect for software; any other value is an error. A property
+# that is set to false counts as missing.
 OFF: dict[str, set[str]] = {
     "precedence": {"sw"}, "onread": set(), "rclr": set(), "rset": set(), "swwe": set(),
     "swwel": set(), "we": set(), "wel": set(), "hwenable": set(), "hwmask": set(), "anded": set(),

@@ -51,7 +51,7 @@ class Component:
     lines: dict = field(default_factory=dict)  # property name -> line number
     types: dict = field(default_factory=dict)
     children: list = field(default_factory=list)
-    # defaults that surrounding components had set before this component
+    # defaults that apply to this component, set earlier in the surrounding components
     inherited: dict = field(default_factory=dict)
 
     def __post_init__(self):
@@ -79,7 +79,7 @@ class Instance:
     line: int
     msb: int | None = None
     lsb: int | None = None
-    width: int | None = None  # number of bits of a field that is declared by its width only
+    width: int | None = None  # width of a field that is declared by its width only
     reset: int | None = None
     address: int | None = None
 

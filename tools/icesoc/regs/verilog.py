@@ -11,8 +11,8 @@ def span(width):
 
 
 def cut(vector, lsb, width, of=32):
-    """Returns the expression for `width` bits of a vector, starting with bit `lsb`. The vector has
-    `of` bits."""
+    """Returns the expression for `width` bits of a vector, starting with bit `lsb`. `of`: width of
+    the vector."""
     if width == of:
         return vector
     return f"{vector}[{lsb}]" if width == 1 else f"{vector}[{lsb + width - 1}:{lsb}]"
@@ -23,8 +23,8 @@ def number(value, width):
 
 
 def padded(parts, width=32, indent=0):
-    """Returns a concatenation of (lsb, width, expression) parts, with zeros between them. The
-    result has several lines if one line with `indent` columns in front would be too long."""
+    """Returns a concatenation of (lsb, width, expression) parts, with zeros between them. If the
+    result would be too long for one line, starting at column `indent`, it has several lines."""
     texts, top = [], width
     for lsb, wide, text in sorted(parts, reverse=True):
         if lsb + wide < top:
@@ -51,20 +51,21 @@ def event_inputs(b, indent=0):
 
 
 def aligned(rows, mark):
-    """Returns lines that consist of a left text, the mark and a right text; the marks are aligned
-    in one column."""
+    """Returns a line for each pair of texts: the left text, the mark, the right text. All marks are
+    in the same column."""
     broad = max((len(left) for left, _ in rows), default=0)
     return [f"{left:{broad}}{mark}{right}" for left, right in rows]
 
 
 def write_signals(b):
-    """Returns (name, word, lock) for each signal that is high in the clock of a write."""
+    """Returns (name, register, lock) for each register that software can write. The register block
+    has a signal NAME_write, which is high in the clock of a write."""
     return [("event", "EVENT", ""), ("mask", "MASK", "")] + [
         (r.lower, r.name, r.lock) for r in b.own_registers if r.is_written]
 
 
 def write_wires(b):
-    """Returns the declarations of the signals that are high in the clock of a write."""
+    """Returns the declarations of the signals NAME_write (see write_signals)."""
     rows = [(f"{name}_write", f"write && bus_addr_i == {b.prefix}_{word}"
              f"{f' && !{lock}_i' if lock else ''};") for name, word, lock in write_signals(b)]
     return ["    wire " + line for line in aligned(rows, " = ")]
@@ -130,8 +131,8 @@ def wrapped(text, first, others):
 
 
 def plain(text):
-    """Returns a text that is safe in a comment: tools do not read it as a command, and its end does
-    not continue the line."""
+    """Returns a text that is safe in a comment: tools do not take it as a directive, and no
+    backslash at its end continues the line."""
     text = text.replace("/*", "/ *").replace("*/", "* /")
     if text.split(" ")[0].lower() in ("verilator", "synopsys", "synthesis", "pragma", "psl",
                                       "xilinx", "altera", "coverage", "lint_checking"):

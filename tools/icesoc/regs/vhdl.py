@@ -34,7 +34,7 @@ def vhdl_ports(b):
 
 
 def signals_of(b):
-    """Returns the flip-flops of the block as (name, field, reset)."""
+    """Returns (name of the signal, field) for each field that flip-flops of the block hold."""
     return [(r.port(p) + "_value", p) for r in b.own_registers for p in r.held_parts]
 
 

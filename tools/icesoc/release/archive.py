@@ -17,7 +17,7 @@ SIGNATURES = {".sec": ("minisign", ".minisig"), "": ("gpg", ".asc")}
 
 
 def tar(path, folder, files, seconds, programs=()):
-    """Writes a .tar.gz with `files`, name to bytes, below `folder`. `seconds` is the time of all
+    """Writes a .tar.gz with the files {name: bytes} below `folder`. `seconds` is the time of all
     entries; `programs` are the names of executable files."""
     content = io.BytesIO()
     with tarfile.open(fileobj=content, mode="w", format=tarfile.PAX_FORMAT) as made:
@@ -36,7 +36,7 @@ def tar_of_folder(path, folder, source, seconds):
 
 
 def zip_(path, files, seconds):
-    """Writes a zip file with `files`, name to bytes."""
+    """Writes a zip file with the files {name: bytes}."""
     when = time.gmtime(max(seconds, 315532800))[:6]  # zip files cannot store times before 1980
     with zipfile.ZipFile(path, "w") as made:
         for name in sorted(files):
@@ -66,7 +66,7 @@ def sums(folder):
 
 
 def sign(path, key):
-    """Signs a file with a key: a file of minisign (its name ends with .sec), or the name of a key
+    """Signs a file with a key: a key file of minisign (with the suffix .sec), or the name of a key
     of gpg. Returns the signature's path."""
     program, ending = SIGNATURES[".sec" if key.endswith(".sec") else ""]
     signature = Path(f"{path}{ending}")

@@ -29,7 +29,7 @@ class Release:
     version: str
     commit: str
     seconds: int  # time of the commit
-    files: dict  # bytes of the files of the commit, by name
+    files: dict  # name -> bytes, for each file of the commit
     programs: set  # names of the executable files
     tree: Path  # folder with the same files, unpacked
     origin: Path  # folder of the working tree
@@ -41,15 +41,14 @@ class Release:
 
     @property
     def changes(self):
-        """Returns the changelog's text about the changes since the last version; if there are none,
-        about this version."""
+        """Returns the text in the changelog about unreleased changes or, if there are none, about
+        the newest version."""
         text = self.files["CHANGELOG.md"].decode()
         return version.unreleased(text) or dict(version.sections(text))[version.newest(text)]
 
 
 def read_commit(tree):
-    """Returns the commit, its time, its files and the names of its executable files: fields of
-    Release."""
+    """Returns (commit, seconds, files, programs), as in Release."""
     git = ["git", "-C", str(tree)]
     commit = output([*git, "rev-parse", "HEAD"], check=False, stderr=subprocess.DEVNULL).strip()
     if not commit:
@@ -124,7 +123,8 @@ def packages(release):
 
 
 def copy_packages(release, folder):
-    """Copies the Debian packages of a folder. Their files have the time of their commit."""
+    """Copies the Debian packages of a folder. The time of the files in a package is the time of the
+    commit from which it was built; a package from another commit is an error."""
     found = sorted(folder.glob("*.deb"))
     if not found:
         raise Stop(f"packages: expected Debian packages in {folder}, got none; "
@@ -157,7 +157,7 @@ MAKERS = dict(zip(PARTS, (source, icec, changes, site, packages, bill), strict=T
 
 def build(tree, out, parts, key, folders=()):
     """Makes the given parts in an empty folder, with SHA256SUMS and, if there is a key, a
-    signature. `folders` contain the Debian packages if these are built already. Returns the version
+    signature. `folders`: folders with Debian packages that are already built. Returns the version
     and the paths of the files; the signature is the last one."""
     commit, seconds, files, programs = read_commit(tree)
     with tempfile.TemporaryDirectory() as work:

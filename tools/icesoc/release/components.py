@@ -10,7 +10,7 @@ from icesoc import TREE
 from icesoc.util.errors import Stop
 
 LIST = "sw/components.toml"
-# headers that every component may include; they are copied into each component
+# folders of headers that every component may include; each component gets a copy of these headers
 SHARED = ["sw/base"]
 
 

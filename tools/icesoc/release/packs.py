@@ -15,7 +15,7 @@ from icesoc import TREE
 from icesoc.release import components, single_file
 
 CONFIG = "sw/icec/ice_config.h"
-SCHEMA = "1.7.7"  # oldest version of PACK.xsd that has every element used here
+SCHEMA = "1.7.7"  # oldest version of PACK.xsd with all elements that are used here
 VENDOR, PACK = "IceSoC", "IceC"
 DESCRIPTION = ("Serve and call ZeroC Ice objects from C90 firmware, without memory allocation, over"
                " TCP, a packet radio or a serial line.")
@@ -84,8 +84,8 @@ def zephyr_cmake(tree=TREE):
 
 
 def sources(version, tree=TREE):
-    """Returns the files that all forms have in common: the single files of the components, README
-    and licence."""
+    """Returns the files that are the same in all packages: the merged files of the components,
+    README and licence."""
     files = {f"src/{name}": text for name, text in single_file.files(None, tree, version).items()}
     rows = "\n".join(f"| `src/{its.name}.c`, `src/{its.name}.h` | {its.title}"
                      + (f"; needs {', '.join(its.needs)}" if its.needs else "") + " |"
@@ -113,7 +113,7 @@ def library(version, tree=TREE):
 
 def pdsc(version, date, changes, tree=TREE):
     """Returns the description of the CMSIS-Pack. `date` is the date of the release, such as
-    2026-11-28; `changes` is the section of the changelog about it."""
+    2026-11-28; `changes` is the changelog's section about this release."""
     package = ET.Element("package", {
         "schemaVersion": SCHEMA, "xmlns:xs": "http://www.w3.org/2001/XMLSchema-instance",
         "xs:noNamespaceSchemaLocation": "PACK.xsd"})

@@ -22,7 +22,7 @@ from icesoc.util.files import write
 
 TOKEN = re.compile(r'/\*.*?\*/|"(?:\\.|[^"\\])*"|\'(?:\\.|[^\'\\])*\'|[A-Za-z_]\w*|->|\s+|.', re.S)
 INCLUDE = re.compile(r'^#include ([<"])([^">]+)[">].*\n', re.M)
-# macros of the minimal layers, which do not belong to any component
+# macros that select code for the minimal layers; no component contains this code
 MINIMAL = ("ICEC_MINIMAL", "LINK_MINIMAL")
 
 
@@ -85,8 +85,9 @@ def renamed(text, names, stem):
 
 
 def full(text):
-    """Returns the text without the parts for the minimal layers."""
-    # stack: for each open #if, whether it tests a macro of MINIMAL, and whether its text is kept
+    """Returns a text without the parts that only the minimal layers use."""
+    # stack: [whether it tests a macro of MINIMAL, whether the following text is kept] for each open
+    # #if
     lines, stack = [], []
     for line in text.splitlines(keepends=True):
         words = line.split()
@@ -124,9 +125,10 @@ class Joiner:
         self.component, self.known, self.tree = component, known, Path(tree)
         # headers of the C library, in the order in which they are first included
         self.system = {"h": [], "c": []}
-        self.features = []  # macros that choose what the C library declares
+        # macros such as _POSIX_C_SOURCE, which select the declarations of the C library
+        self.features = []
         self.done = set()
-        self.foreign = set()  # headers of the components that this one needs
+        self.foreign = set()  # headers of the components that this component needs
         for name in component.needs:
             self.foreign |= Joiner(known[name], known, tree).public()
 
@@ -153,8 +155,8 @@ class Joiner:
                    f"{self.component.name} ({components.LIST})")
 
     def header(self, path, kind):
-        """Returns the text of a header, including the headers that it includes. Returns nothing if
-        the output already contains the header."""
+        """Returns the text of a header, with the text of the headers that it includes. Returns an
+        empty text if the output already contains the header."""
         if path in self.done or path in self.foreign:
             return ""
         self.done.add(path)

@@ -51,7 +51,7 @@ def relink(text, source, target, moved):
 
     `source` and `target` are the page's paths in the tree and in the site; `moved` maps paths of
     pages in the tree to paths in the site. Paths have no leading slash. A link to a file that is
-    not a page is replaced by the name of the file, set as code.
+    not a page is replaced by the name of the file, formatted as code.
     """
     def replaced(match):
         label, link = match[1], match[2]

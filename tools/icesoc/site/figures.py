@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""figures: the figures that pages and pictures repeat, each with its source.
+"""figures: finds figures in pages and pictures that differ from their sources, and corrects the
+pages.
 
 The sources are docs/figures.md (written by `./icesoc bench`), synth/baseline.json (written by
 `./icesoc synth accept`), and the pictures: the text that a page shows is in its picture's PNG file,
@@ -22,11 +23,11 @@ KEYWORD = b"Description"  # keyword of the PNG chunk with the text
 PICTURE = "docs/pictures/{}.png"
 MISSION = PICTURE.format("mission")
 
-# Output of `make run` in README.md, which is the text in the picture of the same flight.
+# The output of `make run` in README.md. The picture of the same flight contains the same text.
 TRANSCRIPT = re.compile(r"(?<=Ice's log lines\):\n\n```\n).*?(?=```)", re.S)
 
-# Page or picture -> texts in it, in which a name in braces stands for a figure. If a figure has no
-# source, it must be the same in all places that contain its name.
+# Page or picture -> texts that it contains. In these texts, a name in braces stands for a figure.
+# If a figure has no source, it must be the same in all texts that contain its name.
 PLACES = {
     "README.md": [
         "removed as unused (`make size`) | {minimal} |",
@@ -98,7 +99,7 @@ def put_text(picture, text):
     """Puts a text into a PNG file, after its header."""
     data = Path(picture).read_bytes()
     chunk = b"zTXt" + KEYWORD + b"\0\0" + zlib.compress(text.encode("utf-8"), 9)
-    header = 8 + 12 + 13  # the signature and the chunk IHDR have this length together
+    header = 8 + 12 + 13  # length of the signature and the chunk IHDR
     Path(picture).write_bytes(
         data[:header] + struct.pack(">I", len(chunk) - 4) + chunk
         + struct.pack(">I", zlib.crc32(chunk)) + data[header:])
@@ -117,8 +118,8 @@ def content(tree, place):
 
 
 def rows(tree):
-    """Returns {name: figure} for the rows of docs/figures.md with one column of figures: the first
-    number of the row. If a row has a limit, `limit of NAME` is the limit."""
+    """Returns {name: first number} for the rows of docs/figures.md that have one column of figures.
+    A row with a limit gives a second entry, `limit of NAME`."""
     found = {}
     for name, value, limit in re.findall(
             r"^\| ([^|]+) \| ([\d,.]+) [^|]*\| (?:limit ([\d.]+))?[^|]*\|$",
@@ -130,7 +131,8 @@ def rows(tree):
 
 
 def values(tree):
-    """Returns the figures that have a source, as text without separators of thousands."""
+    """Returns {name: figure} for the figures that have a source. A figure is a text without commas
+    between thousands."""
     measured = rows(tree)
     designs = read_baseline(Path(tree, "synth/baseline.json"))["designs"]
     found = {f"{name}.{key}": str(designs[design][key])
@@ -157,7 +159,8 @@ def values(tree):
 
 
 def pattern(text):
-    """Returns the text of a place as a regular expression, and the names of the figures in it."""
+    """Converts a text of PLACES to a regular expression. Returns the expression, and the names of
+    the figures in the text."""
     names = re.findall(r"\{([\w.]+)\}", text)
     parts = [re.escape(part).replace(r"\ ", r"\s+") for part in re.split(r"\{[\w.]+\}", text)]
     return re.compile(r"([\d,]+(?:\.\d+)?)".join(parts)), names
@@ -196,8 +199,9 @@ def figures_of_pictures(tree):
 
 
 def correct(tree, given=None):
-    """Writes figures into the pages: the figures in `given`, those that have a source, and for a
-    figure with neither, the value in a picture. Pictures are not changed."""
+    """Writes the figures into the pages. A figure is taken from `given` or, if it is not there,
+    from its source or else from a picture. Also copies the mission's output into README.md. Yields
+    the names of the changed pages; pictures are not changed."""
     known = {**figures_of_pictures(tree), **values(tree), **(given or {})}
     readme = Path(tree, "README.md")
     was = readme.read_text()

@@ -104,8 +104,8 @@ def expand(text, root):
 
 
 def declarations(lines, mark, pattern):
-    """Yields (group, match) for each line that declares something. The comment of a declaration may
-    continue on the following lines, if they are indented further."""
+    """Yields (group, match) for each line that contains a declaration. A line with only a comment
+    begins a new group and is its title."""
     group = ""
     for line in lines:
         stripped = line.strip()
@@ -118,7 +118,8 @@ def declarations(lines, mark, pattern):
 
 
 def name_clocks(ports):
-    """Sets the clock of each port: the only clock, or the clock of the port's group."""
+    """Sets the clock of each port: the module's only clock or, if it has several, the clock in the
+    port's group."""
     clocks = [p for p in ports if p.direction == "input" and re.search(r"(^|_)clk_i$", p.name)]
     of_group = {p.group: p.name for p in clocks}
     for port in ports:

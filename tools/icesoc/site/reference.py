@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""reference: writes the generated pages of the site's reference part.
+"""reference: writes the generated pages of the site's reference section.
 
 The functions that write pages take the tree and `pages`, the folder of the pages for Sphinx.
 """
@@ -61,7 +61,7 @@ def paragraphs(comment):
 
 
 def constraint_lines(entity, tree):
-    """Returns those lines of the chip's constraint file that contain a pin of the entity."""
+    """Returns the lines of the chip's constraint file that contain a pin of the entity."""
     pins = [p.name for p in entity.ports if p.clock == "asynchronous" and "_async" not in p.name]
     found = []
     for line in (tree / "synth/ise/chip.ucf").read_text().splitlines():

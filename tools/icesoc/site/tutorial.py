@@ -69,7 +69,8 @@ def _block(number, language, lines, before):
 
 def compare(expected, printed):
     """Compares the output with the expected lines. Returns the first expected line that is missing
-    or in the wrong place, or the first additional line; None if the output is as expected."""
+    or in the wrong place, or a text about the first additional line. Returns None if the output is
+    as expected."""
     at, skipping = 0, False
     for line in expected:
         if line == "...":
@@ -88,7 +89,8 @@ def compare(expected, printed):
 
 def follow(page, folder, execute, begin="", brief=False):
     """Follows a page in a folder. `execute(command)` returns exit status and output. Skips the
-    steps up to the command `begin` and, if `brief`, the blocks that are marked as long."""
+    steps up to and including the command `begin` and, if `brief` is true, the blocks that are
+    marked as long."""
     todo = steps(Path(page).read_text())
     if begin:
         at = next((n for n, step in enumerate(todo) if step.command == begin), None)

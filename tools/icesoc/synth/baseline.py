@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""baseline: the accepted figures of all designs (synth/baseline.json), the growth since they were
-accepted, and the state of each design (see STATES)."""
+"""baseline: the accepted figures of all designs (synth/baseline.json), the growth of each design
+since then, and the state of each design (see STATES)."""
 import json
 import subprocess
 
@@ -14,11 +14,12 @@ KEYS = ("lut", "ff", "slices", "carry", "dsp", "ram", "mhz")
 NAMED_CHANGES = 6
 
 MEASURED, ACCEPTED, CHANGED, NEVER = STATES = (
-    "measured now",         # figures of the current sources, from this run or from the cache
-    # not synthesised here, but the accepted figures were measured with these sources
+    # the figures of the current sources are known, from this run or from the cache
+    "measured now",
+    # not measured here, but the accepted figures are those of the current sources
     "as accepted",
-    "changed since",        # the sources differ from those of the last measured or accepted figures
-    # the sources differ, or it is not known with which sources the accepted figures were measured
+    "changed since",        # not measured with the current sources, only with other ones
+    # never measured here, and the sources of accepted figures are unknown
     "never measured here")
 
 
@@ -43,8 +44,8 @@ def short_version(yosys):
 
 
 def clock_text(mhz):
-    """Returns a clock as text. The terminal, the page and the accepted figures all use this
-    rounding."""
+    """Returns a clock frequency in MHz as text, rounded as on the terminal, on the page and in the
+    accepted figures."""
     return f"{mhz:.1f}"
 
 
@@ -97,9 +98,9 @@ def written(baseline):
 
 
 def accept(report, file):
-    """Replaces the accepted figures of the measured designs, keeps the figures of other designs,
-    and drops designs that no longer exist. Rejects figures above a limit of synth/designs.json; a
-    limit can only be changed there."""
+    """Replaces the accepted figures of the measured designs, keeps those of other designs (unless
+    another version of Yosys has measured them), and drops designs that no longer exist. Rejects
+    figures above a limit of synth/designs.json; a limit can only be changed there."""
     old = report.baseline
     # Figures of two versions of Yosys are not comparable.
     same = short_version(old["yosys"]) == short_version(report.yosys)
@@ -139,7 +140,8 @@ def changes(before, after):
 
 
 def grown(title, changed):
-    """Returns a title and a line for each change, or nothing if nothing grew."""
+    """Returns a title and a line for each of the first changes that is a growth; an empty text if
+    nothing grew."""
     lines = []
     for name, luts, ffs in changed[:NAMED_CHANGES]:
         if luts + ffs > 0:
@@ -160,17 +162,17 @@ def above_limits(row):
 
 
 def judge(row, baseline, yosys, goal):
-    """Returns (failures, notes) of a design. Its budget is the accepted figure plus a margin for
-    the variation of the optimisation: 3 % + 4 LUTs, 1 % + 2 flip-flops. Limits always apply,
-    whatever was accepted. A design whose accepted clock reaches `goal` (MHz) must still reach it; a
-    design whose accepted clock is lower may lose a tenth of it."""
+    """Returns (failures, notes) of a design. It may exceed its accepted figures by a margin,
+    because the results of optimisation vary: 3 % + 4 LUTs, 1 % + 2 flip-flops. It must never exceed
+    the limits of synth/designs.json. If the accepted clock reaches `goal` (MHz), the clock must
+    still reach it; a lower accepted clock may fall by a tenth."""
     name, f = row.design.name, row.figures
     if row.main.error:
         return ([f"{name}: synthesis failed"] if row.main.wanted else []), []
     failures = [f"{name}: synthesis for {other.family} failed" for other in row.others
                 if other.wanted and other.error]
-    # Another version of Yosys gives other figures, so figures are only judged if they come from the
-    # same version as the accepted figures.
+    # Versions of Yosys give different figures. A design is therefore only judged if the same
+    # version measured the accepted figures; otherwise exceeded limits are notes.
     comparable = short_version(baseline["yosys"]) in ("", short_version(yosys))
     if not comparable:
         return failures, [f"{text} (by another Yosys than the limit was set with)"
@@ -225,7 +227,7 @@ def history(source, count=30):
 
 
 def current_commit(source):
-    """Returns the current commit such as "1a2b3c4", with "+" if the tree has changes; "" without
-    git."""
+    """Returns the current commit such as "1a2b3c4", followed by "+" if the tree has uncommitted
+    changes; "" without git."""
     id = git(source, "rev-parse", "--short", "HEAD").strip()
     return id and id + "+" * bool(git(source, "status", "--porcelain", "--untracked-files=no"))

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""cores: computes the cost of each core in the chip. The cost has four parts: the core itself, its
-registers, its slot in the decoder, and its memory port."""
+"""cores: computes the cost of each core in the chip. The cost has five parts: the core itself, its
+registers, its slot in the bus decoder, its memory port, and its share of the memory arbiter."""
 import re
 
 from icesoc.regs.model import Block
@@ -26,9 +26,9 @@ def read_map(file):
 
 
 def slot_cost(library, options, map, wanted):
-    """Returns the cost of one slot in the decoder: the cost of the decoder with the chip's number
-    of slots, minus the cost with one slot fewer. If `wanted` is False, both costs are only taken
-    from the cache, and the result is zero if one is missing."""
+    """Returns the cost of one slot in the decoder: the cost of the bus decoder with the chip's
+    number of slots, minus its cost with one slot fewer. If `wanted` is False, both costs are only
+    taken from the cache, and the result is zero if one is missing."""
     runs = [Run(Design(f"bus_decoder{slots}", "bus_decoder", parameters={"SLOTS": slots}), "xc6s",
                 wanted) for slots in (map["SLOT_COUNT"], map["SLOT_COUNT"] - 1)]
     carry_out(runs, library, options)
@@ -42,11 +42,11 @@ def slot_cost(library, options, map, wanted):
 
 
 def core_table(costs, map, slot, names, where):
-    """Returns a table with a row for each core of the map that the chip has, or only for `names`;
-    the core with the most LUTs is first. A row has the sums of LUTs, flip-flops, block RAM and DSP,
-    then LUTs / flip-flops of each part of the core. The cost of the arbiter is divided by the
-    number of ports. Raises NotInChip if the chip lacks a name. `where`: text that names the source
-    of the chip's figures."""
+    """Returns a table with a row for each core that is in the address map and in the chip, or only
+    for the cores `names`. The core with the most LUTs is first. A row has the sums of LUTs,
+    flip-flops, block RAM and DSP, then LUTs / flip-flops of each part of the core. The cost of the
+    memory arbiter, apart from its ports, is divided by the number of ports. Raises NotInChip if the
+    chip lacks a name. `where`: text that names the source of the chip's figures."""
     def cost_of(pattern):
         return sum((cost for path, signals in costs.items() if re.fullmatch(pattern, path)
                     for cost in signals.values()), Cost())

@@ -18,7 +18,7 @@ PADS = {"c3_sys_clk": "sys_clk_i", "c3_sys_rst_i": "sys_rst_i"}
 
 
 def statements(path):
-    """Returns (line number, text without comments) of each statement."""
+    """Yields (line number, text without comments) of each statement."""
     text = re.sub(r"#[^\n]*", "", open(path).read())
     line = 1
     for part in text.split(";"):
@@ -29,8 +29,8 @@ def statements(path):
 
 
 def keys(statement):
-    """Returns the keys of the settings in a statement that may occur only once: VCCAUX, and
-    location, standard and period of a net."""
+    """Returns a key for each setting in a statement that may occur only once: VCCAUX, and the
+    location and I/O standard of a net."""
     if re.match(r"(?i)CONFIG\s+VCCAUX", statement):
         return ["VCCAUX"]
     net = re.match(r'(?i)NET\s+"?([^"\s]+)"?\s+(.*)', statement)

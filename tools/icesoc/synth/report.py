@@ -48,7 +48,8 @@ class Report:
 
 
 class Table:
-    """A table whose columns are as wide as needed; the first column is left-aligned."""
+    """A table, written as plain text with aligned columns or as Markdown. The first column is
+    left-aligned, the others right-aligned."""
 
     def __init__(self, head, rows=()):
         self.rows = [[str(cell) for cell in row] for row in [head, *rows]]
@@ -100,7 +101,8 @@ def paper_table(plan, row):
 
 
 def ranged(value, values, text=str):
-    """Returns a figure and the range of its values over all mappings: "863 (858-865)"."""
+    """Returns a figure as text, followed by its range if the design was mapped several times: "863
+    (858-865)"."""
     return text(value) + (f" ({text(min(values))}-{text(max(values))})" if len(values) > 1 else "")
 
 
@@ -157,8 +159,9 @@ def cost_table(library, row, depth=2):
 
 
 def path_table(plan, row, count=5):
-    """Returns a table of the longest paths. If a design is mapped several times, each time with
-    its cells in another order, these are the paths of the mapping whose clock is reported."""
+    """Returns a table of the longest paths. If a design is mapped several times, each time with its
+    inputs and outputs in another order, these are the paths of the mapping with the median clock,
+    which is the reported one."""
     mhz = plan.chip["mhz"]
     return Table([f"longest paths, estimated, at {clock_text(row.figures['mhz'])} MHz", "to",
                   "levels", "ns (-3)", "ns (-2)", f"of {mhz:g} MHz"],
@@ -215,7 +218,8 @@ def show(report):
 
 
 def entries(report):
-    """docs: the contract of all figures."""
+    """Returns the content of report.json: the failures, the state of each design, and the figures
+    as entries (icesoc.util.measured)."""
     found = []
     for row in report.rows:
         name, f = row.design.name, row.figures
@@ -259,9 +263,9 @@ def entries(report):
 
 
 def differences(before, after):
-    """Returns the differences between two files of entries as a table in Markdown. A design that is
-    only in one file is shown as new or removed. If a design was not measured, its state is shown
-    instead, such as `changed since`."""
+    """Returns the differences between two contents of report.json as a table in Markdown. If a
+    figure is only in one of them, the table contains the state of the design in the other one, such
+    as `changed since`, or "new" or "gone"."""
     designs = {}  # name -> {kind of figure: [before, after]}
     for number, report in enumerate((before, after)):
         for entry in report["entries"]:
@@ -287,7 +291,7 @@ def differences(before, after):
 
 
 def page_figures(f):
-    """Returns the figures for the page, rounded as in the terminal."""
+    """Returns the figures of a design as the page needs them. Signals without cost are left out."""
     costs = {path: {signal: [c.lut, c.ff, c.memory]
                     for signal, c in signals.items() if c.lut or c.ff}
              for path, signals in f["costs"].items()}

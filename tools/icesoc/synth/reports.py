@@ -2,10 +2,10 @@
 """reports: compares the estimates with published reports of XST, map and TRCE (synth/reports.json),
 which shows how accurate the estimates are (docs/utilisation.md).
 
-A report that comes only from map calibrates the estimate of slices. For a report whose sources
-Yosys can also read, synth/reports.json contains a netlist: its counts, the steps of the longest
-path of the reported clock {type, fan-out, delay of the cell, delay of its net, ns}, and the end of
-that path.
+Every report has figures of map, which calibrate the estimate of slices. If Yosys can read the
+sources of the design, the entry in synth/reports.json also has a "netlist": the counts of cells,
+the steps of the longest path of the reported clock [type, fan-out, delay of the cell in ns, delay
+of its net in ns], and the end of that path.
 """
 import math
 import statistics
@@ -17,7 +17,7 @@ from icesoc.synth.slices import Range
 from icesoc.synth.sources import read_json
 from icesoc.util.errors import Stop
 
-# "one" and "two" are the numbers of sites with one function and with two functions
+# "one", "two": numbers of LUT sites with one function and with two functions
 MAP = ("sites", "ff", "slices", "one", "two")
 NETLIST = ("lut", "memory", "through", "ff", "path", "end")
 
@@ -50,15 +50,15 @@ def read(file):
 
 
 def estimated(report):
-    """Returns the estimate of the longest path at the report's speed grade, ns."""
+    """Returns the estimated delay of the longest path, ns, at the speed grade of the report."""
     path, (type, pin) = report["netlist"]["path"], report["netlist"]["end"]
     ns = sum(cell + net for _, _, cell, net in path) + timing.end_delay(type, pin)
     return ns * (timing.SLOW_GRADE if report["device"].endswith("-2") else 1)
 
 
 def clock_ratios(reports, kind):
-    """Returns the ratios of published clock to estimated clock, for the designs with a report of
-    this kind."""
+    """Returns the ratio of the published to the estimated clock frequency, for each report of this
+    kind ("synthesised" or "routed")."""
     return [estimated(report) / report[kind] for report in reports if kind in report]
 
 
@@ -70,7 +70,7 @@ def site_ratios(reports):
 
 
 def left_out(values, fitted):
-    """Yields each value, together with the result of the function `fitted` for all other values."""
+    """Returns each value divided by the result of the function `fitted` for all other values."""
     return [value / fitted(values[:i] + values[i + 1:]) for i, value in enumerate(values)]
 
 
@@ -80,23 +80,24 @@ def nine_of_ten(errors):
 
 
 def range_of(ratios):
-    """Returns the median of the ratios, and the range in which nine of ten ratios are expected
-    around it. The error of a ratio is the ratio divided by the median of all other ratios."""
+    """Returns the median of the ratios, and the range around it in which nine of ten ratios are
+    expected. The range comes from the errors of the ratios; the error of a ratio is the ratio
+    divided by the median of all other ratios."""
     median = statistics.median(ratios)
     low, high = nine_of_ten(left_out(ratios, statistics.median))
     return Range(median, median * low, median * high, len(ratios))
 
 
 def best_share(maps):
-    """Returns the share of flip-flops, in hundredths, with which the slices of these reports are
-    predicted best."""
+    """Returns the share of flip-flops without a LUT, in steps of 0.01, that predicts the slices of
+    these reports best."""
     return min((n / 100 for n in range(151)), key=lambda share: sum(
         abs(math.log(slices.occupied(m["sites"], m["ff"], share) / m["slices"])) for m in maps))
 
 
 def slices_range(maps):
-    """Returns the range of the ratios of published to predicted slices. For each report, the
-    prediction uses the share that fits all other reports best."""
+    """Returns the median and the range of the ratios of published to predicted slices. The
+    prediction for a report uses the share that fits all other reports best."""
     shares = [best_share(maps[:i] + maps[i + 1:]) for i in range(len(maps))]
     errors = [m["slices"] / slices.occupied(m["sites"], m["ff"], share)
               for m, share in zip(maps, shares)]
@@ -105,12 +106,13 @@ def slices_range(maps):
 
 
 def paired(m):
-    """Returns the share of functions that need no separate site in a report of map."""
+    """Returns the share of functions that need no separate LUT site, from a report of map."""
     return m["two"] / (m["one"] + 2 * m["two"])
 
 
 def text(reports):
-    """Returns a text with the comparison, and with the constants for timing.py and slices.py."""
+    """Returns the comparison as text. It contains the values of the constants in timing.py and
+    slices.py."""
     rows = [["design", "device", "sites of map", "estimated", "MHz estimated", "XST", "routed",
              "XST / estimated", "routed / estimated"]]
     for report in (r for r in reports if "netlist" in r):

@@ -23,7 +23,7 @@ from icesoc.util.files import write
 from icesoc.util.lock import only_one
 from icesoc.util.tree import tree_state, write_state
 
-# FPGA families; the first one has the figures, the limits and the page
+# FPGA families; figures, limits and the page are about the first one
 FAMILIES = ("xc6s", "xc7", "ecp5")
 WHOLE_CHIP = "soc"
 STATE_OF = "bus hdl ip slice synth tools"
@@ -31,14 +31,14 @@ PAGE = pathlib.Path(__file__).with_name("page.html")
 
 
 def rtl_of(o):
-    """Returns the modules of the platform, of the cores and of the generated files, in this
-    order."""
+    """Returns the library of all modules. If several have the same name, the first one counts:
+    modules of the platform precede those of cores and generated ones."""
     if not o.generated.is_dir():
         raise Stop(f"{o.generated} not found; run ./icesoc build first")
     rooms = sorted(folder for room in ("hdl", "ip") for folder in (o.source / room).iterdir()
                    if folder.is_dir())
     folders = [o.source / "synth", o.source / "hdl", o.source / "bus", *rooms, o.generated]
-    # Files of all cores of the build. Include files are in the folders of the modules.
+    # The build lists the files of all cores. Their include files are in the same folders.
     list = o.generated / "cores.files"
     files = [pathlib.Path(line) for line in list.read_text().splitlines()] if list.exists() else []
     files = [sources.relative_to(file, pathlib.Path()) for file in files if file.exists()]
@@ -161,7 +161,7 @@ def run(o, libraries):
         return equivalent(plan, library, options, o)
     if o.core:
         for design in plan.designs:
-            design.orders = 0  # further mappings are only needed for the median of the clock
+            design.orders = 0  # only the median of the clock needs further mappings
         runs = synthesise(plan, library, options, o) if o.design else []
         return tell_cores(library, options, o, accepted, runs)
     yosys = runner.version_of(o.yosys)

@@ -11,11 +11,11 @@ from pathlib import Path
 
 
 class Browser:
-    """A Chromium with one page, for use with `with`. `errors`: faults of scripts, and errors in the
-    page's log."""
+    """A Chromium with one page, for use with `with`. `errors`: exceptions in scripts, and errors in
+    the page's log."""
 
     def __init__(self, *options, width=1400, height=1000, home=None):
-        """home: folder for profile and certificates; by default a new folder."""
+        """home: folder for the profile and certificates; by default a temporary folder."""
         self.home = home or tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
         folder = home or self.home.name
         commands, self.send_to = os.pipe()
@@ -124,13 +124,13 @@ class Browser:
         return value
 
     def choose(self, selector, path):
-        """Gives a file to a file input."""
+        """Selects a file in the file input that `selector` matches."""
         root = self.ask("DOM.getDocument")["root"]["nodeId"]
         node = self.ask("DOM.querySelector", nodeId=root, selector=selector)["nodeId"]
         self.ask("DOM.setFileInputFiles", nodeId=node, files=[str(path)])
 
     def press(self, *keys):
-        """Presses keys by their names, such as Tab, or types a text of one letter each."""
+        """Presses keys one after the other. A key is a name such as Tab, or one character."""
         codes = {"Tab": 9, "Enter": 13, " ": 32}
         for key in keys:
             text = "\r" if key == "Enter" else key if len(key) == 1 else ""
@@ -155,7 +155,8 @@ def elements(address, *options, **size):
 
 
 def fault(page):
-    """Returns the first error of a page's scripts, with line and text; empty if there is none."""
+    """Opens a page, and returns the first exception in its scripts, with line and text; empty if
+    there is none."""
     page = Path(page).resolve()
     with Browser() as browser:
         browser.open(page.as_uri())

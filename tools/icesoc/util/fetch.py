@@ -33,7 +33,7 @@ GITHUB = os.environ.get("ICESOC_RAW") or "https://raw.githubusercontent.com"
 NPM = os.environ.get("ICESOC_NPM") or "https://registry.npmjs.org"
 KEYRING = "/usr/share/keyrings/debian-archive-keyring.gpg"
 
-# (path in Debian's pool or on one of the mirrors above, SHA-256)
+# (path in Debian's pool, or below GITHUB or NPM; SHA-256)
 LZ4 = ("l/lz4/lz4_1.9.4.orig.tar.gz",
        "0b0e3aa07c8c063ddf40b082bdf7e37a1562bda40a0ff5272957f3e987e0e54b")
 SODIUM = ("libs/libsodium/libsodium_1.0.18.orig.tar.gz",
@@ -86,7 +86,7 @@ GHDL = ["ghdl-mcode", "ghdl-common", "libgnat-14", "libc6", "libgcc-s1", "libstd
 
 
 class Unreachable(Exception):
-    """No network, or the mirror does not have the file."""
+    """The file cannot be downloaded: no network, or the mirror does not have it."""
 
 
 def fail(text, status=1):
@@ -110,10 +110,12 @@ def mirror():
 
 def kept(url, checksum, part=None):
     """Returns the path of a download in the cache, after downloading it if necessary. `part` is a
-    regular expression: only the text that its group matches is checked and stored."""
+    regular expression: if it is given, only the text that its group matches is checked and
+    stored."""
     file = CACHE / "foreign" / checksum
     if not file.exists():
-        # imported only here, because the import takes a fifth of the start time of a command
+        # imported only when needed, because the import takes a fifth of the time in which a command
+        # starts
         import urllib.request
         print(f"Fetching {url.rsplit('/', 1)[1]} ...", flush=True)
         try:
@@ -136,12 +138,13 @@ def kept(url, checksum, part=None):
 
 
 def released(path, checksum):
-    """Returns a released source as archived by Debian."""
+    """Returns the path of a released source, downloaded from Debian's archive."""
     return kept(f"{mirror()}/pool/main/{path}", checksum)
 
 
 def unpack(archive, folder, target, suffix=""):
-    """Extracts the files below a folder of an archive whose names end with `suffix`."""
+    """Extracts from an archive the files that are below a folder and have names that end with
+    `suffix`."""
     with tarfile.open(archive) as tar:
         for member in tar:
             if member.isfile() and member.name.startswith(folder) and member.name.endswith(suffix):
@@ -191,7 +194,7 @@ def ghdl(target):
     if installed and int(installed[1]) >= 5:
         return program(target / "ghdl", 'exec ghdl "$@"\n')
     root = packages("ghdl5", GHDL)
-    # GHDL is started by its own loader, with the libraries that were downloaded with it
+    # GHDL runs with the dynamic loader and the libraries that were downloaded with it
     loader = next(file for file in sorted(root.rglob("ld-linux-*.so.2")) if not file.is_symlink())
     words = [f"GHDL_PREFIX={root}/usr/lib/ghdl/mcode/vhdl", loader, "--library-path",
              root / f"usr/lib/{os.uname().machine}-linux-gnu", root / "usr/bin/ghdl-mcode"]
@@ -366,7 +369,7 @@ def icejs(target):
         line for line in text.split("\n") if "sourceMappingURL=" not in line))
 
 
-# Things that only optional parts need, with the name of the part
+# Things that only optional parts need -> text that names the part
 OPTIONAL = {zeroc: "Only these suites need it", svd: "Only the check of icesoc.svd needs it",
             foreign: "Only the examples of foreign cores need it",
             pack: "Only the check of the CMSIS-Pack needs it",

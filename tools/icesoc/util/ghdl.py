@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""ghdl: finds the line of VHDL from which GHDL generated a line of Verilog.
+"""ghdl: finds the line of VHDL from which GHDL has generated a given line of Verilog.
 
 GHDL writes the location in the VHDL as a comment before the statements to which it belongs."""
 import os

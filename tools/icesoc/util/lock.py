@@ -11,9 +11,9 @@ from icesoc.util.errors import Stop
 
 @contextlib.contextmanager
 def lock(path, busy=None, refuse=None):
-    """Takes a lock and returns its file descriptor. The lock is a folder, or a file; a missing file
-    is created, together with its folder. If another process holds the lock, the function ends the
-    command with the message `refuse`, or prints `busy` and waits."""
+    """Holds a lock for a `with` block, and yields its file descriptor. `path` is a folder, or a
+    file; a missing file is created, together with its folder. If another process holds the lock,
+    ends the command with the message `refuse` if it is given; otherwise prints `busy` and waits."""
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     fd = os.open(path, os.O_RDONLY if os.path.isdir(path) else os.O_RDWR | os.O_CREAT, 0o666)
     try:
@@ -32,8 +32,8 @@ def lock(path, busy=None, refuse=None):
 
 @contextlib.contextmanager
 def only_one(folder, program):
-    """Locks a folder for one run of a program. While another process holds the lock, prints the
-    number of that process and waits."""
+    """Locks a folder for one run of a program. If another process holds the lock, prints the number
+    of that process and waits."""
     path = folder / "lock"
     holder = path.read_text() if path.exists() else ""
     with lock(path, busy=f"{program}: waiting for another run in {folder}"

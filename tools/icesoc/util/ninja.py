@@ -10,15 +10,15 @@ from icesoc.util.errors import Stop
 from icesoc.util.process import end, start, wait
 from icesoc.util.progress import Line, clock
 
-# Beginnings of lines in which CMake, ninja, Verilator and its makefiles report on themselves; they
-# are not shown.
+# Beginnings of lines that are not shown: reports of CMake, ninja, Verilator and its makefiles about
+# their own work.
 NOISE = ("ninja: Entering directory", "ninja: no work to do", "- Verilator: ", "- V e r i l a t",
          "Archive ar ", "-- GLOB", "-- Configuring", "-- Generating", "-- Build files")
 
 
 class Steps(Line):
-    """The progress of a build. Outputs that are not terminals get a line for each tenth of the
-    steps, but none in the first seconds, so a short build prints nothing."""
+    """The progress of a build. An output that is not a terminal gets a line for each tenth of the
+    steps, but not in the first three seconds, so a short build prints nothing."""
 
     def __init__(self):
         super().__init__()
@@ -36,7 +36,8 @@ class Steps(Line):
 
 
 def in_vhdl(match):
-    """Returns a location in Verilog; if GHDL generated the line, with the location in the VHDL."""
+    """Returns a location in Verilog. If GHDL has generated the line, the location in the VHDL
+    follows in parentheses."""
     try:
         lines = Path(match[1]).read_text(errors="replace").splitlines()
     except OSError:
@@ -47,7 +48,8 @@ def in_vhdl(match):
 
 
 def explained(text):
-    """Returns a line of a build's output, with the source location that it refers to."""
+    """Returns a line of a build's output, with additional source locations: in VHDL if the line is
+    about generated Verilog, or of the list that names a missing file."""
     missing = re.match(r"ninja: error: '(\S+)', needed by .* missing and no known rule", text)
     if not missing:
         return re.sub(r"(\S+\.v):(\d+)(?=:)", in_vhdl, text)

@@ -34,8 +34,7 @@ def hear_signals():
         if interrupted:
             return
         interrupted = True
-        # Programs that are started from now on inherit this mask, so a second Ctrl-C does not end
-        # them.
+        # Programs that are started later inherit this mask, so a second Ctrl-C does not end them.
         signal.pthread_sigmask(signal.SIG_BLOCK, INTERRUPTS)
         raise Interrupted(number)
 
@@ -50,8 +49,8 @@ def tool(name):
 
 
 def start(words, env=None, **more):
-    """Starts a process that ends when this process ends, however this happens. `env`: variables
-    that are added to our environment."""
+    """Starts a process that gets SIGTERM when this process ends, even if this process is killed.
+    `env`: variables to add to the environment."""
     words = [str(word) for word in words]
     if not shutil.which(words[0]):
         raise Stop(
@@ -73,8 +72,8 @@ def end(process, seconds=20):
 
 
 def wait(process):
-    """Waits for a process; returns its exit status as a shell does. If this process is interrupted,
-    the other process is ended."""
+    """Waits for a process, and returns its exit status as a shell does: 128 + N after signal N. If
+    this process is interrupted meanwhile, ends the other process."""
     try:
         status = process.wait()
     except BaseException:
@@ -84,8 +83,8 @@ def wait(process):
 
 
 def run(words, check=True, **more):
-    """Runs a program to its end. If the program fails, the command ends with the program's exit
-    status, unless `check` is false."""
+    """Runs a program to its end, and returns its exit status. If the program fails and `check` is
+    true, ends the command with this exit status."""
     status = wait(start(words, **more))
     if status > 128:
         number = status - 128
@@ -97,7 +96,8 @@ def run(words, check=True, **more):
 
 
 def output(words, check=True, **more):
-    """Returns the output of a program; empty if the program fails and `check` is false."""
+    """Returns the output of a program. If the program fails, ends the command or, if `check` is
+    false, returns an empty text."""
     process = start(words, stdout=subprocess.PIPE, text=True, **more)
     try:
         text = process.communicate()[0]
@@ -112,7 +112,8 @@ def output(words, check=True, **more):
 
 
 def logged(words, log, failed, env=None, cwd=None):
-    """Runs a program and prints its output only if it fails."""
+    """Runs a program with its output in the file `log`. If it fails, prints the last lines, and
+    ends the command with the message `failed`."""
     with open(log, "w") as file:
         status = run(words, check=False, stdout=file, stderr=file, env=env, cwd=cwd)
     if status:
@@ -131,8 +132,8 @@ def until(condition, process, seconds=0.05):
 
 @contextlib.contextmanager
 def signals_held():
-    """Delays signals that would interrupt this process until the end of a block. Programs started
-    in the block do not receive them."""
+    """Delays SIGINT, SIGTERM and SIGHUP until the end of a `with` block. Programs started in the
+    block never receive these signals."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, INTERRUPTS)
     try:
         yield
@@ -170,8 +171,8 @@ def collect(command, environment=None, on_line=None, before_kill=None, **more):
 
 def reading(process, hear):
     """Starts a thread that calls `hear` with each line of a program's output. A signal interrupts
-    only the main thread, so it does not lose lines that were not yet read. Returns an event for
-    `wait_for`, which is set at the end of the output."""
+    only the main thread, so no line is lost that the program has already printed. Returns an event
+    for `wait_for`, which is set at the end of the output."""
     ended = threading.Event()
 
     def read():
@@ -225,7 +226,8 @@ def end_descendants():
 
 
 def adopt_orphans():
-    """Adopts processes that programs leave behind; otherwise init would adopt them."""
+    """Makes this process the parent of processes that programs leave behind; otherwise init would
+    adopt them."""
     become_subreaper = 36
     ctypes.CDLL(None).prctl(become_subreaper, 1)
 

@@ -6,8 +6,8 @@ import threading
 
 
 class Line:
-    """A line of text. A terminal rewrites the line each time; other outputs get only the texts that
-    are to be kept."""
+    """A line of text. On a terminal, each text replaces the one before. Other outputs get only
+    texts shown with `keep`."""
 
     def __init__(self):
         self.is_shown, self.lock = False, threading.Lock()
@@ -17,7 +17,7 @@ class Line:
         return sys.stdout.isatty()
 
     def show(self, text, keep=False):
-        """Shows a text; with `keep`, it stays and the next text gets a new line."""
+        """Shows a text. With `keep`, the text stays, and the next text is on a new line."""
         with self.lock:
             if self.moves:
                 width = os.get_terminal_size(sys.stdout.fileno()).columns or 80
@@ -42,5 +42,5 @@ def clock(units):
 
 
 def is_tenth(done, total):
-    """Returns whether another tenth of the steps has just been done."""
+    """Returns whether the last step has completed another tenth of all steps."""
     return 10 * done // total != 10 * (done - 1) // total

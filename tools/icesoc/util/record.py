@@ -97,7 +97,7 @@ class Record:
         for field in self.fields.values():
             array = f"[{field.count}]" if field.count else ""
             lines.append(f"    {types[field.type]} {field.name}{array}; /* {field.text} */")
-        # A compiler with a different layout rejects this array, because its size is then -1.
+        # If a compiler uses a different layout, the size of this array is -1, which is an error.
         lines += [f"}} {self.name};", f"typedef char {self.name}_hasItsSize"
                   f"[sizeof({self.name}) == {self.size} ? 1 : -1];", ""]
         return "\n".join(lines)

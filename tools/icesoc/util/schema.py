@@ -27,12 +27,12 @@ def _validator():
 
 
 def description(schema):
-    """Returns a text about the values that a schema allows: the description in the schema."""
+    """Returns the description in a schema, which is a text about the allowed values."""
     return schema["description"]
 
 
 def limits(schema):
-    """Returns a text about the values that a schema allows, derived from its type and limits."""
+    """Returns a text about the allowed values, derived from the type and the limits in a schema."""
     if "enum" in schema:
         return " or ".join(map(str, schema["enum"]))
     if schema["type"] not in ("integer", "number"):
@@ -44,8 +44,8 @@ def limits(schema):
 
 
 def problems(value, schema, expected=description):
-    """Returns a sentence for each part of a value that does not fit its schema. `expected` is the
-    function that returns the text about the allowed values of a part of the schema."""
+    """Returns a sentence for each part of a value that does not fit its schema. `expected`:
+    function that returns a text about the allowed values, given a part of the schema."""
     errors = sorted(_validator()(schema).iter_errors(value), key=lambda e: list(e.absolute_path))
     return list(dict.fromkeys(_words(error, expected) for error in errors))
 

@@ -24,8 +24,8 @@ def tracked(source):
 
 
 def tree_state(source, folders):
-    """Returns the state of some folders as text, such as "bus hdl: 0123...". A measurement is
-    current as long as this text is the same as at the time of the measurement."""
+    """Returns the state of some folders as text, such as "bus hdl: 0123...". If the text has
+    changed since a measurement, the measurement is out of date."""
     files = sorted(f for f in tracked(source) if f.split("/")[0] in folders.split())
     def hashes(text, *words):
         return subprocess.run(["git", "hash-object", *words], input=text, text=True, cwd=source,
@@ -35,7 +35,7 @@ def tree_state(source, folders):
 
 
 def write_state(folder, state):
-    """Stores the state that a measurement had, in the folder of its results."""
+    """Stores the state of the tree at a measurement in the folder of the measurement's results."""
     write(Path(folder, "tree"), state + "\n")
 
 

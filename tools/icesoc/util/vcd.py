@@ -4,13 +4,14 @@ import dataclasses
 import re
 
 
-# names that GHDL and Yosys invent for wires
+# matches names that GHDL and Yosys invent for wires
 NAMELESS = re.compile(r"(^|[.])(n\d+(_o)?|_\d+_|\$\S*)$")
 
 
 @dataclasses.dataclass
 class Variable:
-    """A signal's declaration. Several declarations may have the same key."""
+    """The declaration of a signal. A signal with several names has several declarations, with the
+    same key."""
     key: str
     scopes: list  # names of the instances that contain the signal, the outermost first
     name: str
@@ -32,9 +33,9 @@ class Variable:
 
 
 def read(text):
-    """Returns the head of a VCD file, its variables, and a generator of (time, key, value). If the
-    key is None, a new time begins; every other item is a change. A value is the bits without "b",
-    or the text without "s"."""
+    """Returns the head of a VCD file, its variables, and a generator of (time, key, value). An item
+    with the key None begins a new time; every other item is a change. A value is the bits without
+    "b", or the text without "s"."""
     head, _, body = text.partition("$enddefinitions")
     variables, scopes = [], []
     for kind, rest in re.findall(r"\$(scope|upscope|var)\s+(.*?)\s*\$end", head, re.S):

@@ -27,12 +27,12 @@ _free = threading.BoundedSemaphore(MOST_CONNECTIONS)
 
 
 class Ended(Exception):
-    """The connection has ended, or the browser has broken the protocol."""
+    """The connection has ended, or the browser has violated the protocol."""
 
 
 def refusal(headers, query, host):
-    """Returns the reason why a connection is refused, or an empty text. host: the Host header
-    of the request; do_GET has already checked it."""
+    """Returns the reason if a connection must be refused, otherwise an empty text. host: the Host
+    header of the request, which do_GET has already checked."""
     if headers.get_all("Origin", []) != [f"http://{host}"]:
         return "a page of another origin"
     if not hmac.compare_digest(query.encode(), f"token={TOKEN}".encode()):
@@ -50,7 +50,7 @@ def exactly(stream, count):
 
 
 def read_frame(stream):
-    """Returns (opcode, payload) of a frame from the browser, which is masked."""
+    """Reads a masked frame from the browser. Returns (opcode, payload without the mask)."""
     first, second = exactly(stream, 2)
     size = second & 0x7F
     if size == 126:
@@ -111,7 +111,7 @@ def serve(handler, host, query, address):
 
 
 def exchange(handler, gateway):
-    """Passes bytes in both directions until one side ends."""
+    """Passes bytes in both directions until one side closes its connection."""
     browser, sending = handler.connection, threading.Lock()
 
     def send(opcode, data):

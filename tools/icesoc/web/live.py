@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""live: serves the page that shows a mission in progress, on the loopback interface only. As
-icesoc-page, it serves the page that calls the vehicles of a gateway.
+"""live: web server for two pages. The page of a flight shows a mission in progress, on the loopback
+interface only. The page of a gateway calls the gateway's vehicles; the installed program
+icesoc-page serves it.
 
 The page of a flight calls through this server (bridge.py). The page of a gateway calls the gateway
 directly through ws or wss, as any other client does.
@@ -13,8 +14,8 @@ import sys
 
 
 def refuse(kind, error, trace):
-    """Prints a message if memory is exhausted; Python may report this as a library that cannot be
-    loaded."""
+    """Prints an exception. If memory is exhausted, prints only a short message; Python may report
+    this case as a library that cannot be loaded."""
     if issubclass(kind, (MemoryError, ImportError)):
         print("icesoc-live: error: not enough memory for the page", file=sys.stderr)
     else:
@@ -45,7 +46,8 @@ from icesoc.web import bridge
 HERE = os.path.dirname(os.path.abspath(__file__))
 
 PATIENCE = 10  # seconds
-# bytes at the end of events.jsonl that a page shows; the file of a long flight is large
+# bytes; a page shows only this last part of events.jsonl, because the file of a long flight is
+# large
 NEWEST = 128 << 10
 MOST_VEHICLES = 32  # vehicles per modem on the ground
 FILES = {  # path -> MIME type, file
@@ -79,7 +81,8 @@ def contents(path):
 
 
 def rows(lines):
-    """Returns the JSON objects in lines; the last one may be incomplete."""
+    """Yields the JSON objects in lines. Skips any other line, such as a last line that is
+    incomplete."""
     for line in lines:
         try:
             row = json.loads(line)
@@ -103,15 +106,16 @@ def newest(path):
 
 
 def picture(folder, address):
-    """Returns the path of a vehicle's picture of this flight. It is the picture with corners as
-    soon as the vehicle has returned them."""
+    """Returns the path of a vehicle's picture of this flight. After the vehicle has returned the
+    corners, it is the picture with the corners drawn in."""
     paths = (f"{folder}/{name}{address}.png" for name in ("after", "before"))
     return next(filter(os.path.exists, paths), "")
 
 
 def blocks_by_slot(build):
     """Returns [(slot, name of its block, the block)] for the chip of a build folder."""
-    # Imported here, because the page of an installed gateway has no registers.
+    # Imported here, because the page of an installed gateway shows no registers and the package
+    # lacks this module.
     from icesoc.regs.model import Block, Wrong
     try:
         with open(os.path.join(build, "gen/chip.json")) as chip:
@@ -122,8 +126,8 @@ def blocks_by_slot(build):
 
 
 def register(block, word, value, seen):
-    """Returns a word with its name and its fields. A value written to EVENT is not shown as a
-    state, because each 1 in it clears an event."""
+    """Returns a word with its name and its fields. For a value written to EVENT, each bit that is 1
+    is shown as "cleared", because it clears an event."""
     common = ("ID", "EVENT", "MASK")
     found = next((r for r in block.registers if r.word == word), None) if block else None
     clears = word == 1 and seen == WRITTEN
@@ -138,7 +142,7 @@ def register(block, word, value, seen):
 
 
 def heading(folder):
-    """Returns the options of this flight (flight.json) that differ from their defaults."""
+    """Returns the options in flight.json that differ from their defaults, as text."""
     try:
         with open(SCHEMA) as schema, open(folder + "/flight.json") as file:
             fields, flight = json.load(schema)["properties"], json.load(file)
@@ -181,7 +185,7 @@ def state(folder, slots):
 
 
 def mark_viewed(folder, is_viewed=True):
-    """Writes or removes the file by which the flight detects that a browser shows its page."""
+    """Writes or removes the file from which the flight learns that a browser shows its page."""
     path = os.path.join(folder, objects.VIEWED)
     try:
         if not is_viewed:
@@ -194,8 +198,8 @@ def mark_viewed(folder, is_viewed=True):
 
 
 def open_page(address, folder):
-    """Opens the page in a browser. A browser that is still starting when the mission ends counts
-    as one that shows the page: it has some time to load the page (stay.py)."""
+    """Opens the page in a browser. If the browser is still starting when the mission ends, the
+    flight waits for it for some time (stay.py), because the file contains "opening"."""
     path = os.path.join(folder, objects.VIEWED)
     if folder:
         with open(path, "w") as file:
@@ -214,8 +218,8 @@ class Vehicle:
         self.name, self.protocol, self.port = found.groups()
 
     def policy(self, host):
-        """Returns the addresses to which the page at a host may connect. They include https,
-        because the page first sends a request by https, with which the browser selects its
+        """Returns the addresses to which a page from `host` may connect. For wss they include
+        https, because the page first sends a request by https; the browser then selects its
         certificate."""
         plain = {"ws": "http", "wss": "https"}[self.protocol]
         return f" {self.protocol}://{host}:{self.port} {plain}://{host}:{self.port}"
@@ -249,13 +253,14 @@ class Page(http.server.BaseHTTPRequestHandler):
     folder, slots, build, gateway = "", [], "", None
     names: tuple = ()  # names of this host
     vehicles: list = []  # vehicles of the gateway; empty for a flight
-    secret = ""  # its cookie
+    secret = ""  # value of the cookie without which the gateway refuses calls from a browser
     is_https = False
 
     def do_GET(self):
         port = self.server.socket.getsockname()[1]
         hosts = self.headers.get_all("Host", [])
-        # A page on another host may have a name that leads to this address (DNS rebinding).
+        # A request with another Host header may come from a page whose host name resolves to this
+        # address (DNS rebinding).
         if len(hosts) != 1 or not self.is_own(hosts[0], port):
             return self.send_error(HTTPStatus.FORBIDDEN)
         path, _, query = self.path.partition("?")
@@ -314,7 +319,7 @@ class Page(http.server.BaseHTTPRequestHandler):
                 "command": " ".join([COMMAND, *target])}
 
     def is_own(self, host, port):
-        """Returns whether a Host header names this server."""
+        """Returns whether `host`, a Host header, names this server."""
         return any(host in (f"{name}:{port}", *([name] if port in (80, 443) else []))
                    for name in self.names)
 
@@ -326,7 +331,8 @@ class Server(http.server.ThreadingHTTPServer):
     request_queue_size = 128
 
     def handle_error(self, *_):
-        # an error is ignored: the client has closed the connection or was silent for too long
+        # the error is ignored, because it only means that the client has closed the connection or
+        # was silent for too long
         pass
 
 

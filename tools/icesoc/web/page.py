@@ -7,8 +7,7 @@ from icesoc.util.errors import Stop
 
 
 def page_parts(libraries):
-    """Returns the style and the script with which the pages begin: libraries, colours, tables,
-    charts."""
+    """Returns (style, script) that all pages share: libraries, colours, tables, charts."""
     here = TREE / "tools/icesoc/web"
 
     def joined(ending):

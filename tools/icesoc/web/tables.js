@@ -47,14 +47,14 @@ function table(place, columns, rows, options = {}) {
     return;
   }
   // A column is as wide as the widest text of the first rows. If all columns together are too wide,
-  // each gets its share of the width, and texts break into lines.
+  // each gets a proportional share of the width, and texts are wrapped.
   const pen = document.createElement("canvas").getContext("2d");
   pen.font = `bold ${getComputedStyle(document.body).font}`;
   const widest = column => Math.max(12 + pen.measureText(column[0]).width, ...rows.slice(0, 100).map(row => content(row, column))
     .map(seen => pen.measureText((seen.querySelector?.("summary, div") ?? seen).textContent).width));
   const wides = columns.map(column => Math.max(Math.min(widest(column) + 32, 700), column[3]?.minWidth ?? 0));
   if (place.clientWidth >= 800) box.style.maxWidth = `${Math.ceil(wides.reduce((sum, wide) => sum + wide, 20))}px`;
-  const narrow = place.clientWidth < 600 ? 0.55 : 1; // on a narrow page, texts break sooner
+  const narrow = place.clientWidth < 600 ? 0.55 : 1; // narrower columns on a narrow page
   let marked;
   const mark = row => {
     if (!options.picked?.(row.getData().row)) return;

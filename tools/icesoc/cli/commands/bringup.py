@@ -20,8 +20,8 @@ from icesoc.util.errors import Stop
 
 CALL_TIMEOUT = 30  # s; time-out of a call
 BREAK_SECONDS = 1.0  # s; duration of the break on the serial line before the reset
-LOAD_TIMEOUT = 120  # s; OpenOCD or a call is ended after this time
-SILENCE = 60  # s; the report ends if no line of text arrives for this time
+LOAD_TIMEOUT = 120  # s; time-out of OpenOCD and of the program that makes a call
+SILENCE = 60  # s; the report ends if the console prints no line for this time
 CONSOLE = "/dev/ttyUSB0"
 
 
@@ -137,8 +137,8 @@ def started(words):
 
 
 def ended(words, meanwhile=None):
-    """Runs a program, and calls `meanwhile` while the program runs. Returns the reason why the
-    program has failed, or an empty text."""
+    """Runs a program, and calls `meanwhile` once while the program runs. Returns the reason if one
+    of them fails, otherwise an empty text."""
     say("$ " + shlex.join(map(str, words)))
     try:
         with subprocess.Popen([str(word) for word in words]) as process:

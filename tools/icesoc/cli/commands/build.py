@@ -76,7 +76,8 @@ def build_size(values):
     configured(values).ninja("size")
 
 
-# Pictures: width and height, the file of the page, its part, and the command that writes the page.
+# Picture -> width and height in pixels, page below build/, part of the page (#...), and the command
+# that writes the page.
 PAGES = {
     "utilisation": (1400, 1500, "synth/report.html", "#table1/u_modem", "synth report"),
     "regression": (1180, 1180, "regress/report.html", "", "regress"),
@@ -84,7 +85,7 @@ PAGES = {
 
 
 def small(path):
-    """Reduces a picture to as many colours as fit into 100 KB, at most 64."""
+    """Reduces a picture to at most 64 colours, or to fewer if its file would exceed 100 KB."""
     from PIL import Image  # setup installs this module
     picture = Image.open(path).convert("RGB")
     for colours in (64, 48, 32, 24, 16, 8):
@@ -111,8 +112,8 @@ VISIBLE = """(() => {
 
 
 def shoot(path, width, height, address):
-    """Saves a picture of a page, with the state of its timers after three seconds, and with the
-    text that it shows."""
+    """Saves a picture of a page as it looks after three seconds of its timers. The file also
+    contains the text in the picture."""
     with Browser(width=width, height=height) as browser:
         browser.open(address)
         browser.pass_time(3000)
@@ -146,8 +147,8 @@ CALL = """(async () => {
 
 
 def shoot_mission(path, profile, icesoc):
-    """Takes the picture that the default mission draws, and stores the mission's output in it as
-    text."""
+    """Flies the default mission, and saves the picture that the mission writes. The file also
+    contains the mission's output as text."""
     out, log = f"{profile}/run", f"{profile}/log"
     logged([*icesoc, "--out", out], log, "the mission failed")
     path.write_bytes(Path(out, "after.png").read_bytes())
@@ -156,8 +157,8 @@ def shoot_mission(path, profile, icesoc):
 
 
 def shoot_live(path, profile, icesoc):
-    """Takes a picture of the page of a flight in progress, after calls of the vision core with its
-    forms."""
+    """Saves a picture of the page of a flight in progress, after the page's forms have called the
+    vision core."""
     with open(f"{profile}/live.log", "w+") as log:
         flight = start([*icesoc, "--live", "--cpu", "m3", "--out", f"{profile}/live"], stdout=log,
                        stderr=log)
@@ -171,8 +172,8 @@ def shoot_live(path, profile, icesoc):
                 browser.open(address + "#objects")
                 for form in "setParameterA", "startProcessing", "getResult":
                     browser.run(CALL % form)
-                # after this time, in s, the page has drawn the corners and removed the marks of
-                # changed registers
+                # after one second, the page has drawn the corners and no longer marks the changed
+                # registers
                 time.sleep(1)
                 browser.shoot(path)
                 shown = browser.run(VISIBLE)

@@ -24,8 +24,7 @@ def completed(prefix, parsed_args, **_):
     """Returns the completions of a word: objects and operations, then parameters and their
     values."""
     values = {name.lstrip("-"): value for name, value in vars(parsed_args).items()}
-    # argcomplete does not pass the words before the current one, so they are taken from the shell's
-    # line
+    # argcomplete passes only the current word, so the earlier words are taken from the shell's line
     line = os.environ.get("COMP_LINE", "")[:int(os.environ.get("COMP_POINT") or 0)]
     before = line.partition(" call ")[2].split(" ")[:-1]
     words = [word for word in before if "." in word and not word.startswith("-")]
@@ -51,8 +50,8 @@ def choices(catalogue, words):
 
 
 def values_of(catalogue, each, operation, parameter):
-    """Returns the possible values of a parameter, if they can be listed; otherwise an empty value
-    to fill in."""
+    """Returns the possible values of a parameter. If they cannot be listed, returns one empty
+    value, so that the completion ends after NAME=."""
     its = catalogue.slices.get(parameter["type"])
     if its["kind"] == "enum":
         return [one["name"] for one in its["enumerators"]]

@@ -94,7 +94,8 @@ def interface_of(described):
 
 
 def fill(template, folder, name):
-    """Returns the text of a template with the names of the core filled in."""
+    """Writes a file from a template, with the names of the core filled in. Returns the path of the
+    file."""
     text = template.read_text().replace("@NAME@", name).replace("@MODULE@", "Cores")
     path = folder / re.sub("^NAME", name, template.name[:-len(".in")])
     path.write_text(text.replace("@TYPE@", "".join(word.capitalize() for word in name.split("_"))))
@@ -344,9 +345,9 @@ def wave(values):
 
 
 def users_of(name):
-    """Yields the cores with an input that core `name` drives. If core `name` is removed, an input
-    that only other cores may drive ("internal") becomes 0. Any other input would become a pin of
-    the chip, so its core is listed."""
+    """Yields the cores that need the core `name`: ip/cores.list connects one of their inputs to it,
+    and without it this input would become a pin of the chip. An input that the manifest calls
+    "internal" does not count, because it would become 0."""
     for line in Path("ip/cores.list").read_text().splitlines():
         user, *words = line.partition("#")[0].split() or [""]
         path = Path("ip", user, "core.toml")

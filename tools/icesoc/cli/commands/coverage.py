@@ -13,8 +13,10 @@ from icesoc.util.errors import Stop
 from icesoc.util.process import run, tool
 from icesoc.util.tree import tree_state, write_state
 
-COUNTED = "rtl|firmware|vhdl|models|slice|interop|e2e"  # labels of the tests that are counted
-# Tests that are left out: fuzzers have separate counts, and e2e.cores builds a separate chip.
+# labels of the tests whose coverage is measured
+COUNTED = "rtl|firmware|vhdl|models|slice|interop|e2e"
+# Tests that are left out: fuzzers have coverage counters of another kind, and e2e.cores builds a
+# separate chip.
 LEFT_OUT = "NOT_BUILT|^fuzz|^e2e.cores"
 
 
@@ -63,8 +65,8 @@ def coverage(values):
 
 
 def run_tests(work, values):
-    """Runs the tests and returns the folder of their counts. Failed tests are counted as well;
-    `regress` reports them."""
+    """Runs the tests and returns the folder with their coverage files. The coverage of failed tests
+    counts as well, because `regress` reports the failures."""
     points = work / "points"
     for folder in (points, work / "html"):
         shutil.rmtree(folder, ignore_errors=True)
@@ -98,7 +100,7 @@ def own(work, info, source, rooms):
 
 
 def of_host(work):
-    """Returns the counts of C and C++."""
+    """Returns a list with the info file about C and C++, as `lcov` does."""
     found = lcov(work, "all.info", "--capture", "--directory", work, "--ignore-errors",
                  "gcov,source")
     if not found:
@@ -107,7 +109,7 @@ def of_host(work):
 
 
 def of_rtl(work, points):
-    """Returns Verilator's counts of Verilog."""
+    """Returns a list with the info file about Verilog, from Verilator's counts."""
     counts = sorted(points.glob("*.dat"))
     if not counts:
         return []

@@ -91,8 +91,8 @@ def fly_mission(values):
 
 
 def with_board(build, board, *firmware):
-    """Returns the build folder that contains the simulator and the firmware of a board, after
-    building them; an empty name stands for the board of `build`."""
+    """Builds the simulator and the firmware of a board, and returns their build folder. If the name
+    of the board is empty, returns `build`."""
     if not board:
         return build
     say(f"building the simulator and the firmware of the board {board} ...")
@@ -102,8 +102,8 @@ def with_board(build, board, *firmware):
 
 
 def simulator(values, held, options, ground):
-    """Starts the simulator, which starts the program of the ground station as its child. In the
-    command of this program, the simulator replaces words such as {out}."""
+    """Starts the simulator, which starts the ground program `ground` as its child. In the command
+    line of the ground program, the simulator replaces words such as {out}."""
     flight.write(values, values.chip)
     return start([values.chip / "testbench/sim/icesoc-sim", "--flight",
                   Path(values.out) / "flight.json", *options, "--", "/usr/bin/python3", *ground],
@@ -130,7 +130,7 @@ def update(values, build, held):
         chip = values.chip
         run([pack, "vehicle", chip / "firmware/loader.elf", flight.firmware(values, chip), 1,
              signing, out / "flash.bin"])
-    # a test bitstream replaces the golden bitstream, which only ISE could make
+    # only ISE can make the golden bitstream, so a test bitstream is used instead
     if not (out / "fpga.bin").exists():
         run([build / "testbench/stm32/stand_in_bitstream", out / "golden.bin", 1, 10000])
         run([pack, "fpga", out / "golden.bin", 1, signing, out / "fpga.bin"])
@@ -182,8 +182,8 @@ def mission(values, build, held):
         return (out / LIVE).exists()
 
     try:
-        # The page is opened only after the simulator has accepted the options. Otherwise the
-        # printed address of the page would hide an error message.
+        # Opening the page also prints its address. This is done only after the simulator has
+        # accepted the options, because the address could hide an error message.
         if until(lambda: flown() != before, sim):
             shown = start([*page, *(["--open"] if opens(values) else [])], pass_fds=[held])
             if not until(lambda: sim.poll() is not None or flies_on(), shown):

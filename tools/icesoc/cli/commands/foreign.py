@@ -64,8 +64,8 @@ def foreign_core(values):
 
 
 def into_slot(source, slot, words, folder, ghdl):
-    """Runs new_foreign.py to write the folder of a slot. `words`: module, bus, further arguments,
-    and patterns of the core's files in the folder `source`."""
+    """Runs new_foreign.py, which writes the folder of a slot. `words`: the module, the bus, further
+    arguments, and patterns of the core's files, relative to the folder `source`."""
     top, bus, *more = words.split()
     rest = [part for word in more for part in (
         [word] if "=" in word or word.startswith("DEFINE:") else sorted(source.glob(word)))]
@@ -81,7 +81,7 @@ def put_and_fly(values, listed, known):
     if not missing:
         fetch("ghdl", folder / "ghdl5")
     shutil.rmtree(folder / "slots", ignore_errors=True)
-    chips = {}  # number of a chip -> the cores of this chip by name
+    chips = {}  # number of a chip -> {name: (core, folder of its slot)}
     for source, its in listed.items():
         for name, core in its["cores"].items():
             if name not in (values.cores or known) or not (

@@ -52,7 +52,7 @@ def test(values):
     some, tests, seed = values.folder or values.name or values.label, at_once(values), {
         "SEED": values.seed, "FRESH": "1" if values.fresh else ""}
     chosen = []
-    # CTest lists the tests with this label only if their configuration is selected
+    # the tests with this label belong to a configuration of CTest; -C selects it
     if values.label == "zeroc":
         build.ninja()
         chosen = ["-C", "zeroc", "-L", "zeroc", *(["-R", values.name] if values.name else [])]

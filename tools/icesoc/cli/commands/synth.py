@@ -116,7 +116,7 @@ def synthesise(program, jobs, base, folder):
     with contextlib.suppress(FileNotFoundError):
         cache.unlink()
     cache.symlink_to(
-        # shared, so that a design that is equal in both commits is synthesised only once
+        # both checkouts share the cache, so a design that is equal in both is synthesised only once
         Path("build/synth/cache").absolute())
     with open(folder / "build.log", "w") as log:
         # Status 1 means that the commit exceeds its budget, which does not matter here.
@@ -129,8 +129,9 @@ def named(base):
 
 
 def tests_of(names):
-    """Returns lines that compare the test results of two commits. The counts of a commit are from
-    its stored run with the most tests. The last lines list the tests whose results differ."""
+    """Returns lines that compare the test results of two commits. The counts for a commit are from
+    the run of this commit with the most tests in the history. The last lines list the tests whose
+    results differ."""
     kept = History().runs
     runs = [max((each for each in kept if each["commit"] == name), default={},
                 key=lambda each: each["passed"] + each["failed"]) for name in names]

@@ -36,7 +36,8 @@ function rowsOfText(text) {
     return text.trim().split(/\r?\n/).map(line => line.trim().split(/[,;\t ]+/));
 }
 
-// Returns a short number as a number, and any other text unchanged; Slice.check() rejects it.
+// Converts a decimal number of at most 15 digits, and returns any other text unchanged.
+// Slice.check() converts longer integers, and rejects other texts.
 const numberOf = text => /^[+-]?\d{1,15}(\.\d+)?(e[+-]?\d{1,3})?$/i.test(text.trim()) ? Number(text) : text.trim();
 
 function integerField(parameter, made, label) {
@@ -136,7 +137,8 @@ function tableField(parameter, id) {
         rows.push(row);
         return row;
     };
-    // Shows values as rows of the table; a long list is only shown as JSON.
+    // Shows values as rows of the table. A list with more than MOST_ROWS values is only shown as
+    // JSON.
     const show = values => {
         rows = [];
         const list = isDictionary && !Array.isArray(values) ? Object.entries(values) : values;

@@ -74,14 +74,16 @@ function showCalls(calls) {
         number(c.bytes_up, ''), number(c.bytes_down, '')])));
 }
 
-// Draws a lane for each direction of the air, for the calls, for each task of the firmware, and for
-// each slot that the processor accessed. In the lane of a slot, the height of a mark is the number
-// of accesses, and an event has full height. All marks of one kind in a lane are one SVG path; only calls have a title.
+// Draws a lane for each direction of the radio, for the calls of each side, for each task of the
+// firmware, and for each slot that the processor has accessed. In the lane of a slot, the height of
+// a mark is the number of accesses, and an event has full height. All marks of one kind in a lane
+// are one SVG path; only calls have a title.
 function showTimeline(state) {
     const events = state.events, svg = $('timeline'), width = svg.getBoundingClientRect().width || 1200, left = 120, height = 22;
     if (!events.length || !state.air) return;
     const end = state.air.ns, first = state.calls.find(c => c.ns)?.ns ?? end, chosen = $('span').value;
-    // The first call begins with the set-up of the modems, so only the end of the call is shown.
+    // The first call includes the set-up of the modems, so the span begins only shortly before its
+    // end.
     const span = chosen === 'call' ? 1.5 * (end - first) : Number(chosen) * 1e9, begin = span ? Math.max(0, end - span) : 0;
     const x = ns => left + (width - left - 10) * (ns - begin) / (end - begin);
     const lanes = [];
@@ -100,7 +102,9 @@ function showTimeline(state) {
         if (e.packet !== undefined) {
             const its = lane(e.from === 'ground' ? 'ground to UAV' : 'UAV to ground');
             if (e.lost) {
-                its.lost += bar(e.ns, 1, 3); // full height whatever the packet's length, with a cap
+                // the mark of a lost packet has full height and a cap; its height does not show the
+                // packet's length
+                its.lost += bar(e.ns, 1, 3);
                 its.cap += `M${(x(e.ns) - 2).toFixed(1)} -19h7v3h-7z`;
             } else its.mark += bar(e.ns, e.packet / 100);
         }
@@ -125,7 +129,7 @@ function showTimeline(state) {
 
 const hex = (value, digits) => '0x' + value.toString(16).padStart(digits, '0');
 // Returns a table of a slot's registers with their byte addresses in the slot. Registers that have changed within two seconds are marked.
-const known = new Map(); // slot and word: its value, and the time of its last change
+const known = new Map(); // "slot.word" -> value of the register, and time of its last change
 function registersOf(slot) {
     const table = element('table');
     for (const w of slot.words) {
@@ -139,7 +143,8 @@ function registersOf(slot) {
         const line = element('tr', undefined, 'fields'), cell = element('td');
         cell.colSpan = 4;
         for (const f of w.fields) {
-            const shown = typeof f.value === 'number' && f.value >= 0x10000 ? hex(f.value, 8) : f.value; // addresses in hexadecimal
+            // large values, such as addresses, in hexadecimal
+            const shown = typeof f.value === 'number' && f.value >= 0x10000 ? hex(f.value, 8) : f.value;
             const field = element('span', `${f.name} ${shown}`, f.value && f.value !== 'cleared' ? 'set' : '');
             field.title = f.doc;
             cell.append(field, ' ');

@@ -32,7 +32,8 @@ const vehicle = () => station.vehicles[Math.max(0, $('vehicles').querySelector('
 async function proxyOf(object) {
     const its = vehicle(), quoted = object.identity.replace(/[\\"]/g, '\\$&');
     if (its.tls && !its.isChosen) {
-        // A browser uses a client certificate for a WebSocket only if an https request has selected it.
+        // For a WebSocket, a browser uses a client certificate only if an earlier https request has
+        // selected it.
         await fetch(`https://${location.hostname}:${its.port}/`, {mode: 'no-cors', credentials: 'include'}).catch(() => {});
         its.isChosen = true;
     }
@@ -114,7 +115,7 @@ function shown(results, operation) {
     return list;
 }
 
-// Draws corners that a call returned, in place of the mission's corners.
+// Draws the corners that a call has returned, instead of the mission's corners.
 function draw(results) {
     const found = Object.values(results).find(value => value && Array.isArray(value.best));
     if (found) corners = {features: found.best.map(f => [f.x, f.y, f.score]), found: found.found};

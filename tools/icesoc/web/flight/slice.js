@@ -286,7 +286,7 @@ class Slice {
             throw error;
         }
     }
-    // Registers all exceptions and classes with Ice on its first call.
+    // On the first call, registers all exceptions and classes with Ice.
     declare(communicator) {
         if (this.isDeclared) return;
         this.isDeclared = true;
@@ -298,7 +298,7 @@ class Slice {
         }
     }
 
-    // Returns an object that passes each call of an interface's operations to `take`, as an event.
+    // Returns an object of an interface; it passes each call to `take` as an event.
     listener(interface_, take) {
         const slice = this;
         return new class extends Ice.Object {

@@ -21,7 +21,8 @@ LONGEST = 600
 
 
 def write(path, text):
-    """Writes a file and creates its folders. A script becomes executable."""
+    """Writes a file and creates its folders. A text that begins with #! becomes an executable
+    file."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)

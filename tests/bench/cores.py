@@ -46,9 +46,9 @@ def seconds(*words):
 
 
 def first_test(build, brief):
-    """Measures two durations: that of the core fir's test in a fresh clone, and the time that
-    Verilator itself takes for the same core with a minimal program. With --brief, runs the test in
-    this build instead of in a clone."""
+    """Measures how long the test of the core fir takes in a fresh clone, and how long Verilator
+    alone takes for the same core with a minimal program. With --brief, runs the test in this build
+    instead of in a clone."""
     source = Path(__file__).resolve().parents[2]
     with tempfile.TemporaryDirectory() as work:
         clone, words = Path(work, "icesoc"), []

@@ -28,7 +28,8 @@ HERE = "tcp -h 127.0.0.1"
 
 
 class Service:
-    """A program with an object adapter. It is traced, so that Ice prints its endpoint."""
+    """A program with an object adapter. Its options switch a trace on, in which Ice prints the
+    endpoint of the adapter."""
 
     def __init__(self, adapter, *words):
         self.process = subprocess.Popen([*words], text=True, stdout=subprocess.PIPE,

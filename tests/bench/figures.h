@@ -26,7 +26,7 @@ public:
         app.add_option("output", output_, "JSON file for the figures")->required();
         app.add_flag("--brief", brief, "measures just enough to show that the bench works");
     }
-    CLI::App app;       // command line of the bench, to which it can add options
+    CLI::App app;       // command line; a bench can add its own options
     bool brief = false; // true: the measurement is short, and its figures are not judged
 
     // Adds a figure and prints it. `limit` is a physical limit or a budget with which the figure is

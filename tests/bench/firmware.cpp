@@ -57,8 +57,8 @@ public:
         ground.replies.clear();
         until(ground.calling(calls), seconds, "the calls");
     }
-    // awake: number of board cycles in which the processor did not sleep; own: the part of them in
-    // which it computed; waiting: the part in which it waited for the FSMC.
+    // Numbers of board cycles so far. awake: the processor did not sleep; own: it computed;
+    // waiting: it waited for the FSMC.
     double awake() { return own() + waiting(); }
     double waiting() { return static_cast<double>(cpu().busCycles()) / warp; }
     double own() {

@@ -80,8 +80,8 @@ private:
     std::vector<Call> calls_; // current call to each peer
 };
 
-// Measures `grounds` ground stations that share `vehicles` vehicles; each station calls different
-// vehicles.
+// Measures `grounds` ground stations and `vehicles` vehicles. The vehicles are divided among the
+// stations, so that each vehicle is called by one station.
 void measure(const std::string& what, int grounds, int vehicles, bool isKeyed,
              double foundOutside) {
     std::vector<double> times;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// modem: measures the simulated time for setting up the modem, with several guard times, several
-// initial baud rates and each kind of modem: by the modem controller (from CONFIGURE to
-// CONFIGURED), and by the engine on the ground.
+// modem: measures the simulated time that the set-up of a modem takes, for several guard times,
+// several initial baud rates and each kind of modem. It measures the set-up by the modem controller
+// (from CONFIGURE to CONFIGURED), and that by the engine on the ground.
 
 #include "VModem.h"
 #include "bench.h"

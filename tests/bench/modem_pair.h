@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// modem_pair: simulates link layers over modem models and the air between them, event by event. All
-// ends are like a ground station: link layer, pacer, and a serial line at 111,111 baud.
+// modem_pair: simulates link layers over modem models and the air between them, event by event.
+// Each end has a modem, a serial line, and one link layer for each peer, like the engine on the
+// ground. The lines have 111,111 baud, unless the options of a modem set another rate.
 
 #pragma once
 
@@ -135,7 +136,7 @@ public:
         return std::all_of(peers_.begin(), peers_.end(),
                            [this](const auto& p) { return isUp(p->number); });
     }
-    // Advances this end to `now`; returns the time at which it must be called next.
+    // Advances this end to `now`. Returns the time at which this function must be called again.
     uint64_t advance(uint64_t now) {
         now_ = now;
         modem.advance(now);

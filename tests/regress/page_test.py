@@ -164,8 +164,8 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
 
     def test_blocks(self):
         """A test, a module and a file belong to the block of their folder. The last green commit of
-        a block is that of the last run in which at least one of its tests ran and none of them was
-        failing."""
+        a block is the commit of the last run in which at least one test of the block ran and no
+        test of the block was failing."""
         for file in ("hdl/fifo/fifo.v", "hdl/fifo/fifo_proof.vh", "hdl/wire/wire_in.v",
                      "ip/fir/fir.v", "sw/link/test/l.c"):
             write(file, "\n")

@@ -4,8 +4,9 @@
 #        [ghdl]
 # Checks the output of slice2c for a Slice file. The end of the file contains the expected results:
 # after `//> ` the messages of the compiler; after `//= ` lines of the generated header, of the
-# server's C code, or of the registers. Each kind must appear in this order. The source line and the
-# caret of a message are only compared if the file contains them. UPDATE_GOLDENS=1 rewrites the
+# server's C code, or of the registers. The messages must be equal and in this order. The other
+# lines must occur in this order, possibly with more lines between them. The source line and the
+# caret of a message are compared only if the file contains them. UPDATE_GOLDENS=1 rewrites the
 # messages.
 #
 # golden: the generated C causes no warnings.

@@ -132,7 +132,8 @@ public:
         if (!isGround_)
             setKey(peer, keys_[peer] - 1, false);
     }
-    // Runs one step of the program: sends a message to each peer with the probability `rate`.
+    // Runs one step of the program: sends a message to each peer with the probability `rate`, and
+    // now and then becomes busy or stops being busy.
     void work(double rate) {
         for (size_t peer = 0; peer < peers(); ++peer)
             if (out_[peer] && isUp(peer) && random_.chance(rate))

@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-// Checks that a link delivers messages as it promises. Functions that return a string return an
-// empty string if the promise was kept, otherwise an error text.
+// Functions that return a string return an empty string if the link has kept its promise, otherwise
+// an error text.
 class DeliveryCheck {
 public:
     using Bytes = std::vector<uint8_t>;

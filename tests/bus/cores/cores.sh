@@ -112,7 +112,8 @@ offset='//*[local-name()="register"][1]/*[local-name()="addressOffset"]'
 [ "$(xmllint --xpath "string($pages$offset)" "$out/icesoc.ipxact.xml")" = "'h44" ] ||
     fail 'IP-XACT has not the words behind PAGE'
 is PIN_CAMERA_SEEN_O 0xB
-# The identity of the core; a core without its own servant has the general servant for registers.
+# A core has the identity that the list gives it. A core without its own servant (camera) has the
+# general servant for registers.
 has soc_cores.c '"eye"' '{"camera", MAP_SLOT_CAMERA, .*core_camera_start' \
     'core_camera_table\[\] = {MOVER_TABLE}'
 accepted unwired 'mover

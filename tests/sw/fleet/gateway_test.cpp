@@ -412,8 +412,8 @@ TEST_F(Gateway, KeepsOfACallWhatIceBridgeKeepsAndFacets) {
     EXPECT_EQ(tryAll(plain(), endpoint()), tryAll(plain(), vehicle));
 }
 
-// Programs have a session with the router, and the router calls the gateway on its machine, as in
-// the drawing in docs/security.md.
+// A program opens a session with the router. The router passes the program's calls to the gateway,
+// which runs on the same machine as the router (see the drawing in docs/security.md).
 TEST_F(Gateway, IsReachedThroughAGlacier2Router) {
     start();
     Server router({"glacier2router", "--Glacier2.Client.Endpoints=tcp -h 127.0.0.1",

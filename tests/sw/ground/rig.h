@@ -204,8 +204,8 @@ private:
         }
     }
 
-    // Returns whether simulated time must wait for the engine. It does not wait if the engine's
-    // thread itself waits for the test.
+    // Returns whether simulated time must still wait for the engine. The wait ends after 5 s of
+    // real time, because the engine's thread may itself be waiting for the test.
     bool goesOn() const {
         return !stop_ && std::chrono::steady_clock::now() - waiting_ < std::chrono::seconds(5);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// wire: a serial port with a link layer at the other end and no modem, as fast as bytes are read;
-// and helpers for the sockets of programs.
+// wire: a serial port that leads to a link layer directly, without a modem. It transfers bytes as
+// fast as they are read. Also contains helpers for the sockets of programs.
 
 #pragma once
 

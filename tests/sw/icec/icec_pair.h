@@ -123,7 +123,7 @@ protected:
     }
     Side& here() { return *here_; }
     Side& there() { return *there_; }
-    // Lets the other side process the messages that it has received.
+    // Lets both sides process the messages that they have received, until none is left.
     void settle() {
         while (Ice_Communicator_poll(&there_->ic, 0) == ICE_OK ||
                Ice_Communicator_poll(&here_->ic, 0) == ICE_OK)

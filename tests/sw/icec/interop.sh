@@ -3,8 +3,8 @@
 # interop: command -- command ...
 #
 # Starts the commands in order. Each command prints its port, which becomes the last argument of the
-# next command. The exit status is that of the last command; if the last command ends the first one,
-# it is that of the first command.
+# next command. If the last command fails, its exit status is returned. Otherwise the script waits
+# for the first command, which the last command must end, and returns its exit status.
 set -eu
 work=$(mktemp -d)
 pids=''

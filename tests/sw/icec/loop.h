@@ -69,7 +69,7 @@ public:
     U32 nowMs() const { return clock_->ownMs_; }
 
     bool open[ICE_CONNECTIONS] = {};
-    bool silent = false; // true: connections can be opened, but the peer does not answer
+    bool silent = false; // true: without a peer, connections can be opened, but nothing answers
     // Called with every message that is sent.
     std::function<void(const Bytes& message)> tap;
 

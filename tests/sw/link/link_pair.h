@@ -21,7 +21,8 @@ using Bytes = std::vector<uint8_t>;
 // messages, each with its channel and its content
 using Messages = std::vector<std::pair<int, Bytes>>;
 
-// Faults of the radio, each with its probability for a packet.
+// Faults of the radio: probabilities with which a packet is lost, duplicated or corrupted; and the
+// delay of each packet.
 struct Weather {
     double loss = 0, duplication = 0, corruption = 0;
     uint32_t delayUs = 8000;

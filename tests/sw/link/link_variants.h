@@ -137,7 +137,7 @@ protected:
     Random random{testSeed() * 77 + GetParam().seed};
 
 private:
-    // last id that was used for each kind of message
+    // last id that was used, by sender, channel and kind of message
     std::map<std::tuple<const Side*, int, uint32_t>, uint32_t> ids_;
 };
 

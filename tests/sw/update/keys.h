@@ -146,8 +146,9 @@ private:
 };
 
 // Updates vehicles that `fresh` makes, `tries` in total. In each update the power is cut at one of
-// the first `all` operations (a different one in each try), and then at later operations that are
-// drawn at random. `wentBack` returns true if the last cut led to the previous version.
+// the first `all` operations; in the first `all` tries, at each of them once. In most updates the
+// power is cut a second time, at a later operation that is drawn at random. `wentBack` returns true
+// if the last cut led to the previous version.
 template <class Fresh, class WentBack>
 void cutAtEach(uint32_t version, uint64_t all, uint64_t tries, Fresh fresh, WentBack wentBack) {
     uint64_t cuts = 0, back = 0;

@@ -51,8 +51,8 @@ protected:
         start();
         return answerTo(line + "\n");
     }
-    // Checks the words in which the firmware stores its key (uav_keys.h) and its address. The key
-    // is empty for a vehicle that accepts links without a key.
+    // Returns true if the battery-backed memory contains this key (uav_keys.h) and this address. An
+    // empty `key` means that the vehicle accepts links without a key.
     bool has(const std::vector<uint8_t>& key, uint32_t address = 0x2A) {
         std::array<uint32_t, 4> words = {};
         for (size_t i = 0; i < key.size(); ++i)

@@ -106,7 +106,8 @@ TEST_F(Mac, AResetEndsTheTries) {
     EXPECT_EQ(across("y", 30 * ms), "y");
 }
 
-// number of tries without an acknowledgement, for each RR and MM; RR needs the maker's header
+// number of tries for a packet if every try is lost, for several values of RR and MM; RR has an
+// effect only with the maker's header
 struct Tries {
     uint32_t rr, mm;
     unsigned tries;

@@ -35,7 +35,8 @@ public:
         provide(64, 64, [](uint32_t i) { return i % 8 < 3 && i / 64 % 8 < 3 ? 150 : 100; });
     }
     // Begins a flight with these steps. Returns the function that the simulated machine calls to
-    // ask whether it must continue; the function returns true until the steps are done.
+    // ask whether it must continue; the function returns true until the steps are done, or until 60
+    // s have passed.
     std::function<bool()> flight(std::vector<Script> steps) {
         soc.reset(true);
         ground.start();

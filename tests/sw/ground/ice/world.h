@@ -66,7 +66,7 @@ public:
         const size_t at = heard_;
         return hear(after) ? std::atoi(said_.c_str() + at) : -1;
     }
-    // Ends the server. Returns its exit status.
+    // Ends the server. Returns its exit status; -1 if a signal killed it.
     int stop() {
         kill(pid_, SIGINT);
         return wait();

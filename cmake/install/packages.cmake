@@ -5,8 +5,8 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME icesoc)
 set(CPACK_PACKAGE_VENDOR "The IceSoC authors")
 set(CPACK_PACKAGE_CONTACT "The IceSoC authors <packages@icesoc.example>")
-# ./icesoc package sets DEB_VERSION to the version of the commit. apt does not replace an installed
-# package by another one of the same version.
+# ./icesoc package sets DEB_VERSION, which differs for each commit. Otherwise apt would not replace
+# an installed package, because it ignores a package with the same version.
 set(DEB_VERSION "" CACHE STRING "version of the Debian packages; default: newest in CHANGELOG.md")
 set(CPACK_PACKAGE_VERSION ${ICESOC_VERSION})
 if(DEB_VERSION)

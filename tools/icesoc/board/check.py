@@ -208,7 +208,7 @@ def levels(board: Board):
 
 
 def clocks(board: Board):
-    """Finds oscillators with a frequency from which the clock of the CPU or of the chip cannot be
+    """Finds oscillators with a frequency from which the CPU clock or the chip clock cannot be
     derived."""
     hse, clock = board.facts["mcu"].get("hse_hz"), board.facts["fpga"].get("clock_hz")
     if hse is None:
@@ -224,13 +224,14 @@ def clocks(board: Board):
 
 
 def multiplier(clock):
-    """Returns C3_CLKFBOUT_MULT, the factor by which MIG's PLL multiplies this clock to get 600 MHz.
-    Returns None if no factor fits."""
+    """Returns C3_CLKFBOUT_MULT, the factor by which MIG's PLL multiplies a clock of `clock` Hz to
+    get 600 MHz. Returns None if no factor fits."""
     return 600_000_000 // clock if 600_000_000 % clock == 0 else None
 
 
 def skew(board: Board):
-    """Finds data and address lines whose delay differs too much from the strobe's."""
+    """Finds lines of the FSMC that are so much faster than NWE that the data changes before NWE
+    arrives."""
     strobe = board.net("NWE")
     limit = 5.0  # ns; the data stays on the pads for 5 ns after the strobe (synth/ise/chip.ucf)
     for net in board.nets:

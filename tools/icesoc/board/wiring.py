@@ -44,7 +44,8 @@ def wires(board: Board):
 
 
 def remark(net: Net):
-    """Returns the remark about a wire that needs special attention."""
+    """Returns the remark about a wire: its series resistor, length, pull resistor and note. Empty
+    if it has none of these."""
     words = [f"{net.get('series_ohm')} Ω in series" if net.get("series_ohm") else "",
              f"{net.get('length_mm')} mm" if net.get("length_mm") else "",
              f"pull-{net.get('pull')}" if net.get("pull") else "", net.get("note", "")]

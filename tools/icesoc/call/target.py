@@ -85,7 +85,7 @@ def of_settings(values):
 
 def of(values):
     """Returns the target that the options name. Without such an option, the target is the flight in
-    progress; without a flight, a vehicle in the installed settings."""
+    progress; for the installed program, it is a vehicle in vehicles.conf."""
     given = [name for name in ("flight", "device", "gateway", "locator") if getattr(values, name)]
     if len(given) > 1:
         raise Stop(f"{', '.join('--' + name for name in given)} exclude each other; give only one "

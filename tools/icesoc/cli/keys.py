@@ -96,7 +96,8 @@ def check_authority(authority, signs):
 def sign(name, cert, key, constraint, *by):
     # An unescaped plus sign or slash would begin another part of the subject.
     name = name.replace("\\", "\\\\").replace("+", "\\+").replace("/", "\\/")
-    # the machine's openssl.cnf may make every certificate an authority
+    # a separate openssl.cnf is used, because the machine's file may make every certificate an
+    # authority
     settings = cert.with_name("openssl.cnf")
     settings.write_text("[req]\ndistinguished_name = name\n[name]\n")
     run(["openssl", "req", "-x509", "-utf8", "-config", settings, "-newkey", "ec", "-pkeyopt",

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 """probe: captures signals of a vehicle's FPGA by radio, as a waveform (VCD) with the simulator's
-names. Stock ZeroC Ice.
+names. It uses stock ZeroC Ice.
 
-    probe.py --device /dev/ttyUSB0 --plugin build/main/ground --trigger u_fir.sent=1 --after 500
-    capture.vcd
+    probe.py --device /dev/ttyUSB0 --plugin build/main/ground --trigger u_fir.sent=1 \\
+        --after 500 capture.vcd
     gtkwave capture.vcd
 
-The recorded signals are in the probe's line in ip/cores.list; --map is a file from the build.
-Times are counts of the chip clock, modulo 2**32 clocks.
+The recorded signals are in the probe's line in ip/cores.list; --map is gen/chip.json in the build
+folder of the vehicle's chip. Times count chip clocks, modulo 2**32.
 """
 
 import argparse

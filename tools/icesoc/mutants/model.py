@@ -139,7 +139,7 @@ def main():
             if file := mutated(arguments, folder):
                 kept = [a for a in arguments if not re.match(r"-G|.*\.v$|-Wall$", a)]
                 given = dict(zip(arguments, arguments[1:]))
-                # the build reads the model's file again (cmake/files.cmake)
+                # the file is kept, because the build reads it again (cmake/files.cmake)
                 os.makedirs(given["--Mdir"], exist_ok=True)
                 file = shutil.copy(file, given["--Mdir"])
                 status = subprocess.call(["verilator", *kept, "-Wno-fatal", "-Wno-lint",

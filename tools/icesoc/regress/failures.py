@@ -39,12 +39,12 @@ class Failure:
     reason: str  # line of the log with the error
     # the reason without its numbers; failures with the same bucket probably have the same cause
     bucket: str = ""
-    repeat: str = ""  # one command
+    repeat: str = ""  # command that repeats the test
     # place of the failure as printed by GoogleTest, such as "tests/sw/link/link_test.cpp:185", or
     # ""
     place: str = ""
     changed: str = ""  # text about files that have changed since the test passed, or ""
-    log: str = ""  # file
+    log: str = ""  # path of the log
     wave: str = ""  # path of an FST or VCD file, or ""
     about: str = ""  # text that names the relevant signals: the assertion of a proof, or the reason
     scope: str = ""  # instance to look at first, such as "u_window.u_wrapper", or ""

@@ -254,7 +254,7 @@ class Regression:
                           flush=True)
             if not interrupted:
                 add_waves(failures, known, o.source, o.build, o.jobs, o.waves)
-        except Interrupted as stop:  # the final report is then written without waveforms
+        except Interrupted as stop:  # the report is still written, without waveforms
             interrupted = stop
             end_descendants()
         with signals_held():

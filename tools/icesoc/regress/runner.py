@@ -144,7 +144,7 @@ def end_hang(process, build):
     below = [process, *descendants(process)]
     stacks = ""
     for pid in below:
-        # the process may have ended because an earlier process was ended
+        # ending an earlier process may also have ended this one
         with contextlib.suppress(OSError):
             program = os.readlink(f"/proc/{pid}/exe")
             if not program.startswith(f"{build}/"):

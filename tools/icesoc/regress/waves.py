@@ -66,7 +66,8 @@ def scene_of(failure, test):
 
 
 def instance_in(slot, build):
-    """Returns the instance name of the core in a slot, from the chip's list of cores."""
+    """Returns the instance name of the core in a slot, from the generated soc_cores.vh, or of the
+    modem controller if the slot has no core."""
     cores = build / "gen/soc_cores.vh"
     match = re.search(rf"(u_\w+) \([^;]*bus_valid_i\(slot_valid\[{slot}\]\)",
                       cores.read_text() if cores.exists() else "")

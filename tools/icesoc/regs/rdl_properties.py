@@ -10,8 +10,8 @@ TAKEN = {
     "name", "desc", "ispresent", "fieldwidth", "reset", "sw", "hw", "woclr", "woset", "onwrite",
     "singlepulse", "hwclr", "hwset", "swmod", "swacc", "regwidth", "accesswidth", "alignment",
     "addressing", "memory_bytes"}
-# Properties without effect here: texts for verification, hints for other tools, and states that our
-# registers have in any case.
+# Properties without effect here: texts for verification, hints for other tools, and behaviour that
+# our registers always have.
 WITHOUT_EFFECT = {"donttest", "dontcompare", "hdl_path", "hdl_path_slice", "hdl_path_gate",
                   "hdl_path_gate_slice", "encode", "littleendian", "lsb0", "internal"}
 # Values with which a property has no effect for software; any other value is an error. A property

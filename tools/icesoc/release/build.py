@@ -63,8 +63,7 @@ def read_commit(tree):
 
 
 def number(tree, commit, seconds, files):
-    """Returns the version of a commit. Fails if the version is already released as another
-    commit."""
+    """Returns the version of a commit. Fails if the version's tag is at another commit."""
     text = files["CHANGELOG.md"].decode()
     newest = version.newest(text)
     if version.unreleased(text):

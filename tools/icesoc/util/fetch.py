@@ -2,11 +2,12 @@
 """fetch: downloads files that the build needs and Debian's packages do not contain, without
 changing the system.
 
-Usage: fetch.py THING FOLDER    puts THING into FOLDER; `fetch.py --help` lists the things A
-download is rejected if its checksum differs from the checksum that is listed here. Downloads are
+    fetch.py THING FOLDER    puts THING into FOLDER; `fetch.py --help` lists the things
+
+A download is rejected if its checksum differs from the checksum that is listed here. Downloads are
 kept in ${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network. ICESOC_NPM is a
 mirror of registry.npmjs.org, ICESOC_RAW a mirror of raw.githubusercontent.com. Exit status 77:
-there is no network, and only optional parts need this file.
+there is no network, and only optional parts need this thing.
 """
 
 import argparse

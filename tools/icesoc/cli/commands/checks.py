@@ -39,7 +39,7 @@ def kinds(values=None):  # pylint: disable=unused-argument
 
 @choices.expecting("a test program that is built with sanitizers")
 def guarded(values=None):  # pylint: disable=unused-argument
-    """Returns the names of the test programs for check sanitizers."""
+    """Returns the test programs that `check sanitizers` accepts."""
     return list(GUARDED)
 
 
@@ -306,7 +306,7 @@ def bench(values):
         targets = [target for name in values.only for target in benches[name].targets]
         if targets:
             build.ninja(*targets)
-            benches = benches_of(build)  # CTest lists the command of a program after its build
+            benches = benches_of(build)  # after the build, CTest lists the commands of the programs
         return measure({name: benches[name] for name in values.only}, folder)
     build.ninja("bench_programs", "regress", "size")
     shutil.rmtree(folder, ignore_errors=True)

@@ -107,11 +107,11 @@ REPOSITORY = Option("repository", FOLDER, "separate repository for the core inst
 
 
 def put_into_repository(room, name):
-    """Adds missing files to the repository of the user's cores. Workflows are copied from this
-    tree."""
+    """Adds a core's line to cores.list of the user's repository, and adds files that the repository
+    lacks. Workflows are copied from this tree."""
     room = Path(room).absolute()
     origin = output(["git", "remote", "get-url", "origin"], check=False, stderr=-3).strip()
-    origin = re.sub("(?<=://)[^/@]*@", "", origin)  # without the user name and the password
+    origin = re.sub("(?<=://)[^/@]*@", "", origin)  # removes the user name and the password
     commit = output(["git", "rev-parse", "HEAD"], check=False, stderr=-3).strip()
     made = (TEMPLATE / "repository/Makefile.in").read_text()
     made = made.replace("@URL@", origin or os.getcwd()).replace("@COMMIT@", commit or "HEAD")
@@ -169,8 +169,8 @@ def new(values):
     if values.repository:
         say(written)
         return put_into_repository(room, name)
-    # CMake runs now, although a later build would find the new folder by itself: if CMake fails
-    # now, the folder can still be removed.
+    # A later build would also run CMake. It runs now, because if it fails, the new folder can still
+    # be removed.
     if (build / "build.ninja").exists():
         try:
             logged(["cmake", build.folder], build / "new-ip.log",
@@ -265,8 +265,8 @@ def ports(build, core):
 
 
 def rows_of(fst, build, core):
-    """Returns the rows of GTKWave's save file: the ports, then the signals of the first instances
-    below them, each instance under a comment with its name."""
+    """Returns the rows of GTKWave's save file, at most 200: the ports, then the signals of the
+    instances, outermost first. The signals of an instance follow a comment with its name."""
     _, signals, _ = vcd.read(output(["fst2vcd", "-f", fst], check=False, stderr=-3)
                              if shutil.which("fst2vcd") else "")
     rows, most, last = [*ports(build, core)], 200, []

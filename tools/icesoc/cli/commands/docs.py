@@ -48,7 +48,7 @@ def docs(values):
 
 TUTORIAL = "docs/tutorial.md"
 CHIP = Path("ip/cores.list")
-# last command of the tutorial that creates the tree; the commands up to it are skipped
+# the tutorial's commands up to this one create a clone; they are skipped
 BEGIN = "cd icesoc"
 MADE = ["LowPass.ice", "ip/low_pass"]
 

@@ -42,7 +42,8 @@ def regress_with_fault():
 
 
 def figures_of_synth(report):
-    """Returns the estimated LUT sites of Table I, and the ranges of sites and slices."""
+    """Returns {name: figure} for the LUT sites and slices of the designs of Table I, with the range
+    of each."""
     found = {}
     entries = {entry["name"]: entry for entry in measured.read(report)["entries"]}
     for name, design in ("table1", "table1"), ("flown", "table1_flown"):

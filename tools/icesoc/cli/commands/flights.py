@@ -24,8 +24,7 @@ from icesoc.util.process import end, run, start, tool, until, wait
 
 FROM = Option("from", SECONDS, "start of the waveform, simulated time")
 TO = Option("to", SECONDS, "end of the waveform, simulated time")
-DESCRIPTORS = 64  # file descriptors per process; the program of the ground station needs about
-                  # thirty
+DESCRIPTORS = 64  # file descriptors per process; the ground program needs about thirty
 NETLIST = Option("netlist", SWITCH, "fly the netlist synthesised by Yosys; the chip runs at 2 "
                                     "MHz, and no idle clock cycles are skipped")
 NETLIST_HZ = 2000000
@@ -248,7 +247,7 @@ def replay(values):
     the interrupt and the function that the processor executes.
     """
     try:
-        FLIGHT.read(values.replay)  # the default folder has not been checked yet
+        FLIGHT.read(values.replay)  # only a folder given by the user has already been checked
     except ValueError as error:
         raise Stop(str(error), 2) from None
     span = values.given & {"from", "to"}

@@ -47,7 +47,7 @@ module line_tester #(
     localparam MODEM = 50, MODEM_PINS = 5, EARLY = 6;
     localparam SENT = 17 + 2 * LINES, ANSWER = 40 + LINES + MODEM_PINS;
 
-    // ---- clock of the board: the upper bit of the divider changes once per unit
+    // ---- clock of the board: the upper bit of the divider changes once per unit of the count
     reg  [UNIT_LOG2:0] divider = 0;
     always @(posedge clk_i) divider <= divider + 1;
     wire       slow;

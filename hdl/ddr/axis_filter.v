@@ -254,8 +254,8 @@ module axis_filter #(
             // The operation ends when its last burst is filled up and in memory.
             assert (closing == $past(given && ends) &&
                     (!done_o || empty || $past(closing || closed)));
-            // the number of bytes is correct: the words before the last word are complete, and the
-            // last word counts the bytes up to the last enabled byte
+            // The number of bytes is correct: each word before the last word counts completely; in
+            // the last word, the bytes up to the last enabled byte count.
             if ($past(given && ends))
                 assert (over || bytes == $past(bytes) + $past(out_bytes));
         end

@@ -57,8 +57,8 @@ module mcb_backend #(
     assign rd_data_o   = mcb_rd_data_i;
     assign mcb_rd_en_o = rd_valid_o && rd_ready_i;
 
-    // `free` is the number of words in the read FIFO that are not reserved by a read, 0..64. To
-    // subtract n, ~(n - 1) is added.
+    // `free` is the number of places in the read FIFO that are not reserved by a read, 0..64. To
+    // subtract n, the code adds ~(n - 1), which is -n.
     reg  [6:0] free;
     wire       take = mcb_cmd_en_o && cmd_read_i;
     wire [7:0] next = {free, 1'b1} + {take ? {2'b11, ~cmd_last_i} : 7'd0, mcb_rd_en_o};

@@ -111,9 +111,9 @@ module fsmc_memory #(
     wire [PAIR-1:0]       rd_pair  = rd_addr_async_i[REGION_LOG2+1:BLOCK_LOG2+3];
     wire [UPPER-1:0]      rd_upper = rd_addr_async_i[ADDR_BITS-1:REGION_LOG2+2];
 
-    // A carry chain compares the tags, because this is the shortest path to NWAIT. The addition
-    // below carries if all its bits are 1. Each of these bits is 1 if three bits of the region, or
-    // one bit of the pair number, are equal; it takes one LUT.
+    // A carry chain compares the tags, because this is the shortest path to NWAIT. Each bit of
+    // same_pair and same_upper takes one LUT: it is 1 if one bit of the pair number, or three bits
+    // of the region, are equal. If all these bits are 1, the addition of 1 below gives a carry.
     localparam TRIPLES = (UPPER + 2) / 3;
     wire [3*TRIPLES-1:0] moved = {{(3*TRIPLES-UPPER){1'b0}}, rd_upper ^ upper};
     wire [TRIPLES-1:0]   same_upper;

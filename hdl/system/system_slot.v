@@ -52,8 +52,8 @@ module system_slot #(
 
     assign irq_o = |lines;
 
-    // hash of the slot whose number is being written to CONTRACT; the write stores it in
-    // `contract`, so that a read returns a register
+    // hash of the slot whose number is being written to CONTRACT; the write stores the hash in the
+    // register `contract`, which a read returns
     reg [31:0] asked;
     integer    s;
     always @* begin

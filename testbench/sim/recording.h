@@ -93,9 +93,9 @@ private:
     uint64_t hash_ = 0xCBF29CE484222325;
 };
 
-// A line between a modem and its real line: passes on all bytes and records them. A line of the
-// file is written when the next line begins, so the recording is usable even if the simulator is
-// killed.
+// A serial line that is inserted between a modem and its real line: passes on all bytes and records
+// them. A line of the file is written when the next line of the file begins, so the recording is
+// usable even if the simulator is killed.
 class RecordedLine : public SerialLine, SerialClient {
     using json = nlohmann::json;
 

@@ -34,7 +34,7 @@ constexpr KindName kinds[] = {{"open", WireFault::Open, ""},
                               {"shifted", WireFault::Shifted, ""},
                               {"unpowered", WireFault::Unpowered, ""}};
 
-// Wires that share their possible faults. The number of a wire follows the name; there are `count`
+// Wires with the same possible faults. The number of a wire follows the name; there are `count`
 // numbers, starting with `first`. A count of 0 means one wire without a number.
 struct Group {
     const char* name;

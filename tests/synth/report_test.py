@@ -250,7 +250,8 @@ class Cases(Script):
         self.said = re.sub(r"\s+", " ", re.sub("<[^>]*>", " ", seen))
         self.has("Tabulator and uPlot could not be fetched. With a network")
         self.lacks("NaN|undefined")
-        self.has("as routed [0-9]+ to [0-9]+: nine of ten of [0-9]+ published designs lie in this",
+        self.has(r"after routing: [0-9]+ to [0-9]+ MHz; nine of ten published designs \(of "
+                 r"[0-9]+\) are in this range",
                  r" flip-flops 11 .* 50 \(0.3 %\) .* wide 1 .* store \d+ .* share of LUTs "
                  r"0.2 %, slices \d+ to \d+, .* ecp5 LUT \d+, ecp5 FF \d+ .* pair 15 .* "
                  r"u_store .* read_addr_i 5 0 project/hdl/blocks/store.v:12 .* clk_i 11 12 [0-9.]+ "

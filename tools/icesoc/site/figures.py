@@ -72,7 +72,8 @@ PLACES = {
     "docs/hw-mapping.md": ["({soc.lut} LUTs, {soc.ff} flip-flops)"],
     PICTURE.format("utilisation"): [
         "{soc.lut} LUT ", " {soc.ff} FF ", " {soc.slices} slices ",
-        " {soc.mhz} MHz 100 are wanted; the netlist's orders have {soc.slowest} to {soc.fastest} ",
+        " {soc.mhz} MHz required: 100 MHz; 5 mappings with different port orders: {soc.slowest} to "
+        "{soc.fastest} MHz ",
         "flip-flops {table1.ff} ", "LUTs of the netlist {table1.lut} ",
         "LUTs and route-throughs, before map pairs them {table1.through} ",
         "LUT sites, map's average pairing (estimate; as mapped {table1.low}-{table1.high}) "

@@ -120,8 +120,9 @@ double limitOf(const std::string& what, const RfWeather& weather, bool isEncrypt
     return most;
 }
 
-// Returns the smallest share of the limit that the link must reach in API mode. For both
-// directions, the share is 5 percentage points lower than for one direction.
+// Returns the share of the limit that the link must reach in API mode. `share` is the measured
+// share. In both directions at the same time, the link must reach the share that was measured
+// before for one direction, less 5 percentage points.
 double wantedShare(const std::string& what, bool both, double share) {
     static double oneWay;
     if (both)

@@ -271,7 +271,8 @@ void measureStacks(MeasuredFlight& f, const std::string& what) {
     const ElfImage& image = *f.machine.stm32().image();
     for (const char* name : {"radioStack", "serverStack", "clientStack", "coresStack", "watchStack",
                              "idleStack", "OSTaskIdleStk"}) {
-        if (!image.has(name)) // the name of this variable in the real uC/OS-II
+        // the list has a name for our kernel's idle stack, and that of the real uC/OS-II
+        if (!image.has(name))
             continue;
         uint32_t words = image.size(name) / 4, free = 0;
         while (free < words && f.cpu().word(image.symbol(name) + 4 * free) == 0)

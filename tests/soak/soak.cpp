@@ -148,7 +148,8 @@ private:
         // fleet an eighth of this, because many links share the air.
         rate_ = (random_.below(3) ? 0.08 : 0.8) / (isFleet_ ? 8 : 1);
     }
-    // Injects a random fault at one of the ends; with more ends there are more faults.
+    // Ends absences that are over. Then in some seconds injects a random fault at one of the ends;
+    // the more ends there are, the more often.
     void misfortune() {
         for (auto& end : ends_)
             if (end->awayUntil && end->awayUntil <= now_) {
@@ -170,7 +171,7 @@ private:
             end.modem.resetPin(false, now_ + 1000);
             break;
         case 2:
-            // an end is out of reach for a second, or until its session has ended
+            // an end is out of reach for a second, or for up to 39 s, which may end its session
             ++totals_.absences;
             end.modem.power(false, now_);
             end.awayUntil = now_ + (random_.below(3) ? 1 : random_.below(40)) * secondNs;

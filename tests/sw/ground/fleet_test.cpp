@@ -86,9 +86,9 @@ protected:
     ~FleetTest() override {
         rig_.with([&] { rig_.step = nullptr; });
     }
-    // Adds a vehicle. It answers a message with the first bytes of the message, followed by its own
-    // address. `place` is the vehicle's index in `vehicles_` if another vehicle has the same
-    // address.
+    // Adds a vehicle. It answers each message with a message of 30 bytes. The answer is filled with
+    // the last byte of the received message, and ends with the vehicle's own address. `place` is
+    // the vehicle's index in `vehicles_` if another vehicle has the same address.
     void fly(int address, const LinkKeys& keys = {}, int place = 0) {
         rig_.with([&] {
             auto& v = vehicles_[place ? place : address];

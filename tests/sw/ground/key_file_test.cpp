@@ -25,8 +25,8 @@ protected:
         chmod(path_, mode);
         return KeyFile(path_);
     }
-    // Returns the message about a file that must be rejected, and checks that the message contains
-    // no digit of a key.
+    // Returns the message with which a file is rejected, or "" if it is accepted. Checks that the
+    // message does not contain the beginning of the key.
     std::string refusal(const std::string& text, mode_t mode = 0600) {
         try {
             read(text, mode);

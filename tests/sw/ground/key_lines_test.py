@@ -25,7 +25,8 @@ class KeyLines(unittest.TestCase):
         self.path.chmod(0o600)
 
     def change(self):
-        """Changes the key of vehicle 1; a function replaces the vehicle."""
+        """Changes the key of vehicle 1; a mock replaces the vehicle. Returns the new content of the
+        key file."""
         with mock.patch.object(change_key, "talk", return_value=1), mock.patch("builtins.print"):
             change_key.change(argparse.Namespace(key=str(self.path), address=1))
         return self.path.read_bytes()

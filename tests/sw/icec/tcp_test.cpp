@@ -349,7 +349,7 @@ TEST_F(Tcp, ACallWhoseReplyIsCutIsLostAndTheNextOneConnectsAgain) {
     constexpr int calls = 20;
     Listener listener;
     std::thread server([&] {
-        // the reply arrives in two parts, cut at each possible point, or complete
+        // sends only the first 6 to 24 bytes of the reply, at last all 25 bytes, and disconnects
         for (int i = 0; i < calls; ++i) {
             RawSocket peer(listener.fd, true);
             peer.send(message(3, {}));

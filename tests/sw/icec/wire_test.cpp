@@ -156,14 +156,13 @@ TEST(Stream, OptionalsOfEveryFormatAreSkipped) {
     }
 }
 
-// A peer may send the smallest possible size. The code subtracts from this size; the
-// result must not wrap.
+// A peer may send any number as the size of a slice, even the smallest Ice_Int. The code subtracts
+// from the size; the result must not wrap.
 TEST(Stream, ASliceOfAnyWrongSizeIsMalformed) {
     for (uint32_t size : {0x80000000U, 0x80000003U, 0xFFFFFFFFU, 0U, 3U, 5U, 0x7FFFFFFFU}) {
-        Bytes wire = {0x39, 1, 'x', 4, 0, 0, 0, // the last slice: a name, a size, and a table after
-                                                // it
+        Bytes wire = {0x39, 1, 'x', 4, 0, 0, 0, // last slice: its name and size; a table follows
                       1, 1,                     // the table contains one instance,
-                      0x31, 1, 'y'};            // a slice with this name and this size
+                      0x31, 1, 'y'};            // which has a slice with this name and `size`
         for (int shift = 0; shift < 32; shift += 8)
             wire.push_back(static_cast<Ice_Byte>(size >> shift));
         Ice_InputStream is = over(wire);

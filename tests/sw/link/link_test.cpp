@@ -81,7 +81,8 @@ TEST_P(LinkLayer, AChannelThatNobodyHasOpenedIsRefused) {
 }
 
 // Random bytes arrive during a session, between messages. Nothing may fail, and the link must
-// continue. BYTES is the number of these bytes for the full layer.
+// continue. BYTES is the number of these bytes for the full layer without a key; other layers get a
+// million.
 TEST_P(LinkLayer, TenMillionRandomBytesAreSurvived) {
     const double most = numberFromEnvironment("BYTES", 10'000'000);
     const auto bytes =
@@ -260,8 +261,8 @@ protected:
             std::count_if(side.outcomes.begin(), side.outcomes.end(),
                           [](auto& tagged) { return tagged.second == LINK_DELIVERED; }));
     }
-    // Sends messages until at least `least` of them have been delivered in each direction. Messages
-    // that were reported lost are sent again.
+    // Sends messages until at least `least` of them have been delivered in each direction. If
+    // messages are reported lost, ten more are sent.
     template <class... Meanwhile> void deliver(size_t least, Meanwhile... meanwhile) {
         for (size_t most = least; delivered(a) < least || delivered(b) < least; most += 10) {
             ASSERT_LT(most, 4 * least);

@@ -64,7 +64,7 @@ protected:
     uint64_t hostile_ = 0;
 };
 
-// HOSTILE=10000000 sets the number of hostile packets.
+// HOSTILE=10000000 sets the number of hostile packets; each of the two seeds gets half of them.
 TEST_P(Attacked, NothingHostileIsAcceptedAndNothingLegalLostOrDoubled) {
     const auto most = static_cast<uint64_t>(numberFromEnvironment("HOSTILE", 60'000) / 2);
     ASSERT_TRUE(connect());

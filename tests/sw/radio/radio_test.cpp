@@ -29,8 +29,8 @@ XBee::Options quick(std::map<std::string, uint32_t> more, const std::string& key
     return options;
 }
 
-// One side of a link, which stores its messages. The function `send` sends the frames of this side
-// and returns 0.
+// One side of a link, which stores its messages. The function `send` sends a frame of this side,
+// and returns 0 if the frame was accepted.
 class MessageLink : public LinkEnd {
 public:
     explicit MessageLink(std::function<int(const U8*, U32)> send, uint32_t seed)

@@ -137,7 +137,8 @@ class Cases(Script):
         return f"--ignore-certificate-errors-spki-list={public}"
 
     def form(self, browser, name):
-        """Sends a form. Returns the text that then appears."""
+        """Fills the text fields of an operation's form, and submits it. Returns the text that then
+        appears."""
         browser.until("document.querySelectorAll('#cards details').length > 0")
         return browser.run(f"""(async () => {{
             const card = [...document.querySelectorAll('#cards details')]

@@ -43,7 +43,8 @@ struct Plan {
     std::vector<Ground::Call> calls;
     uint64_t compareNs = 0;
     size_t comparedFrom = 0;
-    // number of replies after which the camera's sensor sends frames; 0 means that it sends none
+    // number of replies after which the camera's sensor sends a frame; 0 means that it sends none
+    // at all
     size_t framedAfter = 0;
 };
 
@@ -52,8 +53,8 @@ uint64_t comparedNs() {
     return static_cast<uint64_t>(1e6 * numberFromEnvironment("COMPARE_MS", 40));
 }
 
-// Makes the camera's sensor send frames: first one each millisecond, later one whenever a call
-// waits for a frame.
+// Makes the camera's sensor send frames: about one per millisecond in the first 4 ms, later a
+// single one when `framedAfter` calls have been answered.
 void sendFrames(GroundAndChip& world, size_t framedAfter, std::function<void(uint32_t)> note) {
     Frame frame{16, 8, {}};
     for (int i = 0; i < 16 * 8; ++i)

@@ -296,7 +296,7 @@ class Server:
             status = body[4] if head[8] == 2 else 0
             answers.append((head[8], body[:5] if status > 4 else body))
         s.close()
-        # waits until the server's last line about an executed operation has arrived
+        # gives the server's last line about an executed operation time to arrive
         time.sleep(timeout / 6)
         return answers, self.executed - before - 1
 

@@ -161,7 +161,7 @@ TEST(Stream, OptionalsOfEveryFormatAreSkipped) {
 TEST(Stream, ASliceOfAnyWrongSizeIsMalformed) {
     for (uint32_t size : {0x80000000U, 0x80000003U, 0xFFFFFFFFU, 0U, 3U, 5U, 0x7FFFFFFFU}) {
         Bytes wire = {0x39, 1, 'x', 4, 0, 0, 0, // last slice: its name and size; a table follows
-                      1, 1,                     // the table contains one instance,
+                      1,    1,                  // the table contains one instance,
                       0x31, 1, 'y'};            // which has a slice with this name and `size`
         for (int shift = 0; shift < 32; shift += 8)
             wire.push_back(static_cast<Ice_Byte>(size >> shift));

@@ -158,7 +158,7 @@ void interfaceTable(Writer& w, const Declaration& d) {
 }
 
 // Returns the initialiser of the default operation table, which contains the application's
-// functions. It contains the initialisers for the tables of the bases.
+// functions and the tables of the bases.
 std::string defaultOperations(const Declaration& top, const Declaration& d) {
     std::string list;
     for (const Declaration* base : d.bases)

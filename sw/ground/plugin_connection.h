@@ -75,8 +75,8 @@ public:
     }
     const EndpointOptions& defaults() const { return defaults_; }
 
-    // Several threads may call this: one may request a connection while another destroys the
-    // communicator.
+    // Returns the peer with these options. Several threads may call this function: one may request
+    // a connection while another destroys the communicator.
     std::shared_ptr<Peer> peer(const EndpointOptions& o) {
         std::lock_guard<std::mutex> lock(mutex_);
         if (!communicator_)

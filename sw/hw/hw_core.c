@@ -70,8 +70,8 @@ int Hw_Core_answers(const Hw_Core* self) {
 Hw_Status Hw_Core_run(Hw_Core* self, U32 operation, U32 ms) {
     self->done[operation] = 0;
     Hw_Core_act(self, operation);
-    /* An abandoned call may have left a post, which ends one wait too early. Therefore only `done`
-     * shows whether the operation has ended. */
+    /* A call that timed out may have left a post, which ends a later wait too early. Therefore only
+     * `done` shows whether the operation has ended. */
     while (!self->done[operation])
         if (!self->port->wait(self->context, operation, ms) && !self->done[operation]) {
             FSMC_write(self->slot, CONTROL, RESET);

@@ -29,8 +29,8 @@ typedef struct Hw_Frames {
     /* byte address of the first of three buffers, and distance from one buffer to the next, bytes
      */
     U32 base, stride;
-    /* size of a frame, pixels. Width 0 means that no camera is running; `picture` is then the
-     * frame. */
+    /* size of a frame, pixels. Width 0 means that no camera is running; the frame is then in
+     * `picture`. */
     U32 width, height;
     /* byte address of a picture in memory, and byte address of its size: width and height, 32 bits
      * each */
@@ -65,7 +65,7 @@ typedef struct Hw_Core {
     void* context;
     volatile U8 done[HW_OPERATIONS];  /* set by the interrupt routine when an operation has ended */
     U32 memory;                       /* DDR3 byte address of the buffers */
-    volatile U8 later[HW_OPERATIONS]; /* operations whose replies the polling task must send */
+    volatile U8 later[HW_OPERATIONS]; /* 1: the polling task must send the operation's reply */
     U32 deadline[HW_OPERATIONS];      /* times at which these operations time out, ms */
 } Hw_Core;
 
@@ -76,9 +76,9 @@ Hw_Status Hw_Core_init(Hw_Core* self, U32 slot, U32 id, const Hw_Port* port, voi
  * or by a task. */
 void Hw_Core_interrupt(Hw_Core* self);
 
-/* Access a word on `page` of a slot with more than 16 words, and then restore the register PAGE. A
- * task that was interrupted by such an access thus finds its own page selected again. Tasks of
- * equal priority that share processor time must not use these functions. */
+/* Access a word on `page` of a slot with more than 16 words, and then restore the register PAGE, so
+ * that an interrupted task finds its own page selected again. Tasks of equal priority that share
+ * processor time must not use these functions. */
 U32 Hw_Core_read(const Hw_Core* self, U32 word, U32 page);
 void Hw_Core_write(const Hw_Core* self, U32 word, U32 page, U32 value);
 

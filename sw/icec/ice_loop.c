@@ -141,8 +141,8 @@ static Ice_Status receive(Ice_CommunicatorPtr ic, Ice_Byte* in, Ice_Int timeoutM
 #define POLL_MS 1000
 
 /* Handles at most one event of the transport whose turn it is. The calling task acts as the
- * receiver. Returns ICE_TIMEOUT if no event arrived, ICE_LIMIT if ICE_NESTING is reached, and
- * ICE_CONNECTION_CLOSED when SERVE ends. */
+ * receiver. Returns ICE_TIMEOUT if no event arrived, ICE_LIMIT if ICE_NESTING is reached, and, with
+ * SERVE, ICE_CONNECTION_CLOSED after shutdown was called. */
 static Ice_Status receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
     Ice_Event event;
     Ice_Status status;

@@ -53,7 +53,7 @@ void icec_beginReply(Ice_OutputStreamPtr os, Ice_Int id);
  * reason. */
 void icec_endReply(Ice_OutputStreamPtr os, Ice_Status status, const Icec_Target* target);
 /* Reads the status of a reply, and restricts `is` to the results or the exception. Returns the
- * status; if the reply is malformed, returns the failure. */
+ * status of the reply, or the reason why the reply is malformed. */
 Ice_Status icec_readReply(Ice_InputStreamPtr is);
 
 /* ---- ice_proxy ---- */

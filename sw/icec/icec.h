@@ -255,8 +255,8 @@ Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int* connectio
  * the indirect proxy. Returns ICE_NO_ENDPOINT if the locator does not know the object. */
 Ice_Status Ice_ObjectPrx_resolve(Ice_ObjectPrxPtr self, Ice_ObjectPrxPtr locator);
 /* Describes why the last call through this proxy failed; to be called before the next call through
- * this proxy. The text from the peer is valid as long as the results of the call, and empty
- * afterwards. */
+ * this proxy. The text from the peer is valid as long as the results of the call are; afterwards,
+ * the text is empty. */
 void Ice_ObjectPrx_failure(const Ice_ObjectPrx* self, Ice_Failure* failure);
 
 /* Functions for a call, in the order in which generated code uses them: begin, writes to the

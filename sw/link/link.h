@@ -115,12 +115,12 @@ void Link_stop(Link* link, U32 nowUs);
 
 Link_State Link_state(const Link* link);
 
-/* Opens a channel for both directions; the peer's port reports this by its function `channel`.
- * Returns LINK_OK, LINK_DOWN, LINK_FULL or LINK_CLOSED. */
+/* Opens a channel for both directions; the peer learns this through the function `channel` of its
+ * port. Returns LINK_OK, LINK_DOWN, LINK_FULL or LINK_CLOSED. */
 Link_Status Link_openChannel(Link* link, int channel);
 
-/* Closes a channel after the messages that were queued before; needs no room in the queue. Returns
- * LINK_OK, LINK_DOWN, or LINK_CLOSED if the channel was not open. */
+/* Closes a channel after the messages that are already queued. Works even if the queue has no room.
+ * Returns LINK_OK, LINK_DOWN, or LINK_CLOSED if the channel was not open. */
 Link_Status Link_closeChannel(Link* link, int channel);
 
 #ifndef LINK_MINIMAL

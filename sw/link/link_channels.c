@@ -16,7 +16,7 @@ int link_onPeersChannel(Link_Channels* channels, U32 channel, U32 isOpen) {
     U32 bit = 1U << channel;
     if (channels->closing & bit) {
         if (!isOpen)
-            /* this is the peer's answer to the closing by this side */
+            /* the peer has closed the channel as well */
             channels->closing = (U8)(channels->closing & ~bit);
         return 0;
     }

@@ -12,7 +12,7 @@ typedef struct Link_Channels {
     U8 open; /* channels on which messages may be sent */
     /* channels that this side has closed; the peer's closing has not arrived yet */
     U8 closing;
-    U8 closeDue; /* closings of this side that are not queued yet */
+    U8 closeDue; /* channels whose closing by this side is not queued yet */
 } Link_Channels;
 
 #define LINK_IS_OPEN(channels, channel) ((U32)(channels)->open >> (channel) & 1U)
@@ -28,11 +28,12 @@ typedef struct Link_Channels {
 /* Records that this side has queued the opening of a channel. */
 #define LINK_OPEN(channels, channel) ((channels)->open = (U8)((channels)->open | 1U << (channel)))
 
-/* Records that this side closes an open channel. `isQueued` is 1 if the closing is already in the
- * queue. */
+/* Records that this side closes an open channel. `isQueued` is 1 if the fragment that closes the
+ * channel is already in the queue. */
 void link_closeChannel(Link_Channels* channels, U32 channel, int isQueued);
 
-/* Records that a closing which was due is now in the queue. */
+/* Records that the closing of a channel, for which the queue had no room before, is now in the
+ * queue. */
 #define LINK_NOTE_CLOSING(channels, channel) \
     ((channels)->closeDue = (U8)((channels)->closeDue ^ 1U << (channel)))
 

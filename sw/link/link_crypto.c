@@ -39,8 +39,8 @@ void link_makePair(Link_KeyPair* pair, U32 (*random)(void* context), void* conte
     X25519(pair->publicKey, pair->privateKey, 0);
 }
 
-/* Combines two inputs: the keys of the handshake, which follow from the shared key, and the result
- * of X25519, which follows from the private keys. An attacker would need to know both. */
+/* Combines two inputs: the keys of the handshake, which are derived from the shared key, and the
+ * result of X25519, which is computed from the private keys. An attacker needs both. */
 void link_mixKeys(Link_Keys* keys, Link_KeyPair* pair, const U8* peersPublic) {
     U8 shared[X25519_BYTES], text[sizeof keys->bytes];
     U32 i;

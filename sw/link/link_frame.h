@@ -31,7 +31,7 @@
 #define LINK_CONTROL 0x80U
 #define LINK_LENGTH_OF(header) ((header) & 0x7FU)
 #define LINK_LENGTH(frame) LINK_LENGTH_OF((frame)[0])
-#define LINK_FILL 0xFFU /* padding byte, at a place where the first byte of a frame is expected */
+#define LINK_FILL 0xFFU /* padding byte; stands where a frame would begin */
 
 /* Byte 2 of a data frame: flags, channel and epoch. Byte 2 of a control frame: its kind. */
 #define LINK_FIRST 0x80U
@@ -80,7 +80,7 @@ typedef enum Link_Kind {
 #define LINK_KEY_EPOCH(key) ((key) >> 29)
 #define LINK_EPOCH_KEY(epoch) ((U32)(epoch) << 29)
 #define LINK_NO_SEED 0xFFFFU
-/* with a key: answer to a HELLO-ACK. It has the number of RST, which is only used without a key. */
+/* with a key: answer to a HELLO-ACK; has the number of RST, which is only used without a key */
 #define LINK_KIND_CONFIRM LINK_KIND_RST
 #define LINK_IS_PIGGYBACK(kind) ((U32)(kind) - (U32)LINK_KIND_PIGGYBACK <= 1U)
 #define LINK_IS_HANDSHAKE(kind) ((U32)(kind) - (U32)LINK_KIND_HELLO <= 2U)

@@ -36,8 +36,8 @@ static U32 onFrame(Link_Handshake* handshake, const U8* frame, U32 attempt) {
     Link_Kind kind = LINK_KIND_OF(frame);
     U32 epoch = LINK_KEY_EPOCH(handshake->present.key);
     (void)attempt;
-    /* an RST repeats the EPOCH of the frame that it answers, in which LINK_READY may invert a
-     * bit */
+    /* an RST repeats the EPOCH of the frame that it answers; the bit LINK_READY of this EPOCH may
+     * be inverted */
     if (kind == LINK_KIND_RST)
         return handshake->state == LINK_STATE_UP && ((LINK_EPOCH(frame) ^ epoch) & 3U) == 0
                    ? LINK_VERDICT_LOST
@@ -63,7 +63,7 @@ static void sendHello(Link_Handshake* handshake, const U8* unknown) {
         link_sendHandshake(handshake, 0, LINK_KIND_HELLO, LINK_VERSION);
         return;
     }
-    /* the HELLO frames sent from now on also have this epoch */
+    /* later HELLO frames also have this epoch */
     handshake->present.key = LINK_EPOCH_KEY(LINK_EPOCH(unknown));
     seal.session = handshake->present.key | LINK_NO_SEED;
     (void)link_sendNow(

@@ -96,8 +96,8 @@ static void onHello(Link_Handshake* handshake, const U8* frame, U32 slot) {
     if (isUp && !handshake->isUnconfirmed) {
         handshake->slot = (U8)slot;
         link_sendHandshake(handshake, 0, LINK_KIND_HELLO, LINK_VERSION | LINK_VERSION_UP);
-        /* a peer that has not confirmed its session may still answer an earlier HELLO and begin the
-         * session of that HELLO */
+        /* A session that the peer has not confirmed may belong to an earlier HELLO. The new HELLO
+         * is therefore answered as if there were no session. */
     } else {
         makeKeyed(handshake, slot, frame);
         offerPair(handshake);

@@ -122,7 +122,7 @@ static void skip(Link_Search* search, const U8* frame, U32 left) {
 }
 
 /* Processes all complete frames in the bytes. `isEnd` is 1 if a silence has followed: an incomplete
- * frame then remains incomplete. Returns the number of bytes used.
+ * frame is then not continued. Returns the number of bytes used.
  *
  * Without a key, the bytes after an incomplete frame must wait until it is complete. With a key, a
  * frame has a tag and needs no confirmation. It is processed when its last byte arrives, even if

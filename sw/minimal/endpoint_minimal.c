@@ -16,8 +16,8 @@
 static const Ice_Byte head[HEAD] = {
     XBEE_ENDPOINT_TYPE & 0xFF, XBEE_ENDPOINT_TYPE >> 8, 6 + BODY, 0, 0, 0, 1, 1};
 
-/* Bit that represents a pending event. The lowest bit is delivered first; bit 0 is the event of a
- * message. */
+/* Bit of a pending event in `events`. The event with the lowest bit is delivered first. Bit 0 is
+ * the event of a message. */
 #define EVENT(kind, channel) \
     (2U << (((U32)(kind) - ICE_EVENT_CLOSED) * LINK_CHANNELS + (U32)(channel)))
 
@@ -37,7 +37,7 @@ static void end(XBeeATEndpoint* self, int channel) {
 
 int XBeeATEndpoint_onMessage(void* context, int channel, const U8* data, U32 size) {
     XBeeATEndpoint* self = context;
-    /* Events of opening and closing are delivered before messages. A message is therefore only
+    /* The events OPENED and CLOSED are delivered before messages. A message is therefore only
      * accepted while no other event is pending. */
     if (!self->buffer || self->events)
         return 1;
@@ -55,9 +55,9 @@ void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
         return;
     if (!isOpen)
         end(self, channel);
-    /* If the event of an opening is still pending when the channel closes, neither event is
-     * delivered. At most one closing and one later opening are therefore pending for a channel,
-     * even if the ground station restarts often. */
+    /* If OPENED is still pending when the channel closes, neither OPENED nor CLOSED is delivered.
+     * For each channel, at most one CLOSED and one later OPENED are therefore pending, even if the
+     * ground station restarts often. */
     if (isOpen || !cancel(self, ICE_EVENT_OPENED, channel))
         self->events |= EVENT(isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel);
 }
@@ -89,7 +89,8 @@ static Link_Status openOwn(XBeeATEndpoint* self) {
     Link_Status status = LINK_OK;
     if (!self->ownOpen) {
         status = Link_openChannel(self->link, XBEE_OWN_CHANNEL);
-        /* a closing that is still pending belongs to the previous connection, so it is cancelled */
+        /* an event CLOSED that is still pending belongs to the previous connection, so it is
+         * cancelled */
         if (status == LINK_OK) {
             self->ownOpen = 1;
             self->events &= ~EVENT(ICE_EVENT_CLOSED, XBEE_OWN_CHANNEL);

@@ -68,7 +68,7 @@ static void onChannel(Link* link, U32 channel, U32 isOpen) {
     U8* c = link->channels + channel;
     if (*c & CLOSING) {
         if (!isOpen)
-            *c ^= CLOSING; /* this is the peer's answer to the closing by this side */
+            *c ^= CLOSING; /* the peer has closed the channel as well */
     } else if (isOpen != (*c & OPEN)) {
         *c = isOpen ? OPEN : LINK_LAST;
         link->port->channel(link->context, (int)channel, (int)isOpen);

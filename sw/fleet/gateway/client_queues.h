@@ -45,7 +45,7 @@ public:
 
     // Returns whether there is room for a request in the queues. The first request of a client
     // always has room, unless the subject has too many clients. A disconnected client still counts
-    // while its one-way requests wait, so a subject gains nothing by reconnecting.
+    // while its one-way requests wait, so a subject cannot get more room by reconnecting.
     bool hasRoom(const Request& request);
     // Counts a thread that waits for room. Returns false if too many threads of the subject already
     // wait.

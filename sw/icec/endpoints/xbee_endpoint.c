@@ -13,8 +13,8 @@
 #define HEAD 8
 #define BODY 7
 /* Number of attempts to send while the link has no room, 20 ms apart: 20 s in total. This is less
- * than 27 s, the time without acknowledgement of a fragment after which the session ends with all
- * its connections. Two replies of 8 KB take 4 s if three of ten packets are lost. */
+ * than 27 s (LINK_AGE_LAST): a fragment that is not acknowledged for this time ends the session and
+ * all its connections. Two replies of 8 KB take 4 s if three of ten packets are lost. */
 #define RETRIES 1000
 /* number of attempts to send to a peer other than the first ground station; smaller than RETRIES,
  * because messages to the first ground station wait during these attempts */
@@ -88,7 +88,7 @@ static void end(XBeeATEndpoint* self, int channel) {
 
 int XBeeATEndpoint_onMessage(void* context, int channel, const U8* data, U32 size) {
     XBeeATEndpoint* self = context;
-    /* Events of opening and closing are delivered before messages. A message is therefore only
+    /* The events OPENED and CLOSED are delivered before messages. A message is therefore only
      * accepted while no other event is pending. */
     if (!self->buffer || self->events) {
         (void)setHeld(self, 1);
@@ -114,9 +114,9 @@ void XBeeATEndpoint_onChannel(void* context, int channel, int isOpen) {
     }
     if (!isOpen)
         end(self, channel);
-    /* If the event of an opening is still pending when the channel closes, neither event is
-     * delivered. At most one closing and one later opening are therefore pending for a channel,
-     * even if the ground station restarts often. */
+    /* If OPENED is still pending when the channel closes, neither OPENED nor CLOSED is delivered.
+     * For each channel, at most one CLOSED and one later OPENED are therefore pending, even if the
+     * ground station restarts often. */
     if (isOpen || !cancel(self, ICE_EVENT_OPENED, channel))
         report(self, EVENT(isOpen ? ICE_EVENT_OPENED : ICE_EVENT_CLOSED, channel));
 }
@@ -158,7 +158,8 @@ static Link_Status openOwn(XBeeATEndpoint* self, int peer) {
     const int own = self->own[peer];
     if (!isOwnOpen(self, peer)) {
         status = Link_openChannel(self->links[peer], CHANNEL_OF(own));
-        /* a closing that is still pending belongs to the previous connection, so it is cancelled */
+        /* an event CLOSED that is still pending belongs to the previous connection, so it is
+         * cancelled */
         if (status == LINK_OK) {
             setOwnOpen(self, peer, 1);
             self->events &= ~EVENT(ICE_EVENT_CLOSED, own);
@@ -252,8 +253,8 @@ static Ice_Status connectTo(void* context, const Ice_Byte* encoded, Ice_Int size
     if (size < 2 || encoded[0] != head[0] || encoded[1] != head[1] || peer < 0)
         return ICE_NO_ENDPOINT;
     *connection = self->own[peer];
-    /* opens the channel by offer, which tries again as long as the closing of the previous
-     * connection is pending */
+    /* `offer` opens the channel, and tries again while the previous connection is still being
+     * closed */
     return offer(self, *connection, 0, 0);
 }
 

@@ -163,7 +163,7 @@ static Ice_UnknownSlice* keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Int
     if (flags & ICE_SLICE_TABLE) {
         Ice_Int count = Ice_InputStream_readSequence(is, 1), i;
         void* room = Ice_InputStream_allocate(is, count, (Ice_Int)sizeof *slice->values);
-        /* has no type name, because it has a compact id */
+        /* copies the pointer, because the type to which `values` points has no name for a cast */
         memcpy(&slice->values, &room, sizeof room);
         for (i = 0; i < count && !is->failed; ++i)
             slice->values[i].number = readInstance(is, Ice_InputStream_readSize(is));

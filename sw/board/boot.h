@@ -47,9 +47,9 @@ void Boot_begin(void);
 int Boot_imageIsSound(void);
 /* Returns 1 if the FPGA must load its bitstream: after power-on, or if it did not respond. */
 int Boot_loadsFpga(void);
-/* Returns the report for SCRATCH. */
+/* Returns the report in the format of SCRATCH. */
 U32 Boot_report(void);
-/* Makes the next start report this reason, whatever ends the current run. */
+/* Makes the next start report this reason, even if something else ends the current run. */
 void Boot_note(Boot_Reason reason);
 /* Records the fault and resets the processor. */
 void Boot_fail(Boot_Reason reason, U32 pc, U32 lr, U32 address);

@@ -11,7 +11,8 @@
 
 #define GUARD_BYTES 32UL
 #define REGION_0 0x10UL /* RBAR.VALID: the low bits select the region */
-/* Never executable, read-only (OSTaskStkChk reads it), 2^(4+1) bytes, enabled. */
+/* Attributes of the region: never executable, read-only (because OSTaskStkChk reads it), 2^(4+1)
+ * bytes, enabled. */
 #define GUARD_RASR (1UL << 28 | 5UL << 24 | 4UL << 1 | 1UL)
 
 /* Makes the lowest 32 bytes of a stack, aligned to 32, read-only; a `bottom` of 0 removes this

@@ -60,7 +60,7 @@ void Lines_drive(U32 line, int high);
 int Lines_read(U32 line);
 /* Makes all lines inputs with this pull-up, pull-down or neither. */
 void Lines_release(Pull pull);
-/* Switches all lines but IRQ to the FSMC. */
+/* Switches all lines except IRQ to the FSMC. */
 void Lines_useForFsmc(void);
 /* Returns the level of NWAIT while there is no access. */
 int Lines_idleNwait(void);

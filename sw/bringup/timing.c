@@ -9,7 +9,7 @@
 
 #define CYCLES_MASK 0xFFFFFFUL
 #define HSI_HZ 16000000UL
-#define READY_POLLS 200000UL /* limit of polls; a crystal starts within some ms */
+#define READY_POLLS 200000UL /* limit of the number of polls; a crystal starts within some ms */
 
 static Timing_Clock now;
 

@@ -80,8 +80,8 @@ public:
     // ---- functions of the engine ----
 
     const LinkKeys& keys() const { return keys_; }
-    virtual bool hasLink() const = 0; // true during a session with one vehicle
-    // true during a session of the vehicle with any ground station
+    virtual bool hasLink() const = 0; // true while this station has a session with one vehicle
+    // true while the vehicle has a session with any ground station
     virtual bool isHeard() const = 0;
     bool isWanted() const; // true if a program wants a connection
     bool listens() const { return listening_; }
@@ -108,7 +108,7 @@ protected:
     virtual bool openChannel(int channel) = 0; // opens a channel for a program
     virtual void opened(ProgramConnection& program, U32 now) = 0;
     virtual void closeChannel(int channel) = 0;
-    virtual U32 longestMessage() const = 0; // to be called with the lock held
+    virtual U32 longestMessage() const = 0; // the caller holds the lock
     // Sends the next message of a connection. Returns whether the message was accepted.
     virtual bool send(int channel, U32 now) = 0;
     // Does the work of the derived class that is due. Returns the time until the next call, in

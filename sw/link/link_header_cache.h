@@ -12,8 +12,7 @@
 
 #include "link_frame.h"
 
-/* offset in a request of the header that is cached, after Ice's message header and the request id
- * */
+/* offset of the header that is cached in a request, after Ice's message header and request id */
 #define LINK_HEAD_AT 18U
 #define LINK_HEADS 16U /* number of request headers that are cached for each direction */
 /* size of the largest cached header, bytes: 62, and 2 for the version of the encoding */

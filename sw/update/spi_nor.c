@@ -12,7 +12,7 @@
 #define IDENTIFY 0x9FU
 #define BLOCK_ERASE 0xD8U
 #define BUSY 1U
-#define PAUSES 10000U /* limit of the number of pauses; an erase needs far fewer pauses */
+#define PAUSES 10000U /* limit of the number of pauses in a wait; an erase needs far fewer */
 
 /* Starts a transaction: sends an instruction and, if `hasOffset`, an address. */
 static const SpiNor_Bus* begin(void* context, U32 instruction, U32 offset, int hasOffset) {

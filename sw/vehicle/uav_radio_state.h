@@ -17,7 +17,7 @@ typedef struct UAV_Peer {
     U16 address;
 } UAV_Peer;
 extern UAV_Peer uav_peers[];
-extern U8 uav_peerCount; /* number of peers in use: 1; UAV_PEERS with the fleet package */
+extern U8 uav_peerCount; /* number of peers in use: 1, or UAV_PEERS with the fleet package */
 
 extern Link uav_link; /* link to the first ground station */
 extern XBeeATEndpoint uav_endpoint;

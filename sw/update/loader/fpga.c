@@ -22,9 +22,10 @@
 #define BUS_SPI (0x5555UL << 16) /* alternate function 5 (SPI 1) for three pins */
 #define SELECT 4U                /* pin of chip select on port A, and its EXTI line */
 #define SELECT_VECTOR 10U
-/* bytes up to the end of the address: the instruction of the flash, and three bytes of address */
+/* bytes of a read command up to the end of its address: one of the instruction, three of the
+ * address */
 #define ADDRESS_BYTES 4U
-/* limit of polls, of at least 10 cycles each; an address takes 32 us at 1 MHz */
+/* limit of the number of polls, of at least 10 cycles each; an address takes 32 us at 1 MHz */
 #define POLLS 2000U
 #define CONTROL 2U /* pins on port C: PROGRAM_B 0 (open drain), DONE 1 */
 #define DONE 1U
@@ -165,8 +166,9 @@ static int loadsAnother(void) {
     return !isDone() || from == Slots_at(&slots_fpga, 0) + SLOTS_IMAGE_AT;
 }
 
-/* If the bitstream is signed and complete, makes the FPGA load it again, so that all its reads can
- * be observed; returns the result of loadsAnother. Otherwise returns 1. */
+/* Makes the FPGA load its bitstream again, so that all its reads can be observed, and returns the
+ * result of loadsAnother. If the flash contains a bitstream that is not complete or not signed,
+ * returns 1 without loading it. */
 static int loadsAnotherAgain(void) {
     hold();
     SPI1_CR1 = SPI1_CR1_MASTER;

@@ -224,7 +224,8 @@ public:
         }
         return false;
     }
-    // Returns the number of bytes that follow, not counting no-operation words and erased flash.
+    // Returns the number of bytes that follow in the file, not counting no-operation words and
+    // erased flash.
     size_t rest() {
         size_t end = file_.size();
         while (at_ + 2 <= end && file_[at_] == 0x20 && file_[at_ + 1] == 0)
@@ -318,7 +319,7 @@ void fillFpga(const std::string& path, uint32_t version, const std::string& key,
     Bytes flash(2 << 20, 0xFF);
     const uint32_t slots[2] = {Slots_at(&slots_fpga, 0), Slots_at(&slots_fpga, 1)},
                    next = slots[1] + SLOTS_IMAGE_AT, golden = slots[0] + SLOTS_IMAGE_AT,
-                   read = 0x0300;                          // command of the flash that reads
+                   read = 0x0300;                          // read command of the flash
     const uint32_t words[] = {0xAA99, 0x5566,              // sync word
                               0x3261, next & 0xFFFF,       // GENERAL1
                               0x3281, read | next >> 16,   // GENERAL2

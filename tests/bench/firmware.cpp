@@ -271,7 +271,7 @@ void measureStacks(MeasuredFlight& f, const std::string& what) {
     const ElfImage& image = *f.machine.stm32().image();
     for (const char* name : {"radioStack", "serverStack", "clientStack", "coresStack", "watchStack",
                              "idleStack", "OSTaskIdleStk"}) {
-        // the list has a name for our kernel's idle stack, and that of the real uC/OS-II
+        // the idle stack is called idleStack in our kernel, and OSTaskIdleStk in the real uC/OS-II
         if (!image.has(name))
             continue;
         uint32_t words = image.size(name) / 4, free = 0;

@@ -14,8 +14,8 @@ from script import LONGEST
 
 
 def clean(**more):
-    """Returns the environment without the variables that set options, and without those that a make
-    sets which runs the tests."""
+    """Returns the environment without the variables that set options, and without the variables
+    that make sets when it runs the tests."""
     ours = {option.variable for each in command.COMMANDS.values() for option in each.options}
     ours |= {"MAKEFLAGS", "MFLAGS", "MAKELEVEL"}
     return {**{name: value for name, value in os.environ.items() if name not in ours}, **more}

@@ -110,7 +110,7 @@ public:
     // ground station
     static constexpr int rival = 0x10000;
     // Restarts the program. `hasKeys` is true if each pair of vehicle and ground station has a key.
-    // The key follows from the number of key changes of this pair.
+    // A key depends only on the pair, and on the number of the pair's key changes.
     void boot(uint64_t now, bool hasKeys) {
         now_ = now;
         begin();

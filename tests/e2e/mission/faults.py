@@ -30,7 +30,7 @@ from icesoc.util.process import children
 STATUS = record.of_tree("testbench/status/sim_status.toml")
 IMAGE = "/usr/share/xplanet/images/earth.jpg"
 LONGEST = 240.0  # time limit of a mission on a busy machine, s
-REAL = 0.3  # first part of each moment, which is real time since the start of the process, s
+REAL = 0.3  # first part of each moment, counted in real time from the start of the process, s
 # latest moment, s. A fault that has a size instead of a time scales its size with moment / LAST.
 LAST = 2.0
 

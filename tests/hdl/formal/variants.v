@@ -28,7 +28,7 @@ module same (
     (* hierconn *) wire \u_chip.g_gate.u_buffer.passes ;
 
     reg  past = 1'b0, was_clk = 1'b0, was_proven = 1'b0;
-    reg  reset   = 1'b0; // the first edge of clk_i, with rst_i, has passed
+    reg  reset   = 1'b0; // the first rising edge of clk_i has passed, with rst_i high
     reg  stopped = 1'b0; // the chip's gate has stopped the last edge of clk_i
     reg  [2:0] was_in = 3'd0;
     wire rises = past && clk_i && !was_clk;
@@ -50,7 +50,7 @@ module same (
         // both gated clocks are equal; with +ungated, the clock is never stopped
         if (reset || rises)
             assert (simulated == (ungated_i ? clk_i : chip));
-        // The registers are equal from the first edge of clk_i on, which the gate passes.
+        // The gate passes the first edge of clk_i. From this edge on, the registers are equal.
         if (reset || rises) begin
             assert (\u_simulated.g_gate.rest == \u_proven.g_gate.rest );
             assert (\u_chip.g_gate.rest == \u_proven.g_gate.rest );
@@ -59,8 +59,8 @@ module same (
             assert (!clk_i || \u_simulated.g_gate.open == \u_chip.g_gate.u_buffer.passes );
         if (reset && !rises)
             assert (\u_proven.g_gate.closed == stopped);
-        // The clock of the proof is high before an edge that the gate stops, if the gate has passed
-        // the previous edge, and at no other edge.
+        // Before a rising edge of clk_i, the proof's clock is high only if the gate stops this edge
+        // and has passed the previous one.
         if (rises && reset)
             assert (was_proven == (!chip && !stopped));
         if (rises && !reset)
@@ -74,8 +74,8 @@ module same (
     wire made;
     simulated u_simulated (.clk_i(clk_i), .clk_o(made));
     (* hierconn, init = 10'd0 *) wire [9:0] \u_simulated.phase ;
-    // After n edges of the chip's clock, floor(n * MULTIPLY / DIVIDE) edges were made. The sums
-    // wrap at 2**16.
+    // After n edges of the chip's clock, core_clock has made floor(n * MULTIPLY / DIVIDE) edges.
+    // The sums wrap at 2**16.
     reg [15:0]  due = 16'd0, paid = 16'd0; // n * MULTIPLY, and the number of edges * DIVIDE
     reg         was = 1'b0;
     wire [15:0] now = paid + (made != was ? 16'd`DIVIDE : 16'd0);

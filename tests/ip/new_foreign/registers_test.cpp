@@ -207,8 +207,8 @@ TEST(HwRegisters, WaitTakesTheEventThatWasThereOrComes) {
     core.poll();
     ASSERT_TRUE(core.answer_);
     EXPECT_THAT(*core.answer_, ElementsAre("CORE"));
-    // The interrupt line stays high. It must interrupt only once per `wait`, and the event must
-    // occur again.
+    // The line from the core stays high. It must cause only one interrupt per `wait`, and the next
+    // `wait` must return the event again.
     EXPECT_EQ(core.interrupts_, 1);
     core.slot_.wait(&core.slot_, 0, 5);
     EXPECT_EQ(core.interrupts_, 1);

@@ -96,8 +96,8 @@ TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
     EXPECT_EQ(one.heard->calls, 6);
     EXPECT_EQ(two.heard->calls, 6);
     EXPECT_EQ(idle.heard->calls, 0);
-    // Passes a proxy of the program's object to an operation, as a program does whose object the
-    // vehicle is to call later.
+    // Passes a proxy of the program's object to an operation, as a program does to let the vehicle
+    // call this object later.
     const auto passes = [](const Program& program, const std::string& operation) {
         Ice::OutputStream out(program.ic.communicator());
         out.startEncapsulation();

@@ -262,8 +262,8 @@ public:
             stream.taken(seconds * 1000000);
         }
     }
-    // Continues at the time `seconds`, which is counted from the start of the test. `isNew` is true
-    // if the program uses Ice 3.8.
+    // Lets the engine and the program work at the time `seconds` after the start of the test.
+    // `isNew` is true if the program uses Ice 3.8.
     void pass(U32 seconds, bool isNew) {
         if (isNew && seconds - wroteAt_ >= 30)
             send(3, seconds);

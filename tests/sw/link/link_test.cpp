@@ -128,8 +128,8 @@ TEST_P(LinkLayer, AVanishedPeerIsNoticedAndAReturningOneFound) {
     EXPECT_TRUE(a.received.empty() && b.received.empty());
 }
 
-// The ground learns of the reboot by the reply to its next frame, and need not wait for 9 s of
-// silence.
+// The reply to the ground's next frame tells the ground of the reboot, so it need not wait for 9 s
+// of silence.
 TEST_P(LinkLayer, ARebootOfTheVehicleIsNoticedByTheNextFrame) {
     ASSERT_TRUE(connect());
     a.open(0);

@@ -95,8 +95,8 @@ bool isWhole(const std::vector<uint8_t>& bytes) {
 }
 
 // While a modem waits for the air, it stores packets. It must not combine a packet with a part of
-// the next packet: then each later packet would contain parts of two frames, and each lost packet
-// would cost both frames.
+// the next packet. Otherwise each later packet would contain parts of two frames, and each lost
+// packet would cost both frames.
 TEST_P(LinkOverModems, PacketsHoldWholeFramesHoweverSlowTheModemIs) {
     unsigned packets = 0, whole = 0;
     air_.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome) {

@@ -8,9 +8,10 @@
 // program. It must deliver the peer's messages, and must be informed that its own messages arrived.
 //
 // A change that makes this test fail changes the wire format (docs/compatibility.md): increase
-// LINK_VERSION, and record the packets of the new version with RECORD=1 in the environment. A
-// recording is replaced only if nothing but the order of random numbers or the times of sending has
-// changed; in this case, check that the old code and the new code can communicate.
+// LINK_VERSION, and record the packets of the new version with RECORD=1 in the environment. Do not
+// replace a recording of an existing version, unless only the order of random numbers or the times
+// of sending have changed. Before you replace it in this case, check that the old code and the new
+// code can communicate.
 
 #include "ice_messages.h"
 #include "link_pair.h"

@@ -155,7 +155,9 @@ private:
         }
     }
     void boot() {
-        runs_ = SLOTS_NONE; // no slot runs, because the loader may write the states of both slots
+        // no slot counts as running while the loader chooses one, because it may write the states
+        // of both
+        runs_ = SLOTS_NONE;
         U32 slot = 0;
         if (layout_.hasGolden) {
             Slots_settleFpga(&port_, flash_[0] & 1);

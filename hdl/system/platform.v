@@ -4,8 +4,8 @@
 // register bus with SLOTS slots, and the memory controller with PORTS ports.
 //
 // Memory port 0 belongs to the bridge. The signals of the slots, and of memory ports 1 and up, are
-// packed: slot s has bit s of a signal with 1 bit per slot, bits 4s+3..4s of a signal with 4, and
-// bits 32s+31..32s of a signal with 32 (docs/bus.md, docs/memory.md).
+// packed. In a signal with 1 bit per slot, slot s has bit s; in a signal with 4 bits per slot, it
+// has bits 4s+3..4s; with 32 bits per slot, bits 32s+31..32s (docs/bus.md, docs/memory.md).
 
 `default_nettype none
 

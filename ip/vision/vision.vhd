@@ -89,9 +89,8 @@ architecture rtl of vision is
   signal first_pixel, memory_base : std_logic_vector(31 downto 0);
 
   -- stream: x is the column of the pixel that is being taken. lines_left is the number of lines
-  -- that are left, including the current one. (score_x, score_y) is the position of the score that
-  -- enters vision_suppress; (kept_x, kept_y) is the position of the score that leaves
-  -- vision_suppress
+  -- that are left, including the current line. (score_x, score_y) is the position of the score
+  -- that enters vision_suppress, (kept_x, kept_y) the position of the score that leaves it
   signal x             : unsigned(9 downto 0);
   signal lines_left    : unsigned(15 downto 0);
   signal score_x, kept_x : unsigned(9 downto 0);

@@ -47,8 +47,8 @@ void RfChannel::carryAway(const RfReceiver* modem, bool isAway) {
 }
 
 RfChannel::Outcome RfChannel::fate(uint64_t now) {
-    // The model makes a step for this packet, or one step for each packet time that has passed
-    // since the last packet, so that a burst of losses also ends if no modem sends.
+    // The model of bursts makes one step per packet. After a longer pause it makes one step per
+    // burstStepNs of the pause, so that a burst of losses also ends while no modem sends.
     const uint64_t quiet = std::min<uint64_t>((now - fateAt_) / burstStepNs, 1000);
     fateAt_ = now;
     for (uint64_t steps = std::max<uint64_t>(quiet, 1); weather.burstBegin > 0 && steps; --steps)

@@ -49,8 +49,8 @@ public:
     // Records the chip's state. Call this after each evaluated clock.
     void sample();
 
-    // Number of clocks, starting now, in which the whole chip is quiet, and in which the platform
-    // is quiet; 0 if the chip or the platform is busy, or if its state is unknown.
+    // chip: number of clocks, starting now, for which the whole chip is quiet. platform: the same
+    // for the platform alone. 0 means busy, or that the state is unknown.
     struct Clocks {
         uint64_t chip, platform;
     };

@@ -190,9 +190,10 @@ def places_of(n, figures):
 
 
 def together(orders):
-    """Returns the figures of a design, given the figures of all orders of its netlist. Counts are
-    from the order with the median number of LUTs, the clock is from the order with the median
-    clock, and the longest paths are from the slowest order."""
+    """Returns the figures of a design that was mapped several times, with its ports in different
+    orders. The counts are those of the mapping with the median number of LUTs. Clock and longest
+    paths are those of the mapping with the median clock; "slowest" has the longest paths of the
+    slowest mapping, and "pads" the longest path of each pad in any mapping."""
     if len(orders) == 1:
         return orders[0] | {"luts": [orders[0]["lut"]], "clocks": [orders[0]["mhz"]]}
     by_lut = sorted(orders, key=lambda figures: figures["lut"])

@@ -115,7 +115,7 @@ module async_fifo #(
         assume (!(pop_i && empty_o));
         assert (to_reader == (written ^ (written >> 1)) && to_writer == (taken ^ (taken >> 1)));
         // The FIFO never holds more words than its depth. A side may see an old value of the other
-        // side's pointer, but never a value ahead of this pointer.
+        // side's pointer, but never a value that this pointer has not reached yet.
         assert (count <= DEPTH && held_seen <= DEPTH);
         assert (full_o == (held_seen == DEPTH));
         assert (taken - t1 <= taken - t2 && taken - t2 <= held_seen);

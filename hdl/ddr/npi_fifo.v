@@ -120,7 +120,7 @@ module npi_fifo #(
                 end
         end else begin : g_proof
             initial assume (rst_i);
-            // A word that the prover chooses leaves unchanged, at its position.
+            // The word that is pushed at `place` leaves the FIFO unchanged, as word number `place`.
             (* anyconst *) reg [LOG2-1:0] place;
             reg [WIDTH-1:0] value;
             reg inside = 1'b0;

@@ -35,7 +35,7 @@ module fsmc_registers (
     output wire        restart_o,
     input  wire        expired_i,
     // order of registers and memory: flush_o requests that all memory writes are completed; idle_i
-    // is high when they are
+    // is high when all of them are completed
     output wire        busy_o,
     output wire        flush_o,
     input  wire        idle_i,
@@ -60,7 +60,7 @@ module fsmc_registers (
     reg [31:0] word;       // word that was read last
     reg [15:0] low;        // low half that was written last
     // half_read: `word` contains the high half of the word at bus_addr_o, for the next read.
-    // half_write: `low` contains its low half, for the next write.
+    // half_write: `low` contains the low half of this word, for the next write.
     reg        half_read, half_write;
     // the current transfer was requested by a read of the high half; the pins may have changed
     // since

@@ -53,7 +53,7 @@ module probe #(
 
     // ---- capture ----
     reg                 running, draining, done, triggered, wrapped;
-    // the next entry is written even if no signal has changed, because it is the first one or
+    // the next entry is written even if no signal has changed, because it is the first entry or
     // follows a loss
     reg                 owed;
     reg                 lost;

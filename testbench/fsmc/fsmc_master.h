@@ -72,9 +72,9 @@ public:
     // Sets the frequencies of HCLK and of the design's clock, as cycles in the same unit of time.
     void setClocks(unsigned hclkPerUnit, unsigned clkPerUnit);
 
-    // Sets whether the pause BUSTURN also applies between two writes to the same bank. According to
-    // RM0033 the pause does not apply there. On an STM32F407 it applies between the two halves of a
-    // word, with the value in BWTR if the bank uses BWTR (community.st.com, thread 309858).
+    // Sets whether the pause BUSTURN also applies between two writes to the same bank. RM0033 does
+    // not define this. On an STM32F407 the pause applies between the two halves of a word, with the
+    // value in BWTR if the bank uses BWTR (community.st.com, thread 309858).
     void pauseWrites(bool pauses) { pausesWrites_ = pauses; }
 
     // Loads and stores of the processor. A 32-bit load or store to a window makes two accesses, low

@@ -29,15 +29,15 @@ public:
         // Contents of the flash. If this vector is empty, the flash is loaded from the program
         // file. Otherwise the program file is only used for its symbols.
         std::vector<uint8_t> flash = {};
-        // Key of the link, 16 bytes, stored in the vehicle as by its factory. If this vector is
-        // empty, the vehicle accepts a link without a key.
+        // Key of the link, 16 bytes; stored in the vehicle before the flight, as its factory does.
+        // If this vector is empty, the vehicle accepts a link without a key.
         std::vector<uint8_t> key = {};
         uint64_t seed = 1; // seed of the random number generator
         // Contents of the FPGA's configuration flash. If this vector is empty, the FPGA needs no
         // configuration.
         std::vector<uint8_t> fpgaFlash = {};
         bool isWired = false; // true if the jumper of PB1 is set (board.h)
-        // address of the vehicle, stored in the vehicle as by its factory
+        // address of the vehicle; stored like the key
         uint32_t address = 1;
         // peers that the vehicle serves in addition to its ground station
         std::vector<SimulatedBoard::OtherPeer> peers = {};

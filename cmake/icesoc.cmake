@@ -253,6 +253,7 @@ function(icesoc_verilate name)
     endif()
   endforeach()
   set(deps ${sources} ${library} ${A_DEPENDS})
+  set(unchanged ${CMAKE_SOURCE_DIR}/cmake/unchanged.sh)
   set(compiler ${CMAKE_CXX_COMPILER})
   if(NOT COVERAGE AND NOT SANITIZE)
     set(compiler ${CLANGXX})
@@ -263,23 +264,22 @@ function(icesoc_verilate name)
     set(without_tree COMMAND find ${dir} -name "*.cpp" -exec sed -i
       "s|MT(\"${CMAKE_SOURCE_DIR}/|MT(\"|" {} +)
   endif()
-  # -O level of code that runs only once. With coverage counters this code is several megabytes
-  # long, and compiling it with -O1 takes minutes.
-  set(slow -O1)
-  if(COVERAGE)
-    set(slow -O0)
-  endif()
-  # Verilator's makefile appends -Os; OPT_FAST overrides it, which doubles the measured speed. The
-  # headers are declared as by-products, so that ninja compiles the files that include them in the
-  # same run, not in the next one.
+  # Verilator's makefile appends -Os; OPT_FAST overrides it, which doubles the measured speed. Code
+  # that runs only once (OPT_SLOW) is not optimised; -O1 took half of an edit's compile time, and
+  # minutes with coverage counters. The headers are declared as by-products, so that ninja compiles
+  # the files that include them in the same run, not in the next one. After each change of the RTL,
+  # Verilator writes all files again. Files with the same content keep their time, so that what
+  # includes them is not compiled again.
   add_custom_command(OUTPUT ${lib} BYPRODUCTS ${dir}/${class}.h ${dir}/${class}___024root.h
+    COMMAND ${unchanged} save ${dir}
     COMMAND ${VERILATOR} ${flags} ${A_PARAMS} ${sources}
     ${without_tree}
-    COMMAND ${CMAKE_COMMAND} -E env CCACHE_DIR=$ENV{CCACHE_DIR}
-            make -s -C ${dir} -f ${class}.mk ${class}__ALL.a
+    COMMAND ${unchanged} restore ${dir}
+    COMMAND ${CMAKE_COMMAND} -E env --unset=MAKEFLAGS CCACHE_DIR=$ENV{CCACHE_DIR}
+            make -s -j2 -C ${dir} -f ${class}.mk ${class}__ALL.a
             "CXX=${CCACHE} ${compiler}" "OPT_FAST=-O3 ${TUNE}" OPT_GLOBAL=-O2
-            "OPT_SLOW=${slow}" "USER_CPPFLAGS=-fPIC" ARCHIVE=1
-    DEPENDS ${deps} VERBATIM COMMENT "Verilating ${A_TOP} as ${name}")
+            OPT_SLOW=-O0 "USER_CPPFLAGS=-fPIC" ARCHIVE=1
+    DEPENDS ${deps} ${unchanged} VERBATIM COMMENT "Verilating ${A_TOP} as ${name}")
   set(defines ${A_FLAGS})
   list(FILTER defines INCLUDE REGEX "^-D")
   list(TRANSFORM defines REPLACE "^-D" "+define+")

@@ -59,9 +59,15 @@ int main() {
 """
 PROGRAMS = r"""rule script
   command = printf '#!/bin/sh\necho said; exit $$((%s))\n' '$fails' >$out && chmod +x $out
-build test_pair: script
+rule model
+  command = mkdir -p $$(dirname $out) && echo "$modules" >$$(dirname $out)/modules && touch $out
+build hdl/verilated_Pair/VPair__ALL.a: model
+  modules = pair other
+build hdl/verilated_Bad/VBad__ALL.a: model
+  modules = bad
+build test_pair: script | hdl/verilated_Pair/VPair__ALL.a
   fails = MUTANT == 1
-build test_bad: script
+build test_bad: script | hdl/verilated_Bad/VBad__ALL.a
   fails = 1
 """
 
@@ -210,23 +216,26 @@ class Cases(Script):
             self.ask("./test_pair", env={**os.environ, "MUTANT": str(mutant)}, status=3)
 
     def a_test_that_fails_as_it_is_catches_none(self):
-        """If a test fails even without a mutant, the results of the other blocks are still
-        reported."""
+        """If a test fails even without a mutant, or does not contain the module that it should
+        test, the results of the other blocks are still reported."""
         write("copy/build/main/build.ninja", PROGRAMS)
         write("by_tests.py", f"""import pathlib, sys
 from concurrent.futures import ThreadPoolExecutor
 from icesoc.mutants import drawn, results, run
 run.TOP, run.prepare = pathlib.Path.cwd(), lambda *_: None
-drawn.TESTS = {{"pair": "test_pair", "bad": "test_bad"}}
+drawn.TESTS = {{"pair|stream": "test_pair", "bad": "test_bad"}}
 rows = [results.Mutant(name, "SURVIVED", "formal." + name, 1, "", {{"module": name}})
-        for name in ("pair", "pair", "bad")]
+        for name in ("pair", "pair", "bad", "stream")]
 with ThreadPoolExecutor(2) as pool:
-    assert drawn.by_tests(rows, run.TOP / "copy", pool) == ["test_bad"]
+    assert drawn.by_tests(rows, run.TOP / "copy", pool) == ["test_bad", "test_pair"]
 assert [(row.result, row.test) for row in rows] == [
-    ("caught", "test_pair"), ("SURVIVED", "formal.pair"), ("SURVIVED", "formal.bad")], rows
+    ("caught", "test_pair"), ("SURVIVED", "formal.pair"), ("SURVIVED", "formal.bad"),
+    ("SURVIVED", "formal.stream")], rows
 """)
         self.ask(TREE / "tools/python", "by_tests.py")
-        self.has("^said$", "test_bad fails without any mutant, so it caught none")
+        self.has("^said$", "test_bad fails without any mutant, so it caught none",
+                 "test_pair does not contain stream, so it cannot catch its mutants")
+        self.lacks("does not contain (pair|bad),")
 
 
 main(Cases)

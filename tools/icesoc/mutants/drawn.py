@@ -15,9 +15,11 @@ from icesoc.util.progress import clock, is_tenth
 from icesoc.util.tree import tree_state
 from concurrent.futures import ThreadPoolExecutor
 
+# Programs that test a module; the first expression that matches the module's name applies.
 TESTS = {
-    "bus_": "test_ip_new_foreign", "npi_|mcb_": "test_ddr_memory",
-    "axis_filter": "test_ip_foreign_axis", "modem_api_": "test_modem_api",
+    "bus_": "test_ip_new_foreign", "npi_stream": "test_ip_foreign_axis test_ip_fir",
+    "npi_|mcb_": "test_ddr_memory", "axis_filter": "test_ip_foreign_axis",
+    "modem_api_": "test_modem_api",
     "modem_": "test_modem test_modem_api", "camera_|async_fifo": "test_ip_camera",
     "fsmc_": "test_fsmc_bridge test_fsmc_modes", "cdc_": "test_fsmc_bridge"}
 # s; lower bound of the CPU-time limit for each step of a mutant's proof
@@ -165,10 +167,18 @@ def programs(row):
                  if re.match(module, row.more["module"])), [])
 
 
+def modules_of(program, build):
+    """Returns the names of the modules in the Verilated models of a program."""
+    inputs = subprocess.check_output(["ninja", "-C", build, "-t", "inputs", program], text=True)
+    lists = [build / path.rpartition("/")[0] / model.MODULES
+             for path in inputs.splitlines() if path.endswith("__ALL.a")]
+    return {name for path in lists if path.exists() for name in path.read_text().split()}
+
+
 def by_tests(rows, copy, pool):
     """Runs the modules' tests on the mutants that the proofs missed. If a test catches a mutant,
     changes the mutant's result and test. Returns the test programs that fail even without a
-    mutant."""
+    mutant, or that do not contain the module that they should test."""
     os.chdir(run.TOP)
     run.prepare(copy, f"-DVERILATOR={TREE}/tools/icesoc/mutants/model.py")
     results.write(copy / "build/drawn.xml", rows)
@@ -205,11 +215,17 @@ def by_tests(rows, copy, pool):
     for row, test in zip(rows, pool.map(caught_by, rows, range(1, len(rows) + 1))):
         if test:
             row.result, row.test = "caught", test
+    contents = {name: modules_of(name, copy / "build/main") for name in needed}
+    lacking = sorted({(name, row.more["module"]) for row in rows for name in programs(row)
+                      if row.more["module"] not in contents[name]})
+    for name, module in lacking:
+        print(f"mutants: {name} does not contain {module}, so it cannot catch its mutants: correct "
+              "TESTS in tools/icesoc/mutants/drawn.py", file=sys.stderr)
     for name in bad:
         path = copy / "build" / f"{name}.0.log"
         print(f"{path.read_text(errors='replace')}mutants: {name} fails without any mutant, so it "
               f"caught none; repair the test first ({path})", file=sys.stderr)
-    return bad
+    return bad + [name for name, _ in lacking]
 
 
 def progress(tried, number):

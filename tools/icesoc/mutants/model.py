@@ -30,6 +30,7 @@ CHOICE = r"""  wire width 16 \mutant
     connect \number \mutant
   end
 """
+MODULES = "modules"  # file in a model's folder with the names of the model's modules
 WRITE = """read_rtlil {folder}/plain.il
 {mutations}opt_expr
 opt_reduce
@@ -87,8 +88,9 @@ def yosys(folder, script):
 
 
 def mutated(arguments, folder):
-    """Writes a file with a model's modules, including all their mutants. Returns the path of the
-    file, or None if the modules have no mutants, or if Yosys cannot read them."""
+    """Writes a file with a model's modules, including all their mutants, and a list of the modules
+    to the model's folder. Returns the path of the file, or None if the modules have no mutants, or
+    if Yosys cannot read them."""
     def of(flag):
         return [a.removeprefix(flag) for a in arguments if a.startswith(flag)]
 
@@ -104,6 +106,9 @@ def mutated(arguments, folder):
         print(f"mutants: Yosys cannot read {top}: its model has no mutants", file=sys.stderr)
         return None
     design = cells(f"{folder}/plain.json")
+    made = pathlib.Path(arguments[arguments.index("--Mdir") + 1])
+    made.mkdir(parents=True, exist_ok=True)
+    (made / MODULES).write_text("\n".join(sorted(set(map(module_of, design)))))
     mutations, has = "", set()
     for number, drawn in enumerate(results.read(os.environ["DRAWN"])[1], 1):
         mutant = drawn.more
@@ -140,7 +145,6 @@ def main():
                 kept = [a for a in arguments if not re.match(r"-G|.*\.v$|-Wall$", a)]
                 given = dict(zip(arguments, arguments[1:]))
                 # the file is kept, because the build reads it again (cmake/files.cmake)
-                os.makedirs(given["--Mdir"], exist_ok=True)
                 file = shutil.copy(file, given["--Mdir"])
                 status = subprocess.call(["verilator", *kept, "-Wno-fatal", "-Wno-lint",
                                           "-Wno-style", file])

@@ -58,21 +58,25 @@ void ClientQueues::dropIfOver(const std::shared_ptr<Client>& client) {
     clients_.erase(client->connection);
 }
 
-std::shared_ptr<Client> ClientQueues::leave(const Connection& connection) {
+Requests ClientQueues::leave(const Connection& connection) {
+    Requests dropped;
     const auto found = clients_.find(connection);
     if (found == clients_.end())
-        return nullptr;
+        return dropped;
     std::shared_ptr<Client> client = found->second;
     auto& requests = client->requests;
-    const auto goes = [&](const std::shared_ptr<Request>& request) {
-        subjects_[client->subject].bytes -= request->isOneway() ? 0 : request->parameters.size();
-        return !request->isOneway();
+    const auto isDropped = [&](const std::shared_ptr<Request>& request) {
+        if (request->isOneway())
+            return false;
+        subjects_[client->subject].bytes -= request->parameters.size();
+        dropped.push_back(request);
+        return true;
     };
-    requests.erase(std::remove_if(requests.begin(), requests.end(), goes), requests.end());
+    requests.erase(std::remove_if(requests.begin(), requests.end(), isDropped), requests.end());
     client->hasLeft = true;
     restIfEmpty(*client);
     dropIfOver(client);
-    return client;
+    return dropped;
 }
 
 bool ClientQueues::hasRoom(const Request& request) {

@@ -52,9 +52,10 @@ public:
     bool block(const std::string& subject);
     void unblock(const std::string& subject) { --subjects_[subject].blocked; }
     void add(std::shared_ptr<Request> request);
-    // Drops the two-way requests of a client that has disconnected; the client's one-way requests
-    // remain. Returns the client, or null if `connection` belongs to no client.
-    std::shared_ptr<Client> leave(const Connection& connection);
+    // Removes and returns the two-way requests of a client that has disconnected; the client's
+    // one-way requests remain. The caller must fail the returned requests: Ice considers a
+    // connection ended only when each of its two-way requests has a reply.
+    Requests leave(const Connection& connection);
 
     using MayGo = std::function<bool(const Client&)>;
     // Returns whether the condition is true for at least one client that has waiting requests.

@@ -73,11 +73,14 @@ void Forwarder::setCallbacks(std::shared_ptr<Ice::ObjectAdapter> adapter) {
 // ---- clients to vehicle ----
 
 void Forwarder::forget(const Connection& connection) {
-    std::lock_guard<std::mutex> lock(mutex_);
-    if (!queues_.leave(connection))
-        return;
-    addressees_.leave(connection);
-    room_.notify_all();
+    Requests dropped;
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        dropped = queues_.leave(connection);
+        addressees_.leave(connection);
+        room_.notify_all();
+    }
+    fail(dropped, std::make_exception_ptr(Ice::ConnectionLostException(__FILE__, __LINE__)));
 }
 
 void Forwarder::take(std::shared_ptr<Request> request) {

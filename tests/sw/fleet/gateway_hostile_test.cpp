@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+//
+// gateway_hostile_test: sends bytes to the gateway that no Ice program sends, and leaves
+// connections as no Ice program does. The gateway must continue, serve others, bound its memory,
+// and end.
+
+#include "gateway_rig.h"
+#include <atomic>
+#include <thread>
+
+namespace {
+
+using Message = std::vector<unsigned char>;
+
+void append(Message& to, size_t number, int bytes = 4) {
+    for (int i = 0; i < bytes; ++i)
+        to.push_back(static_cast<unsigned char>(number >> 8 * i));
+}
+
+void append(Message& to, const std::string& text) {
+    if (text.size() < 255) {
+        append(to, text.size(), 1);
+    } else {
+        append(to, 255, 1);
+        append(to, text.size());
+    }
+    to.insert(to.end(), text.begin(), text.end());
+}
+
+// Parts of a request that a test may choose. The size of the encapsulation may be wrong.
+struct Parts {
+    unsigned id = 1; // 0 for a one-way request
+    std::string object = "echo", operation = "ice_ping", context;
+    size_t encapsulation = 6;
+};
+
+Message request(const Parts& parts) {
+    Message body;
+    append(body, parts.id);
+    append(body, parts.object);
+    append(body, std::string());
+    append(body, std::string()); // no facet
+    append(body, parts.operation);
+    append(body, 0, 1); // mode: normal
+    append(body, !parts.context.empty(), 1);
+    if (!parts.context.empty()) {
+        append(body, std::string("key"));
+        append(body, parts.context);
+    }
+    append(body, parts.encapsulation);
+    append(body, 0x0101, 2);
+    Message all{'I', 'c', 'e', 'P', 1, 0, 1, 0, 0, 0};
+    append(all, 14 + body.size());
+    all.insert(all.end(), body.begin(), body.end());
+    return all;
+}
+
+// RawClient is a connection to the gateway without Ice.
+class RawClient {
+public:
+    explicit RawClient(int port) : fd_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+        sockaddr_in to{};
+        to.sin_family = AF_INET;
+        to.sin_port = htons(static_cast<uint16_t>(port));
+        to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        if (connect(fd_, reinterpret_cast<sockaddr*>(&to), sizeof to) != 0)
+            throw std::runtime_error("no connection to the gateway");
+        const timeval limit{60, 0};
+        setsockopt(fd_, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit);
+        receive(); // ValidateConnection
+    }
+    ~RawClient() { close(fd_); }
+    RawClient(const RawClient&) = delete;
+    RawClient& operator=(const RawClient&) = delete;
+
+    void write(const Message& message) { send(fd_, message.data(), message.size(), MSG_NOSIGNAL); }
+    // Sends a message repeatedly, until nothing was accepted for a second or `limit` bytes were
+    // accepted. Returns the number of accepted bytes.
+    size_t flood(const Message& message, size_t limit) {
+        fcntl(fd_, F_SETFL, O_NONBLOCK);
+        size_t sent = 0;
+        for (int pauses = 0; sent < limit && pauses < 100;) {
+            const size_t at = sent % message.size();
+            const ssize_t count = send(fd_, message.data() + at, message.size() - at, MSG_NOSIGNAL);
+            if (count > 0) {
+                sent += static_cast<size_t>(count);
+                pauses = 0;
+            } else if (errno == EAGAIN) {
+                ++pauses;
+                std::this_thread::sleep_for(std::chrono::milliseconds(10));
+            } else {
+                break; // the gateway has closed the connection
+            }
+        }
+        return sent;
+    }
+    // Returns the next message, or an empty message if the connection has ended.
+    Message receive() {
+        Message message(14);
+        if (recv(fd_, message.data(), 14, MSG_WAITALL) != 14)
+            return {};
+        const size_t size = message[10] | size_t{message[11]} << 8 | size_t{message[12]} << 16;
+        message.resize(size);
+        if (size > 14 && recv(fd_, message.data() + 14, size - 14, MSG_WAITALL) < 0)
+            return {};
+        return message;
+    }
+
+private:
+    const int fd_;
+};
+
+class HostileClients : public Gateway {
+protected:
+    void startWithoutVehicle(const std::string& wait) {
+        world_.rig.with([&] { world_.rig.uav.modem->power(false, world_.rig.ns()); });
+        start({"--wait", wait});
+    }
+    // Stops the gateway. Returns its exit status, or -1 if it was killed because it did not end.
+    int stopOrKill() {
+        std::atomic<bool> hasEnded{false};
+        std::thread killer([&, pid = gateway_->pid()] {
+            for (int tenths = 0; !hasEnded && tenths < 600; ++tenths)
+                std::this_thread::sleep_for(std::chrono::milliseconds(100));
+            if (!hasEnded)
+                kill(pid, SIGKILL);
+        });
+        const int status = stop();
+        hasEnded = true;
+        killer.join();
+        return status;
+    }
+};
+
+TEST_F(HostileClients, AClientThatLeavesItsCallLetsTheGatewayEnd) {
+    startWithoutVehicle("2");
+    RawClient(port_).write(request({}));
+    // The gateway handles this call after the call of the client that has left.
+    expectRefusal([&] { echo_->ice_ping(); }, "waited 2 s for the radio");
+    EXPECT_EQ(stopOrKill(), 0) << "the gateway did not end";
+}
+
+} // namespace

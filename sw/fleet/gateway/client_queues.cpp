@@ -14,7 +14,13 @@ namespace {
 constexpr size_t requestCost = 100;
 
 size_t costOf(const Client& client) {
-    return client.requests.front()->parameters.size() + requestCost;
+    return client.requests.front()->bytes + requestCost;
+}
+
+// Returns the number of bytes of a waiting request that count against the limit of its subject.
+size_t queuedBytes(const Request& request) {
+    constexpr size_t administration = 500; // estimate of the memory that each request takes
+    return request.bytes + administration;
 }
 
 } // namespace
@@ -68,7 +74,7 @@ Requests ClientQueues::leave(const Connection& connection) {
     const auto isDropped = [&](const std::shared_ptr<Request>& request) {
         if (request->isOneway())
             return false;
-        subjects_[client->subject].bytes -= request->parameters.size();
+        subjects_[client->subject].bytes -= queuedBytes(*request);
         dropped.push_back(request);
         return true;
     };
@@ -83,7 +89,7 @@ bool ClientQueues::hasRoom(const Request& request) {
     const bool isFirst = clientOf(request)->requests.empty();
     const Subject& subject = subjects_[request.subject];
     return (isFirst && subject.clients.size() <= mostClients) ||
-           subject.bytes + request.parameters.size() <= mostBytes;
+           subject.bytes + queuedBytes(request) <= mostBytes;
 }
 
 bool ClientQueues::block(const std::string& subject) {
@@ -98,7 +104,7 @@ void ClientQueues::add(std::shared_ptr<Request> request) {
     const std::shared_ptr<Client> client = clientOf(*request);
     Subject& subject = subjects_[client->subject];
     request->client = client;
-    subject.bytes += request->parameters.size();
+    subject.bytes += queuedBytes(*request);
     client->requests.push_back(std::move(request));
     subject.turns.wait(client.get());
     turns_.wait(client->subject);
@@ -113,7 +119,7 @@ bool ClientQueues::isAnyWaiting(const MayGo& condition) const {
 std::shared_ptr<Request> ClientQueues::pop(const std::shared_ptr<Client>& client) {
     std::shared_ptr<Request> request = client->requests.front();
     client->requests.pop_front();
-    subjects_[client->subject].bytes -= request->parameters.size();
+    subjects_[client->subject].bytes -= queuedBytes(*request);
     restIfEmpty(*client);
     dropIfOver(client);
     return request;

@@ -4,6 +4,7 @@
 // calls.
 
 #include "forwarder.h"
+#include "packet_line.h"
 #include "passed_proxies.h"
 
 #include <algorithm>
@@ -58,6 +59,14 @@ std::exception_ptr explained(std::exception_ptr why) {
     }
 }
 
+// Refuses a request of a client. A one-way request has no reply, so the client only notices the
+// loss if its connection is closed.
+[[noreturn]] void refuse(const Request& request, const std::string& why) {
+    if (request.isOneway())
+        request.current.con->close(Ice::ConnectionClose::Forcefully);
+    std::rethrow_exception(unknown(why));
+}
+
 } // namespace
 
 Forwarder::Forwarder(const std::shared_ptr<Ice::ObjectPrx>& vehicle, std::chrono::seconds wait)
@@ -84,19 +93,18 @@ void Forwarder::forget(const Connection& connection) {
 }
 
 void Forwarder::take(std::shared_ptr<Request> request) {
+    if (request->bytes > LINK_MAX_MESSAGE)
+        refuse(*request, "a message of " + std::to_string(request->bytes) +
+                             " bytes is too long for the radio link (at most " +
+                             std::to_string(LINK_MAX_MESSAGE) + " bytes)");
     {
         std::unique_lock<std::mutex> lock(mutex_);
         if (!queues_.hasRoom(*request) && !stopped_) {
             if (!queues_.block(request->subject)) {
                 lock.unlock();
-                // a one-way request has no reply, so the client only notices the loss if its
-                // connection is closed
-                if (request->isOneway())
-                    request->current.con->close(Ice::ConnectionClose::Forcefully);
-                throw Ice::UnknownException(__FILE__, __LINE__,
-                                            "icesoc-gateway: '" + request->subject +
-                                                "' has too many waiting requests: the limit is " +
-                                                std::to_string(ClientQueues::mostBytes) + " bytes");
+                refuse(*request, "'" + request->subject +
+                                     "' has too many waiting requests: the limit is " +
+                                     std::to_string(ClientQueues::mostBytes) + " bytes");
             }
             room_.wait(lock, [&] { return stopped_ || queues_.hasRoom(*request); });
             queues_.unblock(request->subject);
@@ -112,8 +120,8 @@ void Forwarder::take(std::shared_ptr<Request> request) {
 
 int Forwarder::laneOf(const Request& request) const {
     const Ice::Current& current = request.current;
-    const bool isLong = request.parameters.size() > longBytes ||
-                        longReplies_.count({current.id, current.operation}) != 0;
+    const bool isLong =
+        request.bytes > longBytes || longReplies_.count({current.id, current.operation}) != 0;
     return isLong && !lanes_[longCalls].isMissing ? longCalls : shortCalls;
 }
 
@@ -123,9 +131,8 @@ bool Forwarder::mayGo(const Client& client) const {
     const int number = laneOf(request);
     const Lane& lane = lanes_[number];
     return lane.connection && (client.underWay == 0 || client.lane == number) &&
-           (lane.requests == 0 ||
-            (lane.requests < mostUnderWay &&
-             lane.bytes + request.parameters.size() <= mostBytesUnderWay[number]));
+           (lane.requests == 0 || (lane.requests < mostUnderWay &&
+                                   lane.bytes + request.bytes <= mostBytesUnderWay[number]));
 }
 
 // Returns a lane that has no connection although requests wait for this lane; -1 if there is no
@@ -152,7 +159,7 @@ std::shared_ptr<Request> Forwarder::nextRequest() {
     request->lane = request->client->lane = laneOf(*request);
     ++request->client->underWay;
     ++lanes_[request->lane].requests;
-    lanes_[request->lane].bytes += request->parameters.size();
+    lanes_[request->lane].bytes += request->bytes;
     request->isCounted = true;
     return request;
 }
@@ -164,7 +171,7 @@ void Forwarder::release(Request& request) {
         return;
     request.isCounted = false;
     --lanes_[request.lane].requests;
-    lanes_[request.lane].bytes -= request.parameters.size();
+    lanes_[request.lane].bytes -= request.bytes;
     if (request.client)
         --request.client->underWay;
 }
@@ -338,7 +345,7 @@ void Forwarder::confirm(int number, const Ice::Current& of) {
             return;
         lane.isConfirming = true;
         ++lane.requests;
-        lane.bytes += ping->parameters.size();
+        lane.bytes += ping->bytes;
         ping->isCounted = true;
         sent_.insert(ping);
     }

@@ -8,6 +8,17 @@
 
 namespace gateway {
 
+size_t Request::messageBytes(const Ice::Current& current) {
+    const auto text = [](const std::string& s) { return s.size() + (s.size() < 255 ? 1 : 5); };
+    size_t bytes = 14 + 4 + 1; // header, number and mode of the request
+    bytes += text(current.id.name) + text(current.id.category) + text(current.operation);
+    bytes += 1 + (current.facet.empty() ? 0 : text(current.facet));
+    bytes += current.ctx.size() < 255 ? 1 : 5;
+    for (const auto& [key, value] : current.ctx)
+        bytes += text(key) + text(value);
+    return bytes;
+}
+
 void Request::sendTo(const std::shared_ptr<Ice::ObjectPrx>& target, Response onResponse,
                      Failure onError) const {
     auto object = target->ice_identity(current.id)->ice_facet(current.facet);

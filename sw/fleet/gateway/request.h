@@ -27,8 +27,10 @@ struct Client;
 // A request of a client or of the vehicle, which the gateway forwards later.
 struct Request {
     Request(const Parameters& in, Response onResponse, Failure onError, const Ice::Current& current)
-        : parameters(in.first, in.second), response(std::move(onResponse)),
-          failed(std::move(onError)), current(current) {}
+        : parameters(in.first, in.second), bytes(messageBytes(current) + parameters.size()),
+          response(std::move(onResponse)), failed(std::move(onError)), current(current) {}
+    // Returns the size of a request without parameters as an Ice message.
+    static size_t messageBytes(const Ice::Current& current);
     // Sends the request with the connection or endpoints of the proxy `target`, and the identity of
     // the called object. Throws the exceptions that ice_invokeAsync throws.
     void sendTo(const std::shared_ptr<Ice::ObjectPrx>& target, Response onResponse,
@@ -36,6 +38,7 @@ struct Request {
     bool isOneway() const { return current.requestId == 0; }
 
     std::vector<Ice::Byte> parameters;
+    size_t bytes; // size of the request as an Ice message
     Response response;
     Failure failed;
     Ice::Current current;

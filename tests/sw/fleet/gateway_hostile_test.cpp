@@ -30,7 +30,7 @@ void append(Message& to, const std::string& text) {
 // Parts of a request that a test may choose. The size of the encapsulation may be wrong.
 struct Parts {
     unsigned id = 1; // 0 for a one-way request
-    std::string object = "echo", operation = "ice_ping", context;
+    std::string object = "echo", operation = "ice_ping", context = "";
     size_t encapsulation = 6;
 };
 
@@ -138,6 +138,22 @@ TEST_F(HostileClients, AClientThatLeavesItsCallLetsTheGatewayEnd) {
     // The gateway handles this call after the call of the client that has left.
     expectRefusal([&] { echo_->ice_ping(); }, "waited 2 s for the radio");
     EXPECT_EQ(stopOrKill(), 0) << "the gateway did not end";
+}
+
+// A subject may queue 256 KiB of requests. Names and contexts also count, and each request counts
+// more than its bytes. The sockets of a connection hold a few MB.
+TEST_F(HostileClients, RequestsWithoutParametersFillTheQueuesToo) {
+    startWithoutVehicle("600");
+    constexpr size_t limit = 64 << 20, mostAccepted = 24 << 20;
+    EXPECT_LT(RawClient(port_).flood(request({0, "echo", "note", std::string(7000, 'x')}), limit),
+              mostAccepted)
+        << "contexts do not count";
+    EXPECT_LT(RawClient(port_).flood(request({0, "echo", std::string(7000, 'x')}), limit),
+              mostAccepted)
+        << "names do not count";
+    EXPECT_LT(RawClient(port_).flood(request({0}), limit), mostAccepted)
+        << "empty requests do not count";
+    EXPECT_EQ(stopOrKill(), 0);
 }
 
 } // namespace

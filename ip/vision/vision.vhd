@@ -195,10 +195,10 @@ begin
   -- ---- stream ----
 
   -- After the last line of the frame, the core generates additional lines. Their scores are 0; they
-  -- push the last corners out of the pipeline. A record may be pushed one step after record_ready_o
-  -- has fallen, but never in two steps in a row. This is certain because vision_suppress keeps at
-  -- most one of two successive scores: it keeps the first only if the first is not less than the
-  -- second, and the second only if the second is greater.
+  -- push the last corners out of the pipeline. Records are never pushed in two successive steps,
+  -- because vision_suppress keeps at most one of two successive scores: the first if it is not less
+  -- than the second, otherwise at most the second. One record may still be pushed in the step after
+  -- record_ready_o has fallen.
   take       <= streaming and (pixel_valid or not real_pixel) and record_ready;
   pixel_take <= streaming and pixel_valid and real_pixel and record_ready;
 

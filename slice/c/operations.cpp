@@ -79,9 +79,9 @@ bool throwsPreserved(const Unit& unit, const Operation& o) {
                        [](const Declaration* e) { return e->preserves(); });
 }
 
-// Returns whether this exception is the first one in the union with its name; only the first one
-// keeps its name unchanged. Declared exceptions come before derived ones, so a new derived
-// exception never renames a declared exception.
+// Returns whether no earlier exception in the union has the same name as this exception. If an
+// earlier one has, this exception gets another name in the union. Declared exceptions come before
+// derived ones, so a new derived exception never renames a declared exception.
 static bool isFirstOfName(const Operation& o, const std::vector<const Declaration*>& family,
                           const Declaration& exception) {
     for (const auto& list : {o.throws, family})

@@ -224,7 +224,7 @@ void Parser::module() {
                          " already, at line " + std::to_string(symbol->at.line));
     for (const std::string& around : scope_)
         if (lowerCase(around) == lowerCase(called))
-            error(begin, "module '" + called + "' must differ from the module around it, '" +
+            error(begin, "module '" + called + "' needs another name than the module around it, '" +
                              around + "'");
     if (scope_.size() == 1000)
         fail("modules are nested too deeply: expected at most 1000");
@@ -244,7 +244,7 @@ void Parser::checkGlobal(const std::string& name, const Location& at) {
         error(at, "'" + name + "' must be in a module");
     for (const std::string& around : scope_)
         if (lowerCase(around) == lowerCase(name))
-            error(at, "'" + name + "' must differ from the name of the module around it");
+            error(at, "'" + name + "' needs another name than the module around it");
 }
 
 Declaration& Parser::add(Declaration::Kind kind, const std::string& name, const Location& at) {

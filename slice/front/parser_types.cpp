@@ -188,8 +188,8 @@ Symbol* Parser::ownEnumerator(const Declaration& d, const std::string& name, con
     const Declaration* is = other ? other->declaration : nullptr;
     bool isConstant = is && is->kind == Declaration::Kind::Constant && is->value.owner == &d;
     if (other && other->kind != Symbol::Kind::Enumerator && !isConstant)
-        error(at, "'" + name + "' is '" + other->id + "' here; the enumerator is '" + d.name +
-                      "::" + name + "'");
+        error(at, "'" + name + "' means '" + other->id + "' here; write '" + d.name + "::" + name +
+                      "' for the enumerator");
     return found;
 }
 

@@ -52,8 +52,8 @@ Ice_Status icec_sendHead(Ice_CommunicatorPtr ic, int connection, Ice_Byte type);
 
 /* Records that a connection with this number has begun; the caller holds the state lock. */
 void icec_openConnection(Ice_CommunicatorPtr ic, int connection, Ice_ConnectionState state);
-/* Closes the connection in its transport. Calls that wait for replies on it continue to wait until
- * icec_loseConnection. */
+/* Lets the transport close the connection. Calls that wait for a reply on this connection still
+ * wait afterwards: icec_loseConnection ends them. */
 void icec_closeConnection(Ice_CommunicatorPtr ic, int connection);
 Ice_ConnectionState icec_connectionState(Ice_CommunicatorPtr ic, int connection);
 

@@ -76,7 +76,7 @@ typedef enum Ice_Failed {
     ICE_FAILED_CALLS, /* the limit of calls; the reason of an ICE_LIMIT, never of a failed stream */
     ICE_FAILED_CONNECTIONS,
     ICE_FAILED_NESTING,
-    /* the limit of a type in Slice, set by ["c:max:N"]; the stream's `bound` names it */
+    /* the limit that ["c:max:N"] sets for a type in Slice; the stream's `bound` says which type */
     ICE_FAILED_BOUND
 } Ice_Failed;
 

@@ -121,8 +121,8 @@ uint32_t SystemControl::read(uint32_t address, unsigned size) {
     if (address % size)
         throw NotModelled("an unaligned access to the system register " + hex(address));
     if (size < 4 && !hasBytes(address))
-        throw NotModelled("reading the system register " + hex(address) + " in " +
-                          std::to_string(size) + " bytes");
+        throw NotModelled("reading the system register " + hex(address) + " with an access of " +
+                          std::to_string(size) + (size == 1 ? " byte" : " bytes"));
     if (!accessWord(address & ~3u, false, word))
         throw NotModelled("reading the system register " + hex(address & ~3u));
     word >>= 8 * (address & 3);
@@ -132,7 +132,8 @@ uint32_t SystemControl::read(uint32_t address, unsigned size) {
 void SystemControl::write(uint32_t address, unsigned size, uint32_t value) {
     auto refuse = [&] {
         throw NotModelled("writing " + hex(value) + " to the system register " + hex(address) +
-                          " in " + std::to_string(size) + " bytes");
+                          " with an access of " + std::to_string(size) +
+                          (size == 1 ? " byte" : " bytes"));
     };
     if (address % size)
         refuse();

@@ -77,7 +77,7 @@ void PtyLine::readAhead(uint64_t now) {
     for (; counter && looks < patience; ++looks) {
         uint8_t bytes[512];
         ssize_t count = read(master_, bytes, sizeof bytes);
-        if (count > 0) {        // possibly from a program that no longer counts
+        if (count > 0) {        // possibly bytes of an earlier program
             if (ahead_.empty()) // the wire was idle until now
                 rxFree_ = std::max(rxFree_, static_cast<double>(now));
             ahead_.insert(ahead_.end(), bytes, bytes + count);

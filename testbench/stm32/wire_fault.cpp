@@ -191,8 +191,7 @@ WireFault WireFault::parse(const std::string& text) {
         fault.value = std::strtod(what.c_str() + equals + 1, &end);
         const bool isNumber = end != what.c_str() + equals + 1 && end == unit;
         if (!isNumber || fault.value > 50 || fault.value < (fault.kind == Off ? -50 : 0))
-            refuse(text, "a number of " + unit + " of at most 50, such as 2" + unit,
-                   what.substr(equals + 1));
+            refuse(text, "at most 50 " + unit + ", such as 2" + unit, what.substr(equals + 1));
     }
     return fault;
 }

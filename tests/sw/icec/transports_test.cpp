@@ -164,7 +164,7 @@ TEST_F(Transports, ABusyOneDoesNotKeepTheOtherFromBeingHeard) {
     for (int i = 0; i < 500; ++i)
         there_->loop.inject(ICE_EVENT_MESSAGE, 1, IceMessages::validate()); // a heartbeat
     int polls = 0;
-    for (; polls < 5; ++polls) // now it is the loop's turn to be polled
+    for (; polls < 5; ++polls) // afterwards, the next poll asks `loop` first
         EXPECT_EQ(Ice_Communicator_poll(&there_->ic, 0), ICE_OK);
     ASSERT_EQ(call(oneway, "op"), ICE_OK);
     for (came_ = -1; came_ < 0 && polls < 500; ++polls)

@@ -155,15 +155,17 @@ TEST_P(NotModelledParts, StopTheProgramWithAMessage) {
 }
 INSTANTIATE_TEST_SUITE_P(
     Cpu, NotModelledParts,
-    ::testing::Values(
-        Refusal{"Case_unprivileged", "unprivileged code (CONTROL.nPRIV)"},
-        Refusal{"Case_sleepOnExit", "writing 0x00000002 to the system register 0xE000ED10"},
-        Refusal{"Case_waitForEvent", "WFE"},
-        Refusal{"Case_unknownRegister", "reading the system register 0xE000EDF0"},
-        Refusal{"Case_noBackground", "0xE000ED94"}, Refusal{"Case_alignmentTrap", "0xE000ED14"},
-        Refusal{"Case_byteOfRegister", "reading the system register 0xE000E010 in 1 bytes"},
-        Refusal{"Case_unprivilegedLoad", "unprivileged access (LDRT"},
-        Refusal{"Case_unprivilegedStore", "unprivileged access (LDRT"}));
+    ::testing::Values(Refusal{"Case_unprivileged", "unprivileged code (CONTROL.nPRIV)"},
+                      Refusal{"Case_sleepOnExit",
+                              "writing 0x00000002 to the system register 0xE000ED10"},
+                      Refusal{"Case_waitForEvent", "WFE"},
+                      Refusal{"Case_unknownRegister", "reading the system register 0xE000EDF0"},
+                      Refusal{"Case_noBackground", "0xE000ED94"},
+                      Refusal{"Case_alignmentTrap", "0xE000ED14"},
+                      Refusal{"Case_byteOfRegister",
+                              "reading the system register 0xE000E010 with an access of 1 byte"},
+                      Refusal{"Case_unprivilegedLoad", "unprivileged access (LDRT"},
+                      Refusal{"Case_unprivilegedStore", "unprivileged access (LDRT"}));
 
 TEST_F(Cpu, ALineThatStaysHighPendsAgainWhenItsPendingBitIsCleared) {
     m3.cpu.setInterrupt(2, true);

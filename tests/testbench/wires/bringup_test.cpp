@@ -186,10 +186,9 @@ TEST(WireFault, NamesTheExpectedForm) {
         {"D1-D1:short", "fault D1-D1:short: expected two different wires, got 'D1-D1'"},
         {"D1-D2:open", "fault D1-D2:open: expected one wire, got 'D1-D2'"},
         {"NWE:late", "fault NWE:late: expected a value, such as late=2ns, got 'late'"},
-        {"NWE:late=12", "fault NWE:late=12: expected a number of ns of at most 50, such as 2ns, "
-                        "got '12'"},
-        {"NWE:late=-1ns", "fault NWE:late=-1ns: expected a number of ns of at most 50, such as "
-                          "2ns, got '-1ns'"},
+        {"NWE:late=12", "fault NWE:late=12: expected at most 50 ns, such as 2ns, got '12'"},
+        {"NWE:late=-1ns", "fault NWE:late=-1ns: expected at most 50 ns, such as 2ns, "
+                          "got '-1ns'"},
         {"D3:open=1", "fault D3:open=1: expected no value, got 'open=1'"}};
     for (const auto& [text, expected] : cases) {
         try {

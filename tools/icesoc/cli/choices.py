@@ -35,7 +35,8 @@ NOUNS = {}
 
 
 def expecting(noun):
-    """Returns a decorator that stores the text for error messages about a function's names."""
+    """Returns a decorator for a function that returns the possible values of an option. It stores
+    what error messages call such a value."""
     def declare(function):
         NOUNS[function] = noun
         return function

@@ -128,8 +128,8 @@ def role(name, port, bus):
 
 
 def roles_of(top, bus, ports, given):
-    """Returns the role of each port, and the number of clocks after which a core without `ack`
-    answers (None with `ack`). `given`: ROLE=port from the command line."""
+    """Returns the role of each port, and the latency: if the core has no port `ack`, the number of
+    clocks until the core has answered; otherwise None. `given`: ROLE=port from the command line."""
     roles = {n: role(n, p, bus) for n, p in ports.items()}
     latency = take_given(top, bus, ports, roles, given)
     check_needed(top, bus, ports, roles, latency)

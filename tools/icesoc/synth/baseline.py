@@ -16,7 +16,7 @@ NAMED_CHANGES = 6
 MEASURED, ACCEPTED, CHANGED, NEVER = STATES = (
     # the figures of the current sources are known, from this run or from the cache
     "measured now",
-    # not measured here, but the accepted figures are those of the current sources
+    # not measured in this build folder, but the accepted figures belong to the current sources
     "as accepted",
     "changed since",        # not measured with the current sources, only with other ones
     # never measured here, and the sources of accepted figures are unknown

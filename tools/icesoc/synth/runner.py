@@ -199,7 +199,7 @@ def together(orders):
     by_lut = sorted(orders, key=lambda figures: figures["lut"])
     by_clock = sorted(orders, key=lambda figures: figures["mhz"])
     middle, setting, slowest = by_lut[len(orders) // 2], by_clock[len(orders) // 2], by_clock[0]
-    pads = {}  # (kind, port) -> the longest path among all orders
+    pads = {}  # (kind, port) -> the longest path over all mappings
     for path in (path for figures in orders for path in figures["timing"]["pads"]):
         key = path["kind"], path["port"]
         pads[key] = max(path, pads.get(key, path), key=lambda p: p["ns"])

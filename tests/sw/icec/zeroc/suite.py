@@ -124,7 +124,8 @@ class Loader(importlib.abc.Loader):
 
 
 class Finder(importlib.abc.MetaPathFinder):
-    """Loads the modules of the suite, and guards each of their statements."""
+    """Loads the modules of the suite. Each of their statements is wrapped, so that a statement
+    that fails does not end the test (see Guard)."""
 
     def find_spec(self, name, path, target=None):
         file = os.path.join(os.getcwd(), name + ".py")

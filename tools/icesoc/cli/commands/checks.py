@@ -194,7 +194,8 @@ def mutants(values):
 
 
 @command("check faults", [
-    Option("moments", COUNT, "number of times at which each fault is injected, per seed", 10), SEED,
+    Option("moments", COUNT, "number of moments of a flight, each in a flight of its own, at which "
+           "each fault is injected, for each seed", 10), SEED,
     Option("seeds", COUNT, "number of seeds, starting with --seed", 1),
     Option("name", NAME.kind, "only faults with this text in their name, such as killed", ""),
      BUILD, JOBS],
@@ -239,8 +240,8 @@ def soak(values):
 
     Spends a quarter of the CPU time on tests of the link layer, a quarter on the link layer under
     attack, and half on calls between stock Ice, which uses the plugin, and IceC on the chip's RTL.
-    In addition, ten vehicles and two ground stations fly. The simulated time of this flight also
-    equals --minutes; the flight adds a twentieth to the CPU time.
+    In addition, ten vehicles and two ground stations fly for --minutes of simulated time, which
+    takes another twentieth of the CPU time.
     """
     build = configured(values, "soak", "test_chip_soak", "test_ground_engine", "test_modem_soak",
                        "test_link")

@@ -49,9 +49,9 @@ DEBUGGED = [option for option in flight.FIELDS if option.name in ("image", "size
 def fly_mission(values):
     """fly the mission: simulated UAV, radio, ZeroC Ice ground station
 
-    Opens a page that shows the flight, or prints the page's address. The vehicle keeps running
-    after the mission while a browser shows the page, or with --live until Ctrl-C; the page can call
-    it. OUT/flight.json describes the flight; --again repeats it.
+    Opens a page that shows the flight, or prints the page's address. After the mission, the vehicle
+    keeps running while a browser shows the page, or with --live until Ctrl-C, so that you can call
+    the vehicle from the page. OUT/flight.json describes the flight; --again repeats it.
     """
     descriptors = resource.getrlimit(resource.RLIMIT_NOFILE)[0]
     if descriptors < DESCRIPTORS:

@@ -17,9 +17,9 @@ ROOMS = "bus;slice;ip;sw;hdl;testbench"
 
 
 @command("package", [
-    Option("build", FOLDER, "build folder; programs in the default folder are compiled for any CPU "
-                            "of this architecture, programs in any other folder, such as "
-                            "build/main, only for this machine's CPU",
+    Option("build", FOLDER, "build folder. In the default folder, programs are compiled for any "
+                            "CPU of this architecture. In any other folder, such as build/main, "
+                            "they are compiled only for this machine's CPU",
            BUILD),
     Option("output", FOLDER, "folder for the packages", "build/packages"),
     Option("check", SWITCH, "check the packages with lintian"), JOBS], make="package",

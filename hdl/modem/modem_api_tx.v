@@ -72,8 +72,8 @@ module modem_api_tx (
             total <= place < DATA ? 8'd0 : total + data_o;
         if (past && !$past(rst_i)) begin
             assert (place <= CHECKSUM);
-            // The positions follow each other in order. CHECKSUM follows the last byte of the
-            // packet.
+            // `place` counts up by 1 for each byte of the frame, and remains DATA until the last
+            // byte of the packet. CHECKSUM comes last.
             if ($past(api_i) && api_i)
                 assert (place == $past(!taken || (place == DATA && !last_i) ? place :
                                        place == CHECKSUM ? 3'd0 : place + 3'd1));

@@ -13,8 +13,8 @@
 #include <openssl/sha.h>
 #include <string>
 
-// counted and sixteen return bytes that count up from `first`, for messages and keys; hex returns
-// the hexadecimal digits of bytes.
+// counted() and sixteen() return bytes that count up from `first`: counted() for messages,
+// sixteen() for keys. hex() returns bytes as hexadecimal digits.
 inline AsconBytes counted(uint8_t first, size_t size) {
     AsconBytes bytes(size);
     for (size_t i = 0; i < size; ++i)

@@ -49,8 +49,9 @@ public:
     const std::string& name() const { return name_; }
     int fd() const { return fd_; }
 
-    // Returns the descriptor and its events for poll; fd is -1 if there are no events. `reads` is
-    // true if the link has room for messages.
+    // Returns the descriptor and its events for poll; fd is -1 if there are no events. `reads`
+    // decides whether to wait for bytes of the program; pass true if the link has room for
+    // messages.
     pollfd interest(bool reads) const;
     void read(U32 nowUs);                 // reads from the program, at most one buffer
     bool ended() const { return ended_; } // true if the program will send nothing more

@@ -121,19 +121,18 @@ uint32_t SystemControl::read(uint32_t address, unsigned size) {
     if (address % size)
         throw NotModelled("an unaligned access to the system register " + hex(address));
     if (size < 4 && !hasBytes(address))
-        throw NotModelled("reading the system register " + hex(address) + " with an access of " +
-                          std::to_string(size) + (size == 1 ? " byte" : " bytes"));
+        throw NotModelled("a read of " + std::to_string(8 * size) +
+                          " bits from the system register " + hex(address));
     if (!accessWord(address & ~3u, false, word))
-        throw NotModelled("reading the system register " + hex(address & ~3u));
+        throw NotModelled("a read of the system register " + hex(address & ~3u));
     word >>= 8 * (address & 3);
     return size < 4 ? word & ((1u << 8 * size) - 1) : word;
 }
 
 void SystemControl::write(uint32_t address, unsigned size, uint32_t value) {
     auto refuse = [&] {
-        throw NotModelled("writing " + hex(value) + " to the system register " + hex(address) +
-                          " with an access of " + std::to_string(size) +
-                          (size == 1 ? " byte" : " bytes"));
+        throw NotModelled("a write of " + std::to_string(8 * size) + " bits, " + hex(value) +
+                          ", to the system register " + hex(address));
     };
     if (address % size)
         refuse();

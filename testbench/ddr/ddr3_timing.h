@@ -32,8 +32,8 @@ constexpr Ddr3Part mt41j64m16{
 
 class Ddr3Timing {
 public:
-    // `refreshLater`: additional time between the precharge of all banks (plus tRP) and a refresh,
-    // memory clocks
+    // `refreshLater`: number of memory clocks by which each refresh is delayed. Without a delay, a
+    // refresh begins tRP after the precharge of all banks.
     explicit Ddr3Timing(const Ddr3Part& part, unsigned refreshLater = 0)
         : part_(part), refreshLater_(refreshLater), nextRefresh_(part.tREFI) {}
 

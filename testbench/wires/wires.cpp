@@ -58,7 +58,8 @@ void Wires::plant(const WireFault& fault) {
         ringing_[a] = true;
         break;
     default:
-        throw std::runtime_error("wire " + fault.wire + ": this fault does not affect levels");
+        throw std::runtime_error("wire " + fault.wire +
+                                 ": expected a fault that changes the level of a wire");
     }
 }
 

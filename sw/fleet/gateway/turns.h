@@ -40,8 +40,8 @@ public:
         if (entry == entries_.end())
             return;
         entry->second.isWaiting = false;
-        // removes flows that do not wait and whose tags are not above the clock: a flow that waits
-        // again later gets the clock as its tag, as a new flow does
+        // removes each flow that does not wait and has a tag up to clock_. Nothing is lost: when
+        // such a flow waits again, its tag becomes clock_, like the tag of a new flow.
         for (auto each = entries_.begin(); each != entries_.end();) {
             const bool isOver = !each->second.isWaiting && each->second.tag <= clock_;
             each = isOver ? entries_.erase(each) : std::next(each);

@@ -98,7 +98,7 @@ refused 'ADDRESS=fast: expected words or bytes' wb_port wishbone ADDRESS=fast wb
 refused 'leave out ack=' apb_words apb ack=1 pin=PREADY "$here/apb_words.v" timescale.v
 refused 'CLOCK: a core with AXI-Streams' axis_scale axis CLOCK=24000000 cores.v
 refused 'LIBRARY: expected VHDL files, got Verilog' req_words own LIBRARY=lights cores.v
-refused 'a setting requires BUS=axis' req_words own setting=value cores.v
+refused "expected 'setting' only with BUS=axis" req_words own setting=value cores.v
 refused "setting must be an input of the core, and 'over' is not" axis_scale axis setting=over \
     cores.v
 # The same module name in two cores of a chip is an error.

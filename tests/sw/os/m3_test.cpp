@@ -31,8 +31,8 @@ TEST_P(OsM3Cases, SaysWhatTheManualSays) {
     EXPECT_EQ(m3.text("os_said"), c.expected);
 }
 
-// In each run, the interrupt wakes the task of higher priority before another instruction, so that
-// tasks are switched at many points of the computation.
+// Each run interrupts the computation at a different instruction, and there wakes the task of
+// higher priority. Tasks are therefore switched at many points of the computation.
 TEST(OsM3, ASwitchAtAnyInstructionLosesNoRegister) {
     unsigned number = 0;
     while (std::string(os_cases[number].name) != "RegistersSurviveSwitches")

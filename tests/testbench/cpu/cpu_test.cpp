@@ -157,13 +157,13 @@ INSTANTIATE_TEST_SUITE_P(
     Cpu, NotModelledParts,
     ::testing::Values(Refusal{"Case_unprivileged", "unprivileged code (CONTROL.nPRIV)"},
                       Refusal{"Case_sleepOnExit",
-                              "writing 0x00000002 to the system register 0xE000ED10"},
+                              "a write of 32 bits, 0x00000002, to the system register 0xE000ED10"},
                       Refusal{"Case_waitForEvent", "WFE"},
-                      Refusal{"Case_unknownRegister", "reading the system register 0xE000EDF0"},
+                      Refusal{"Case_unknownRegister", "a read of the system register 0xE000EDF0"},
                       Refusal{"Case_noBackground", "0xE000ED94"},
                       Refusal{"Case_alignmentTrap", "0xE000ED14"},
                       Refusal{"Case_byteOfRegister",
-                              "reading the system register 0xE000E010 with an access of 1 byte"},
+                              "a read of 8 bits from the system register 0xE000E010"},
                       Refusal{"Case_unprivilegedLoad", "unprivileged access (LDRT"},
                       Refusal{"Case_unprivilegedStore", "unprivileged access (LDRT"}));
 

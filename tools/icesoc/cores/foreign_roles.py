@@ -163,7 +163,8 @@ def take_given(top, bus, ports, roles, given):
             fail(f"PORTS: {what} must be an {'output' if is_output else 'input'} of the core, and "
                  f"'{port}' is not")
         if what == "setting" and bus != "axis":
-            fail("PORTS: a setting requires BUS=axis; here an input outside the bus is a pin")
+            fail("PORTS: expected 'setting' only with BUS=axis; with this bus, use 'pin' for an "
+                 "input outside the bus")
         roles[port] = words[what]
         named.add(port)
     return latency

@@ -30,8 +30,8 @@ TRANSCRIPT = re.compile(r"(?<=Ice's log lines\):\n\n```\n).*?(?=```)", re.S)
 # If a figure has no source, it must be the same in all texts that contain its name.
 PLACES = {
     "README.md": [
-        "removed as unused (`make size`) | {minimal} |",
-        "with its unused sections (`make size`) | {unlinked} |",
+        "after linking (`make size`) | {minimal} |",
+        "removes as unused (`make size`) | {unlinked} |",
         "| flip-flops | 1537 | {table1.ff} | {flown.ff} |",
         "| LUT sites | 1728 | {table1.sites} ({table1.low} to {table1.high}) | "
         "{flown.sites} ({flown.low} to {flown.high}) |",

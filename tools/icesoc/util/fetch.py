@@ -230,7 +230,7 @@ def ice(target):
 
 
 def zeroc(target):
-    """ZeroC's test suites for Python and wrong Slice files, 3.7.8"""
+    """from ZeroC Ice 3.7.8: the Python test suites, and Slice files that a compiler must reject"""
     source = ice_source("3.7.8")
     unpack(source, "ice-3.7.8/cpp/test/Slice/errorDetection/", target / "errorDetection", ".ice")
     unpack(source, "ice-3.7.8/python/test/", target)

@@ -69,7 +69,8 @@ class Guard(ast.NodeTransformer):
         self.name = name
 
     def visit_Try(self, node):
-        return self.guarded(node)  # the `try` as a whole is guarded, because it expects exceptions
+        # only the whole statement is wrapped, because its body must be able to throw
+        return self.guarded(node)
 
     def visit_FunctionDef(self, node):
         node.body = [self.visit(s) for s in node.body]

@@ -194,8 +194,8 @@ def mutants(values):
 
 
 @command("check faults", [
-    Option("moments", COUNT, "number of moments of a flight, each in a flight of its own, at which "
-           "each fault is injected, for each seed", 10), SEED,
+    Option("moments", COUNT, "number of flights for each fault and seed; each flight gets the "
+           "fault at another moment", 10), SEED,
     Option("seeds", COUNT, "number of seeds, starting with --seed", 1),
     Option("name", NAME.kind, "only faults with this text in their name, such as killed", ""),
      BUILD, JOBS],

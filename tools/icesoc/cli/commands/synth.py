@@ -18,7 +18,7 @@ from icesoc.util.tree import commit
 
 GROUPS["synth"] = "synthesis: LUTs, flip-flops, clock"
 DEFAULTS["synth"] = "synth report"
-GROUPS["contract"] = "registers: changes, import of SystemRDL"
+GROUPS["contract"] = "compare registers with an earlier commit, import SystemRDL"
 SHOWN = 10  # number of tests listed in one line of the report for a pull request
 DESIGN = Option("design", WORDS,
                 "designs to measure, such as modem, table1 or soc; for all other designs, the "

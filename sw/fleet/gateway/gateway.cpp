@@ -9,6 +9,7 @@
 
 #include "gateway_options.h"
 #include "pages.h"
+#include "reason.h"
 #include "registration.h"
 #include "rights.h"
 
@@ -16,45 +17,12 @@
 #include <IceSSL/OpenSSL.h>
 #include <IceStorm/IceStorm.h>
 #include <algorithm>
-#include <cctype>
 #include <csignal>
 #include <iostream>
 #include <list>
 #include <openssl/ssl.h>
 
 namespace {
-
-// Returns the reason why Ice failed, in words. Ice's message is not used, because it begins with a
-// position in Ice's source code.
-std::string reasonOf(const Ice::Exception& e) {
-    if (const auto* file = dynamic_cast<const Ice::FileException*>(&e))
-        return file->path + ": " + std::generic_category().message(file->error);
-    if (const auto* system = dynamic_cast<const Ice::SyscallException*>(&e))
-        return std::generic_category().message(system->error);
-    if (const auto* host = dynamic_cast<const Ice::DNSException*>(&e))
-        return host->host + ": host not found";
-    if (const auto* plugin = dynamic_cast<const Ice::PluginInitializationException*>(&e))
-        return plugin->reason;
-    if (const auto* start = dynamic_cast<const Ice::InitializationException*>(&e))
-        return start->reason;
-    if (const auto* security = dynamic_cast<const Ice::SecurityException*>(&e))
-        return security->reason;
-    if (const auto* endpoint = dynamic_cast<const Ice::EndpointParseException*>(&e))
-        return endpoint->str;
-    if (const auto* proxy = dynamic_cast<const Ice::ProxyParseException*>(&e))
-        return proxy->str;
-    if (const auto* endpoint = dynamic_cast<const Ice::NoEndpointException*>(&e))
-        return "expected a proxy with endpoints, got '" + endpoint->proxy + "'";
-    // Other exceptions have no text. Their reason is the name of the exception, split into words.
-    const std::string id = e.ice_id();
-    std::string words;
-    for (const char c : id.substr(id.rfind(':') + 1))
-        if (std::isupper(c))
-            words += (words.empty() ? "" : " ") + std::string(1, char(std::tolower(c)));
-        else
-            words += c;
-    return words.substr(0, words.rfind(" exception"));
-}
 
 using namespace gateway;
 
@@ -66,7 +34,21 @@ public:
     explicit Servant(Take take) : take_(std::move(take)) {}
     void ice_invokeAsync(Parameters in, Response response, Failure failed,
                          const Ice::Current& current) override {
-        take_(std::make_shared<Request>(in, std::move(response), std::move(failed), current));
+        const auto inform = [failed](std::exception_ptr why) { failed(inWords(why)); };
+        try {
+            take_(std::make_shared<Request>(in, std::move(response), inform, current));
+        } catch (const Ice::Exception&) {
+            inform(std::current_exception());
+        }
+    }
+    // Ice calls this function to dispatch a request. It fails if the request's parameters are not a
+    // valid encapsulation.
+    bool _iceDispatch(IceInternal::Incoming& in, const Ice::Current& current) override {
+        try {
+            return Ice::BlobjectArrayAsync::_iceDispatch(in, current);
+        } catch (const Ice::LocalException&) {
+            std::rethrow_exception(inWords(std::current_exception()));
+        }
     }
 
 private:

@@ -3,6 +3,7 @@
 // request: sends a request to its object, or fails it.
 
 #include "request.h"
+#include "reason.h"
 
 #include <iostream>
 
@@ -52,10 +53,8 @@ void fail(const Requests& requests, std::exception_ptr why) {
     };
     try {
         std::rethrow_exception(why);
-    } catch (const Ice::UnknownException& e) {
-        report(e.unknown);
-    } catch (const std::exception& e) {
-        report(e.what());
+    } catch (const Ice::Exception& e) {
+        report(reasonOf(e));
     }
 }
 

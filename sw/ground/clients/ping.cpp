@@ -4,6 +4,7 @@
 // prints the duration of each ping. Usage: ping "hwengine1:xbee-at -d /dev/ttyUSB0 -a 1" [count]
 
 #include <Ice/Ice.h>
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
@@ -12,6 +13,18 @@
 // an installed plugin is in the system's library folder, so the name alone is enough
 #define PLUGIN "xbeeat"
 #endif
+
+// Returns the reason of an error. An Ice exception's message begins with a line that contains a
+// position in Ice's source code and the name of a class; the reason follows.
+static std::string reasonOf(const std::exception& error) {
+    std::string text = error.what();
+    if (const auto* ice = dynamic_cast<const Ice::Exception*>(&error)) {
+        const size_t end = text.find('\n');
+        text = end == std::string::npos ? ice->ice_id().substr(7) : text.substr(end + 1);
+    }
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+}
 
 int main(int argc, char** argv) {
     if (argc < 2 || std::string(argv[1]) == "--help") {
@@ -44,7 +57,7 @@ int main(int argc, char** argv) {
         }
         std::cout << "type: " << object->ice_id() << std::endl;
     } catch (const std::exception& e) {
-        std::cerr << "ping: " << e.what() << "\n";
+        std::cerr << "ping: " << reasonOf(e) << "\n";
         return 1;
     }
     return 0;

@@ -116,6 +116,11 @@ protected:
         world_.rig.with([&] { world_.rig.uav.modem->power(false, world_.rig.ns()); });
         start({"--wait", wait});
     }
+    // Checks that a text for users contains no name of a source file or of an exception.
+    static void expectWords(const std::string& text) {
+        for (const char* internal : {".cpp", ".h:", "::Ice::", "Exception"})
+            EXPECT_EQ(text.find(internal), std::string::npos) << text;
+    }
     // Stops the gateway. Returns its exit status, or -1 if it was killed because it did not end.
     int stopOrKill() {
         std::atomic<bool> hasEnded{false};
@@ -154,6 +159,38 @@ TEST_F(HostileClients, RequestsWithoutParametersFillTheQueuesToo) {
     EXPECT_LT(RawClient(port_).flood(request({0}), limit), mostAccepted)
         << "empty requests do not count";
     EXPECT_EQ(stopOrKill(), 0);
+}
+
+// The gateway's log, and the reason that a client gets for a failed call, are words.
+TEST_F(HostileClients, ErrorsAreWords) {
+    startWithoutVehicle("600");
+    RawClient client(port_);
+    Parts wrong;
+    wrong.encapsulation = 600; // longer than the message
+    client.write(request(wrong));
+    const Message reply = client.receive();
+    ASSERT_GT(reply.size(), 25U);
+    EXPECT_EQ(reply[18], 5) << "UnknownLocalException";
+    const std::string why(reply.begin() + 19, reply.end());
+    EXPECT_NE(why.find("out of bounds"), std::string::npos) << why;
+    expectWords(why);
+    Parts tooLong;
+    tooLong.context = std::string(9000, 'x');
+    client.write(request(tooLong));
+    const Message refused = client.receive();
+    const std::string limit(refused.begin(), refused.end());
+    EXPECT_NE(limit.find("too long for the radio link (at most 8192 bytes)"), std::string::npos);
+    expectWords(limit);
+    // These calls wait when the gateway ends.
+    client.write(request({0}));
+    client.write(request({7}));
+    client.write(request(wrong));
+    EXPECT_FALSE(client.receive().empty()) << "the reply to the last call";
+    EXPECT_EQ(stopOrKill(), 0);
+    const Message waiting = client.receive();
+    expectWords({waiting.begin(), waiting.end()});
+    EXPECT_TRUE(hasPrinted("one-way calls that were not sent: 1 (the gateway ends)")) << said();
+    expectWords(said());
 }
 
 } // namespace

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+//
+// reason: chooses the text of an exception by its class.
+
+#include "reason.h"
+
+#include <cctype>
+#include <system_error>
+
+namespace gateway {
+
+std::string reasonOf(const Ice::Exception& e) {
+    if (const auto* file = dynamic_cast<const Ice::FileException*>(&e))
+        return file->path + ": " + std::generic_category().message(file->error);
+    if (const auto* system = dynamic_cast<const Ice::SyscallException*>(&e))
+        return std::generic_category().message(system->error);
+    if (const auto* host = dynamic_cast<const Ice::DNSException*>(&e))
+        return host->host + ": host not found";
+    if (const auto* plugin = dynamic_cast<const Ice::PluginInitializationException*>(&e))
+        return plugin->reason;
+    if (const auto* start = dynamic_cast<const Ice::InitializationException*>(&e))
+        return start->reason;
+    if (const auto* security = dynamic_cast<const Ice::SecurityException*>(&e))
+        return security->reason;
+    if (const auto* unknown = dynamic_cast<const Ice::UnknownException*>(&e))
+        return unknown->unknown;
+    const auto* protocol = dynamic_cast<const Ice::ProtocolException*>(&e);
+    if (protocol && !protocol->reason.empty())
+        return protocol->reason;
+    if (dynamic_cast<const Ice::CommunicatorDestroyedException*>(&e))
+        return "the gateway ends";
+    if (const auto* endpoint = dynamic_cast<const Ice::EndpointParseException*>(&e))
+        return endpoint->str;
+    if (const auto* proxy = dynamic_cast<const Ice::ProxyParseException*>(&e))
+        return proxy->str;
+    if (const auto* endpoint = dynamic_cast<const Ice::NoEndpointException*>(&e))
+        return "expected a proxy with endpoints, got '" + endpoint->proxy + "'";
+    // Other exceptions have no text. Their reason is the name of the exception, split into words.
+    const std::string id = e.ice_id();
+    std::string words;
+    for (const char c : id.substr(id.rfind(':') + 1))
+        if (std::isupper(c))
+            words += (words.empty() ? "" : " ") + std::string(1, char(std::tolower(c)));
+        else
+            words += c;
+    return words.substr(0, words.rfind(" exception"));
+}
+
+std::exception_ptr inWords(std::exception_ptr why) {
+    try {
+        std::rethrow_exception(why);
+    } catch (const Ice::RequestFailedException&) {
+        return why;
+    } catch (const Ice::UnknownException&) {
+        return why;
+    } catch (const Ice::LocalException& e) {
+        return std::make_exception_ptr(
+            Ice::UnknownLocalException(__FILE__, __LINE__, "icesoc-gateway: " + reasonOf(e)));
+    } catch (...) {
+        return why;
+    }
+}
+
+} // namespace gateway

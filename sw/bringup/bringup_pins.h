@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * bringup_pins: the microcontroller's pins for the lines to the FPGA. Each line is X(name, place),
+ * bringup_pins: pins of the microcontroller for the lines to the FPGA. Each line is X(name, place),
  * in the order of the FPGA's pins in hdl/bringup/line_tester.v. A place is a port and a pin; port 0
  * is A, and port 255 means that the line has no wire.
  */

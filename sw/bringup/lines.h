@@ -2,7 +2,7 @@
  *
  * lines: tests each wire between microcontroller and FPGA from both sides, while the FPGA is loaded
  * with line_tester (hdl/bringup/line_tester.v). The microcontroller drives its pins as
- * general-purpose outputs, so neither the FSMC nor the board's clock has to work.
+ * general-purpose outputs, so neither the FSMC nor the clock of the board has to work.
  */
 #pragma once
 
@@ -44,9 +44,9 @@ typedef struct Pins {
 } Pins;
 
 typedef struct Answer {
-    U32 id, clocks, edges; /* clocks: cycles of the board's clock / 64, modulo 65536 */
+    U32 id, clocks, edges; /* clocks: cycles of the board clock / 64, modulo 65536 */
     Pins pins;
-    /* levels of the modem's pins shortly after the last frame has set the tester's outputs */
+    /* levels of the modem pins shortly after the last frame has set the tester's outputs */
     Pins early;
 } Answer;
 
@@ -62,7 +62,7 @@ int Lines_read(U32 line);
 void Lines_release(Pull pull);
 /* Switches all lines except IRQ to the FSMC. */
 void Lines_useForFsmc(void);
-/* Returns the level of NWAIT while there is no access. */
+/* Returns the level of NWAIT between accesses. */
 int Lines_idleNwait(void);
 int Pins_get(const Pins* pins, U32 pin);
 void Pins_set(Pins* pins, U32 pin, int high);

@@ -33,7 +33,7 @@ typedef enum Fate {
 } Fate;
 
 static U8 fate[LINES];
-/* arrives[i]: number of the line whose code has arrived at the FPGA's pin for line i */
+/* arrives[i]: number of the line; its code has arrived at the FPGA pin for line i */
 static U8 arrives[LINES];
 
 /* Returns whether only the FPGA drives this line in operation. Such a line may contain a buffer. */
@@ -79,7 +79,7 @@ static void reportStuck(U32 line, int high) {
                     "a short to ground, or another part that drives it");
 }
 
-/* Tests a line whose level does not depend on the pull: drives the line to the opposite level
+/* Tests a line if its level does not depend on the pull: drives the line to the opposite level
  * `high`. Returns 1 if the line follows. */
 static int follows(U32 line, int high) {
     int now;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * timing: sets the microcontroller's clock, and waits.
+ * timing: sets the clock of the microcontroller, and waits.
  */
 #pragma once
 

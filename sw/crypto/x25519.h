@@ -5,7 +5,7 @@
  *     X25519(open, own, 0);           (`own`: 32 random bytes; send `open` to the peer)
  *     X25519(secret, own, peerOpen);  (both sides compute the same secret)
  *
- * Neither branches nor addresses depend on secrets. Only 16-bit multiplications are used, whose
+ * Neither branches nor addresses depend on secrets. Only 16-bit multiplications are used; their
  * time is constant on a Cortex-M3; 32-bit multiplications with a 64-bit result end early for some
  * values. A call takes 480 bytes of stack.
  */

@@ -218,7 +218,7 @@ void Engine::fly(std::unique_lock<std::mutex>& lock) {
     } catch (const std::system_error& e) {
         return fail(e.what());
     }
-    // While an object of this type exists, the simulator's time waits for this thread.
+    // While an object of this type exists, simulated time waits for this thread.
     struct Step {
         Step(Clock& c, int serial, const std::string& device) : clock(c) {
             clock.keepStep(serial, device);

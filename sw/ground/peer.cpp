@@ -128,7 +128,7 @@ void Peer::openWanted(U32 now) {
     }
 }
 
-// Ends the connections of programs whose messages have waited too long for room in the link.
+// Ends the connections of programs if their messages have waited too long for room in the link.
 // Returns the time until the next check, in microseconds.
 U32 Peer::endLate(U32 now) {
     U32 wait = never;

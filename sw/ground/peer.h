@@ -37,7 +37,7 @@ public:
         Clock& clock;
         PacketLine& line;
         std::mutex mutex;
-        bool hasMany = false; // true with several peers: log lines then contain the peer's name
+        bool hasMany = false; // with several peers, log lines contain the name of the peer
         // first link; it holds the list of unanswered packets that all links share
         Link* radio = nullptr;
 
@@ -68,7 +68,7 @@ public:
     // program already listens.
     int listen();
     // Accepts a connection that the peer has opened. Returns a socket for the program, or -1 if
-    // there is no such connection.
+    // no such connection exists.
     int accept();
     void stopListening();
     virtual std::string statistics() const = 0; // statistics as one line of text

@@ -131,8 +131,8 @@ public:
         : IceInternal::NativeInfo(fd), peer_(peer) {}
     IceInternal::NativeInfoPtr getNativeInfo() override { return this; }
     IceInternal::SocketOperation initialize(IceInternal::Buffer&, IceInternal::Buffer&) override {
-        // Ice waits for the peer's first message, at most for the connect time-out. This message
-        // shows that the link is up.
+        // Ice waits for the first message of the peer, at most for the connect time-out. This
+        // message shows that the link is up.
         return IceInternal::SocketOperationNone;
     }
     IceInternal::SocketOperation closing(bool initiator, const Ice::LocalException&) override {

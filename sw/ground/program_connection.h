@@ -49,14 +49,14 @@ public:
     const std::string& name() const { return name_; }
     int fd() const { return fd_; }
 
-    // Returns the descriptor and its events for poll; fd is -1 if there are no events. `reads`
+    // Returns the descriptor and its events for poll; fd is -1 without events. `reads`
     // decides whether to wait for bytes of the program; pass true if the link has room for
     // messages.
     pollfd interest(bool reads) const;
     void read(U32 nowUs);                 // reads from the program, at most one buffer
     bool ended() const { return ended_; } // true if the program will send nothing more
     enum class Next { None, Message, Senseless };
-    // Finds the program's next complete message of at most `longest` bytes. Skips heartbeats,
+    // Finds the next complete message of the program, of at most `longest` bytes. Skips heartbeats,
     // because the link itself detects whether the vehicle is there.
     Next next(U32 longest);
     bool isCall() const;                                // true if the next message is a call
@@ -86,8 +86,8 @@ public:
     // Sends Ice's CloseConnection to the program. The program may then open another connection.
     void sayGoodbye(U32 nowUs);
     void greet(U32 nowUs); // sends ValidateConnection, the first message of a server
-    // Removes the program's next message, a two-way call, and replies with an error that contains
-    // `why`.
+    // Removes the next message of the program, a two-way call, and replies with an error that
+    // contains `why`.
     void refuse(const std::string& why, U32 nowUs);
 
     static constexpr size_t mostUnread = 64 * 1024; // bytes

@@ -15,7 +15,7 @@ namespace XBeeAT {
 
 struct Settings {
     std::string device;
-    // baud rate of the modem after set-up; 115200 stands for BD 7, whose real rate is 111,111
+    // baud rate of the modem after set-up; 115200 stands for BD 7 with the real rate 111,111
     int baud = 115200;
     int source = 0x0000;  // MY
     int target = 0x0001;  // DL

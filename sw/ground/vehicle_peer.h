@@ -56,7 +56,7 @@ private:
 
     // number of unconfirmed calls of programs that have disconnected
     unsigned lost_ = 0;
-    // for each channel, the times at which its messages in the link will be late
+    // times at which the messages of each channel in the link will be late
     std::deque<U32> late_[LINK_CHANNELS];
     RivalStation rival_;
     std::unique_ptr<Link> link_;

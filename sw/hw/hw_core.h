@@ -42,7 +42,7 @@ typedef struct Hw_Frames {
 /* Interface of a servant to the operating system: functions with which the servant's task waits,
  * and resources that several servants share. On uC/OS-II, a semaphore (OSSemPend, OSSemPost)
  * implements wait and post. If several tasks call operations that take time, each operation needs a
- * semaphore of its own. */
+ * separate semaphore. */
 typedef struct Hw_Port {
     /* Waits until post is called for the operation, or until `ms` have passed. Returns 1 after a
      * post, and 0 after a time-out. A post that precedes the wait is not lost. */
@@ -88,14 +88,14 @@ void Hw_Core_write(const Hw_Core* self, U32 word, U32 page, U32 value);
 Hw_Status Hw_Core_ready(const Hw_Core* self, U32 operation);
 void Hw_Core_act(const Hw_Core* self, U32 operation);
 /* Returns 1 if the core responds to a read; all earlier accesses are then complete. Returns 0 if
- * the core's clock is stopped. */
+ * the clock of the core is stopped. */
 int Hw_Core_answers(const Hw_Core* self);
 Hw_Status Hw_Core_run(Hw_Core* self, U32 operation, U32 ms);
 
-/* Steps of an operation whose reply is sent later. begin: starts the operation and its time-out.
- * later: leaves the reply to the polling task. ended: returns 1 and sets the status if the
- * operation has ended; otherwise returns 0, and if less than `next` ms are left until the time-out,
- * reduces `next` to this time. */
+/* Steps of an operation with a reply that is sent later. begin: starts the operation and its
+ * time-out. later: leaves the reply to the polling task. ended: returns 1 and sets the status if
+ * the operation has ended; otherwise returns 0, and if less than `next` ms are left until the
+ * time-out, reduces `next` to this time. */
 void Hw_Core_begin(Hw_Core* self, U32 operation, U32 ms);
 void Hw_Core_later(Hw_Core* self, U32 operation);
 int Hw_Core_ended(Hw_Core* self, U32 operation, U32 nowMs, Hw_Status* status, U32* next);

@@ -53,7 +53,7 @@ void icec_wakeCalls(Ice_CommunicatorPtr ic) {
 }
 
 /* Ends the call with this id if it still waits for its reply: wakes the waiting task, or calls the
- * callback. `is` is 0 if there is no reply. */
+ * callback. `is` is 0 without a reply. */
 static void finish(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id, Ice_Status status,
                    Ice_InputStreamPtr is) {
     static const Ice_Byte nothing[1] = {0};
@@ -70,7 +70,7 @@ static void finish(Ice_CommunicatorPtr ic, Ice_Call* call, Ice_Int id, Ice_Statu
          * call. */
         call->state = callback ? ICE_CALL_FREE : ICE_CALL_DONE;
         if (!callback) {
-            call->is.size = 0; /* empty: there is no reply, so there are no results */
+            call->is.size = 0; /* empty: without a reply, no results exist */
             ic->os->wake(ic->osContext, (int)(call - ic->calls));
         }
     }
@@ -146,7 +146,7 @@ static void keepReply(Ice_Call* call, Ice_InputStreamPtr is) {
     is->communicator = ic;
 }
 
-/* Returns the call that waits for the reply with this id; 0 if there is no such call or it has
+/* Returns the call that waits for the reply with this id; 0 if no such call exists or it has
  * timed out. */
 static Ice_Call* waitingCall(Ice_CommunicatorPtr ic, int connection, Ice_Int id) {
     Ice_Call* call;

@@ -97,5 +97,5 @@ void Ice_Connection_close(Ice_CommunicatorPtr ic, int connection) {
     (void)icec_sendHead(ic, connection, ICEC_CLOSE);
     icec_closeConnection(ic, connection);
     icec_loseConnection(ic, connection, ICE_CONNECTION_LOST);
-    icec_wake(ic); /* wakes the receiving task, because one of its own calls may have failed */
+    icec_wake(ic); /* wakes the receiving task: one of its calls may have failed */
 }

@@ -47,7 +47,7 @@
 #define ICE_SERVANTS 8
 #endif
 
-/* Length of a proxy's name, category and facet together, characters: default 52, at most 255. */
+/* Length of name, category and facet of a proxy together, characters: default 52, at most 255. */
 #ifndef ICE_IDENTITY_MAX
 #define ICE_IDENTITY_MAX 52
 #endif
@@ -75,8 +75,8 @@
 #define ICE_TURN_MS 2
 #endif
 
-/* Number of calls in progress, including calls that have ended and whose results a task still
- * keeps: default 4, at least 1. */
+/* Number of calls in progress, including ended calls if a task still keeps their
+ * results: default 4, at least 1. */
 #ifndef ICE_CALLS
 #define ICE_CALLS 4
 #endif

@@ -27,7 +27,7 @@ static int match(const Ice_Servant* entry, const Ice_Current* current, Ice_Statu
 }
 
 /* Finds the servant for `current`, sets current->adapter, and counts the operation as in progress.
- * Returns 0 and sets `status` if there is no servant; after shutdown, the status is
+ * Returns 0 and sets `status` if the servant is missing; after shutdown, the status is
  * ICE_CONNECTION_CLOSED. */
 static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current* current, Ice_Status* status) {
     Ice_ObjectAdapterPtr adapter;
@@ -159,7 +159,7 @@ static Ice_Status sendReply(Ice_CommunicatorPtr ic, int connection, Ice_OutputSt
     return icec_send(ic, connection, os);
 }
 
-/* Executes a request whose id was already read. Leaves `is` at the end of the request's
+/* Executes a request after its id was read. Leaves `is` at the end of the request's
  * parameters. */
 static Ice_Status dispatch(Ice_CommunicatorPtr ic, int connection, Ice_InputStreamPtr is,
                            Ice_Int id) {
@@ -219,7 +219,7 @@ int Ice_markBroadcast(Ice_Byte* message, Ice_Int size) {
     Ice_InputStream_init(&is, message, size);
     if (icec_readHead(&is) != ICEC_REQUEST || Ice_InputStream_readInt(&is) != 0)
         return 0;
-    icec_skipStrings(&is, 2); /* skips the identity, then the facet and the operation's name */
+    icec_skipStrings(&is, 2); /* skips the identity, then the facet and the operation */
     icec_skipStrings(&is, (U32)Ice_InputStream_readSize(&is) + 1U);
     if (is.failed || is.position == size)
         return 0;

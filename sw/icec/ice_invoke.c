@@ -196,13 +196,13 @@ Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callbac
     Ice_Status status = sendAndUnlock(self, callback, cookie);
     if (status != ICE_OK || self->mode != ICE_TWOWAY)
         return Ice_ObjectPrx_end(self, status);
-    /* Wakes the receiving task, which then waits at most until this call's time-out. */
+    /* Wakes the receiving task, which then waits at most until the time-out of this call. */
     if (isWaiting(ic, slot))
         icec_wake(ic);
     return ICE_OK;
 }
 
-/* Largest body of a reply whose results need not be kept, because no pointer can refer into it:
+/* Largest body of a reply with results that need not be kept, because no pointer refers into it:
  * status, encapsulation, and a result of one byte. */
 #define NOTHING_KEPT 8
 

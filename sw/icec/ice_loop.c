@@ -4,7 +4,7 @@
  */
 #include "ice_private.h"
 
-/* Marks a connection as open for calls. This is done after the peer's first message. */
+/* Marks a connection as open for calls. This is done after the first message of the peer. */
 static void validate(Ice_CommunicatorPtr ic, int connection) {
     icec_lock(ic, ICE_LOCK_STATE);
     ic->connections[connection].state = ICE_CONNECTION_OPEN;
@@ -72,7 +72,7 @@ static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte* in, const Ic
 }
 
 /* Finds a connection on which a heartbeat is due because its caller waits for an operation, and
- * records that the heartbeat is sent. Returns -1 if there is no such connection. Reduces `waitMs`
+ * records that the heartbeat is sent. Returns -1 if no such connection exists. Reduces `waitMs`
  * to the time until the next heartbeat. The caller holds the state lock. */
 static int heartbeatDue(Ice_CommunicatorPtr ic, U32 now, Ice_Int* waitMs) {
     int c, due = -1;
@@ -118,7 +118,7 @@ static int keepTimes(Ice_CommunicatorPtr ic, Ice_Int* waitMs) {
 /* Number of successive events of one transport, after which the next transport has its turn. */
 #define TURN_EVENTS 32
 
-/* Receives from the transport whose turn it is. If nothing arrives, the next transport has its
+/* Receives from the transport that is served now. If nothing arrives, the next transport has its
  * turn. */
 static Ice_Status receive(Ice_CommunicatorPtr ic, Ice_Byte* in, Ice_Int timeoutMs,
                           Ice_Event* event) {
@@ -140,7 +140,7 @@ static Ice_Status receive(Ice_CommunicatorPtr ic, Ice_Byte* in, Ice_Int timeoutM
 #define SERVE (-1) /* value for timeoutMs: no time-out; waiting ends when shutdown is called */
 #define POLL_MS 1000
 
-/* Handles at most one event of the transport whose turn it is. The calling task acts as the
+/* Handles at most one event of the transport that is served now. The calling task acts as the
  * receiver. Returns ICE_TIMEOUT if no event arrived, ICE_LIMIT if ICE_NESTING is reached, and, with
  * SERVE, ICE_CONNECTION_CLOSED after shutdown was called. */
 static Ice_Status receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
@@ -163,7 +163,7 @@ static Ice_Status receiveOne(Ice_CommunicatorPtr ic, Ice_Int timeoutMs) {
 }
 
 /* ---- the receiver ---- One of several tasks has the role of the receiver. A server (a task in
- * waitForShutdown or poll) takes the role as soon as it is free. If there is no server, a task that
+ * waitForShutdown or poll) takes the role as soon as it is free. Without a server, a task that
  * waits for a reply (a leader) has the role while it waits. `receiver` and `servers` are only
  * changed by a task that holds the state lock. A task that gives the role up wakes another task
  * that may want it.

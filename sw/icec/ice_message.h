@@ -18,7 +18,7 @@ enum { ICEC_REQUEST, ICEC_BATCH, ICEC_REPLY, ICEC_VALIDATE, ICEC_CLOSE };
 void icec_beginMessage(Ice_OutputStreamPtr os, Ice_Byte type);
 void icec_endMessage(Ice_OutputStreamPtr os);
 /* Returns the size of a message from its header (ICEC_HEADER bytes), and whether the message is
- * compressed. Returns -1 if magic bytes or versions of the header are not those of Ice 3, or if the
+ * compressed. Returns -1 if magic bytes or versions of the header differ from Ice 3, or if the
  * size is too small. */
 Ice_Int icec_messageSize(const Ice_Byte* header, int* isCompressed);
 /* Checks and skips the header of a message of is->size bytes. Returns the type of the message; a
@@ -35,7 +35,7 @@ void icec_endEncapsulation(Ice_OutputStreamPtr os, Ice_Int begin);
 Ice_Status icec_enterEncapsulation(Ice_InputStreamPtr is);
 
 /* Write and read a facet, which is encoded as a sequence of strings with one element, or without
- * elements if there is no facet. A longer sequence is malformed, as in Ice. */
+ * elements if the facet is empty. A longer sequence is malformed, as in Ice. */
 void icec_writeFacet(Ice_OutputStreamPtr os, const Ice_String* facet);
 void icec_readFacet(Ice_InputStreamPtr is, Ice_String* facet);
 void icec_skipStrings(Ice_InputStreamPtr is, U32 count);

@@ -54,7 +54,7 @@ typedef enum Ice_ConnectionState {
 
 typedef struct Ice_Connection {
     Ice_ConnectionState state;
-    /* number of operations in progress, including those whose replies are sent later */
+    /* number of operations in progress, including operations with a reply that is sent later */
     Ice_Byte pending;
     Ice_Byte closing; /* the peer has been asked to close */
     /* number of the connection among all connections that have used this slot; never 0 */
@@ -75,7 +75,7 @@ struct Ice_Communicator {
     Ice_ObjectAdapterPtr adapters;
     Ice_Byte stopping;
     Ice_Byte transportCount;
-    Ice_Byte turn;     /* transport whose turn it is */
+    Ice_Byte turn;     /* transport that is served now */
     Ice_Byte turnUsed; /* number of events handled during this turn */
     int receiver;      /* task that has the role of the receiver; -1 if no task has it */
     int servers;       /* number of servers, which want the role of the receiver */

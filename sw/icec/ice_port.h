@@ -81,9 +81,9 @@ typedef struct Ice_Endpoint {
     void (*wake)(void* context);
     /* Returns milliseconds since an arbitrary time; the count wraps. */
     U32 (*nowMs)(void* context);
-    /* Writes the transport's name and the options of an encoded endpoint as text. Returns 0 if the
-     * endpoint's type belongs to another transport. The function pointer may be 0; endpoints are
-     * then printed as opaque. */
+    /* Writes the name of the transport and the options of an encoded endpoint as text. Returns 0 if
+     * the endpoint's type belongs to another transport. The function pointer may be 0; endpoints
+     * are then printed as opaque. */
     Ice_Bool (*print)(void* context, const Ice_Byte* encoded, Ice_Int size,
                       Ice_OutputStreamPtr text);
 } Ice_Endpoint;

@@ -30,7 +30,7 @@ void icec_wake(Ice_CommunicatorPtr ic);
 /* Returns the options after the name of a transport, and sets `transport`. Returns 0 if the text
  * does not begin with the name of a transport. */
 const char* icec_optionsOf(Ice_CommunicatorPtr ic, const char* text, int* transport);
-/* Returns the text after the next colon outside quotes; 0 if there is no such colon. */
+/* Returns the text after the next colon outside quotes; 0 if no such colon exists. */
 const char* icec_nextEndpoint(const char* text);
 /* Adds an endpoint of a transport to a proxy; if `options` is 0, the endpoint on which this side
  * listens. Returns ICE_LIMIT if the endpoints exceed ICE_ENDPOINT_MAX. */

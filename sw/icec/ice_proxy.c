@@ -61,8 +61,8 @@ Ice_String Ice_ObjectPrx_getFacet(const Ice_ObjectPrx* prx) {
     return facet;
 }
 
-/* In endpoints whose transport this program supports, replaces the encoding by the encoding of the
- * message, as Ice does. Other endpoints remain unchanged. */
+/* In endpoints with a transport that this program supports, replaces the encoding by the encoding
+ * of the message, as Ice does. Other endpoints remain unchanged. */
 static void adoptEncoding(Ice_CommunicatorPtr ic, Ice_Byte* endpoints, Ice_Byte minor) {
     Ice_Byte* at = endpoints + 1;
     int n;
@@ -97,7 +97,7 @@ void Ice_OutputStream_writePrx(Ice_OutputStreamPtr os, const Ice_ObjectPrx* prx)
         adoptEncoding(prx->communicator, os->data + os->size - prx->endpointsSize, os->minor);
 }
 
-/* Appends bytes of the message to the endpoints of the proxy. Returns 0 if there is no room. */
+/* Appends bytes of the message to the endpoints of the proxy. Returns 0 if they do not fit. */
 static int keep(Ice_InputStreamPtr is, Ice_Int begin, Ice_ObjectPrxPtr prx) {
     Ice_Int size = is->position - begin;
     if (is->failed || size > ICE_ENDPOINT_MAX - prx->endpointsSize)
@@ -139,8 +139,7 @@ void Ice_InputStream_readPrx(Ice_InputStreamPtr is, Ice_CommunicatorPtr ic, Ice_
         if (!is->failed && !keep(is, begin, prx))
             is->failed = ICE_FAILED_ENDPOINT;
     }
-    /* Endpoints for which there is no room are omitted, provided that there is room for at least
-     * one. */
+    /* Endpoints that do not fit are omitted, provided that at least one fits. */
     for (; n > 0 && !is->failed; --n) {
         Ice_Int size;
         begin = is->position;

@@ -76,7 +76,7 @@ typedef enum Ice_Failed {
     ICE_FAILED_CALLS, /* the limit of calls; the reason of an ICE_LIMIT, never of a failed stream */
     ICE_FAILED_CONNECTIONS,
     ICE_FAILED_NESTING,
-    /* the limit that ["c:max:N"] sets for a type in Slice; the stream's `bound` says which type */
+    /* the limit that ["c:max:N"] sets for a type in Slice; the stream's `bound` names the type */
     ICE_FAILED_BOUND
 } Ice_Failed;
 
@@ -156,7 +156,7 @@ Ice_Int Ice_InputStream_readSize(Ice_InputStreamPtr is);
 Ice_String Ice_InputStream_readString(Ice_InputStreamPtr is);
 void Ice_InputStream_takeString(Ice_InputStreamPtr is, Ice_String* s);
 Ice_Int Ice_InputStream_readEnum(Ice_InputStreamPtr is, Ice_Int largest);
-/* Reads the size of a sequence whose elements have at least `least` bytes each. Fails the stream if
+/* Reads the size of a sequence of elements with at least `least` bytes each. Fails the stream if
  * such a sequence would exceed the message. */
 Ice_Int Ice_InputStream_readSequence(Ice_InputStreamPtr is, Ice_Int least);
 /* Returns room for `count` elements of `bytes` bytes each, aligned to 8. Without room, returns 0

@@ -18,7 +18,7 @@ typedef struct Ice_ValueType Ice_ValueType;
 
 struct Ice_Value;
 
-/* A preserved slice, whose type is unknown. */
+/* A preserved slice of unknown type. */
 typedef struct Ice_UnknownSlice {
     /* next slice of the same instance, towards its base; 0 after the last one */
     struct Ice_UnknownSlice* next;
@@ -41,14 +41,14 @@ typedef struct Ice_UnknownSlice {
 /* First member of every class instance. */
 typedef struct Ice_Value {
     const Ice_ValueType* type;
-    /* slices of unknown types, the most derived one first; 0 if there are none */
+    /* slices of unknown types, the most derived one first; 0 without such slices */
     const Ice_UnknownSlice* unknown;
 } Ice_Value;
 
 struct Ice_ValueType {
     const char* id;            /* "::M::C" */
-    const Ice_ValueType* base; /* direct base; 0 if there is none */
-    Ice_Int compactId;         /* compact id; -1 if there is none */
+    const Ice_ValueType* base; /* direct base; 0 without a base */
+    Ice_Int compactId;         /* compact id; -1 without one */
     Ice_Int size;              /* size of the struct in bytes */
     /* 1: slices of unknown types are preserved */
     Ice_Bool preserves;
@@ -100,7 +100,7 @@ typedef struct Ice_InputValues {
         Ice_Int number;
     } patches[ICE_VALUES_MAX]; /* pointers to instances that have not arrived yet */
     Ice_Int patchBegin, patchEnd;
-    /* pointers to instances whose types are not known yet */
+    /* pointers to instances of types that are not known yet */
     struct Ice_LatePatch* late;
     /* slices of unknown types in the message, the last one first */
     Ice_UnknownSlice* unknown;

@@ -55,7 +55,7 @@ typedef struct Ice_Current {
 
 /* Reads the parameters from `is` and runs the operation. When the servant's function has returned,
  * writes the results to `os`; before that, `os` has no buffer. Returns ICE_OPERATION_NOT_EXIST if
- * there is no such operation. */
+ * no such operation exists. */
 typedef Ice_Status (*Ice_Dispatch)(Ice_ObjectPtr self, const Ice_Current* current,
                                    Ice_InputStreamPtr is, Ice_OutputStreamPtr os);
 
@@ -67,7 +67,7 @@ struct Ice_Object {
 };
 
 /* Runs an operation of a servant as a request would. ice_ping, ice_isA, ice_id and ice_ids are
- * answered from the servant's `ids`. In the full run time, a servant whose `ids` is 0 receives
+ * answered from the servant's `ids`. In the full run time, a servant with `ids` 0 receives
  * these four operations like all others. Such a servant can forward all requests; or it can log
  * each request and pass it to another servant by this function. */
 Ice_Status Ice_Object_invoke(Ice_ObjectPtr servant, const Ice_Current* current,
@@ -142,7 +142,7 @@ Ice_Status Ice_ObjectAdapter_removeFacet(Ice_ObjectAdapterPtr adapter, const cha
                                          const char* facet);
 Ice_Status Ice_ObjectAdapter_removeDefaultServant(Ice_ObjectAdapterPtr adapter,
                                                   const char* category);
-/* Returns the servant of exactly this identity, without a facet; 0 if there is no such servant. */
+/* Returns the servant of exactly this identity, without a facet; 0 if no such servant exists. */
 Ice_ObjectPtr Ice_ObjectAdapter_find(Ice_ObjectAdapterPtr adapter, const char* identity);
 /* Activates or deactivates an adapter. Callers reach the adapter's objects only while the adapter
  * is active and not destroyed. */
@@ -199,7 +199,7 @@ struct Ice_ObjectPrx {
 };
 
 /* Reason of a failed call. After ICE_OBJECT_NOT_EXIST and similar failures, identity, facet and
- * operation are those of the call. `text`: after a failure of the peer, the text in its reply;
+ * operation describe the call. `text`: after a failure of the peer, the text in its reply;
  * after ICE_MARSHAL and ICE_LIMIT, the limit, with its macro and value. */
 typedef struct Ice_Failure {
     Ice_Identity identity;
@@ -250,7 +250,7 @@ Ice_Status Ice_ObjectPrx_checkedCast(Ice_ObjectPrxPtr self, const Ice_ObjectPrx*
 /* Opens the connection that later calls will use, and sets `connection` to its number. */
 Ice_Status Ice_ObjectPrx_ice_getConnection(Ice_ObjectPrxPtr self, int* connection);
 /* Gives an indirect proxy ("object", "object@adapter") the endpoints that a locator returns.
- * `locator` is a proxy to an Ice::Locator, such as that of IceGrid. A direct proxy remains
+ * `locator` is a proxy to an Ice::Locator, such as the locator of IceGrid. A direct proxy remains
  * unchanged. The proxy keeps the endpoints; to resolve again, call this function with a new copy of
  * the indirect proxy. Returns ICE_NO_ENDPOINT if the locator does not know the object. */
 Ice_Status Ice_ObjectPrx_resolve(Ice_ObjectPrxPtr self, Ice_ObjectPrxPtr locator);
@@ -290,8 +290,8 @@ void Ice_Communicator_setOs(Ice_CommunicatorPtr ic, const Ice_Os* os, void* cont
 void Ice_Communicator_setEndpoint(Ice_CommunicatorPtr ic, const Ice_Endpoint* endpoint,
                                   void* context);
 
-/* Releases the results of a task's last call, and its slot among the ICE_CALLS slots. `task` is a
- * number returned by the function `task` of Ice_Os. The kernel calls this function when a task
+/* Releases the results of the last call of a task, and its slot among the ICE_CALLS slots. `task`
+ * is a number returned by the function `task` of Ice_Os. The kernel calls this function when a task
  * ends; a task that continues may call it when it no longer needs the results. Must not be called
  * during a call. The function acquires the state lock; a kernel hook that must not wait has to let
  * another task call it. Full run time. */

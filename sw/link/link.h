@@ -19,13 +19,13 @@
  * The same source runs in the firmware and in the plugin of the ground station. Wire format:
  * docs/link.md; limits and times: link_config.h.
  *
- * The layer has no thread, no clock and no memory of its own. The caller supplies the time in
- * microseconds (32 bits, which may wrap around), calls Link_poll when Link_deadline is due, and
+ * The layer creates no thread, reads no clock and allocates no memory. The caller supplies the time
+ * in microseconds (32 bits, which may wrap around), calls Link_poll when Link_deadline is due, and
  * keeps the Link and its buffers. One Link is used by one thread at a time. A callback may call
  * Link_send, Link_openChannel and Link_closeChannel, but no other function of this layer.
  *
- * With LINK_MINIMAL, these are the functions of the minimal layer (link_minimal.h), whose Link
- * contains its buffers.
+ * With LINK_MINIMAL, these are the functions of the minimal layer (link_minimal.h); its Link
+ * contains the buffers.
  */
 #pragma once
 
@@ -99,8 +99,8 @@ void Link_limitFrame(Link* link, U32 bytes);
  * Link_init. */
 void Link_setKey(Link* link, int slot, const U8* key, U32 side);
 
-/* Returns the slot of the key with which the current session was made; -1 if there is no session or
- * no key. */
+/* Returns the slot of the key with which the current session was made; -1 without a session or
+ * without a key. */
 int Link_keyInUse(const Link* link);
 #endif
 
@@ -139,7 +139,7 @@ void Link_expectAnswers(Link* link, U32 packets);
 void Link_shareRadio(Link* link, Link* with);
 
 /* Returns the modem's RN for the current traffic. RN is the smallest exponent of the random wait
- * before the modem's first try.
+ * before the first try of the modem.
  * - 0 if only this side sends, because it need not wait.
  * - LINK_WAIT_SHARED if the peer sends a stream, because two modems would otherwise often begin
  *   packets at the same time. Exception: 0 if both sides send streams and many packets are lost

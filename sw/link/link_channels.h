@@ -12,7 +12,7 @@ typedef struct Link_Channels {
     U8 open; /* channels on which messages may be sent */
     /* channels that this side has closed; the peer's closing has not arrived yet */
     U8 closing;
-    U8 closeDue; /* channels whose closing by this side is not queued yet */
+    U8 closeDue; /* channels that this side closes; their closing is not queued yet */
 } Link_Channels;
 
 #define LINK_IS_OPEN(channels, channel) ((U32)(channels)->open >> (channel) & 1U)

@@ -52,12 +52,12 @@ typedef struct Link_Codec {
      * numbered. */
     U8 isAuthenticated;
     U8 sizes[6]; /* payload sizes of control frames up to PING, indexed by Link_Kind, bytes */
-    /* Completes a frame whose payload is already in `frame`: adds the session's epoch to `header`,
+    /* Completes a frame with its payload already in `frame`: adds the session's epoch to `header`,
      * writes the header before the payload, and adds the CRC or tag. Returns the frame's size in
      * bytes. */
     U32 (*seal)(U8* frame, U32 header, const Link_Seal* seal);
     /* Checks a complete frame of at least `overhead` bytes, and decrypts it, in place or into
-     * `copy`, which has LINK_MAX_FRAME bytes. Returns the opened frame, whose header contains the
-     * length of the payload; 0 if the CRC or tag is wrong. */
+     * `copy`, which has LINK_MAX_FRAME bytes. Returns the opened frame; its header contains the
+     * length of the payload. Returns 0 if the CRC or tag is wrong. */
     const U8* (*open)(const U8* frame, U8* copy, const Link_Seal* seal);
 } Link_Codec;

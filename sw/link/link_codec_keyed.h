@@ -11,7 +11,7 @@ extern const Link_Codec link_codecKeyed;
 
 /* Completes a frame: writes the header with the epoch and the length of the payload, encrypts the
  * payload, which is already in `frame`, and appends the tag. `number` is the number of the frame;
- * its lowest byte is byte 1 of the frame. `acked` is the number whose lowest byte is the first
+ * its lowest byte is byte 1 of the frame. `acked` is the number with its lowest byte in the first
  * payload byte of a PIGGYBACK. Returns the size of the frame, bytes. */
 U32 link_encryptFrame(U8* frame, U32 header, const U8* key, U32 number, U32 acked);
 

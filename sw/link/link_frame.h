@@ -98,7 +98,7 @@ typedef enum Link_Kind {
  * intact frame including its CRC, the result is 0. */
 U32 link_crc(U32 key, const U8* bytes, U32 size);
 
-/* Completes a frame whose payload is already in `frame`: adds the epoch of `key` to `header`,
+/* Completes a frame with its payload already in `frame`: adds the epoch of `key` to `header`,
  * writes the header before the payload, and appends the CRC. Returns the frame's size in bytes. */
 U32 link_seal(U8* frame, U32 header, U32 key);
 
@@ -113,7 +113,7 @@ void link_put32(U8* p, U32 value);
 /* Returns the key of the session that has these two nonces. Their order does not matter. */
 U32 link_sessionKey(U32 nonce, U32 peerNonce);
 
-/* Returns the number whose lowest byte is `byte` and which is nearest to `expected`. */
+/* Returns the number nearest to `expected` among the numbers with the lowest byte `byte`. */
 U32 link_extend(U32 expected, U32 byte);
 
 /* Returns the bits of EPOCH in which a frame differs from the epoch in `key`. */

@@ -26,7 +26,7 @@ typedef struct Link_HandshakeRules {
      * expect such a frame now. */
     U32 (*cost)(const struct Link_Handshake* handshake, const U8* frame);
     /* Writes the seal with which a genuine frame must have been made. Two seals may be possible;
-     * `attempt` (0 or 1) selects one. Returns 0 if there is no such seal. Without a key, also
+     * `attempt` (0 or 1) selects one. Returns 0 if no such seal exists. Without a key, also
      * writes seals for all other frames of the candidate's session, such as data. */
     int (*expect)(struct Link_Handshake* handshake, const U8* frame, U32 attempt, Link_Seal* seal);
     /* Processes a handshake frame that was opened with the seal of `attempt`. Returns a set of

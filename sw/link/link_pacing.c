@@ -166,7 +166,7 @@ int link_isOpen(Link_Pacing* pacing) {
     return pacing->packed || !LINK_BEFORE(pacing->env.now + pacing->slack, pacing->paceUntil);
 }
 
-/* Seals a frame whose payload is in place, and adds the frame to the packet. Returns 1 if the frame
+/* Seals a frame with its payload in place, and adds the frame to the packet. Returns 1 if the frame
  * was added.
  */
 static int sendSealed(Link_Pacing* pacing, U8* frame, U32 header, const Link_Seal* seal) {

@@ -13,7 +13,8 @@ struct Link;
 
 #define LINK_STREAM 3U /* least number of fragments in flight that counts as a stream */
 
-/* Packets whose results the radio has not reported yet. All links of one radio share this list. */
+/* Packets for which the radio has not reported a result yet. All links of one radio share this
+ * list. */
 typedef struct Link_Unanswered {
     U8 first, waiting;                      /* index of the oldest packet; number of packets */
     struct Link* owners[LINK_MOST_WAITING]; /* link that sent each packet, by the packet's index */
@@ -24,8 +25,8 @@ typedef struct Link_Unanswered {
 typedef struct Link_Pacing {
     U8 longest; /* largest payload of a frame that is sent, bytes */
     U8 packed;  /* number of bytes in the packet */
-    /* size of a frame that was received since the last packet was sent, bytes; 0 if there
-     * was none */
+    /* size of a frame that was received since the last packet was sent, bytes; 0 without
+     * such a frame */
     U8 heard;
     U8 isStream; /* 1: several fragments are in flight, so packets follow each other closely */
     /* number of further packets for which the modem is assumed to be slow, because it may hold
@@ -37,7 +38,7 @@ typedef struct Link_Pacing {
     U8 handed, waiting;
     U8 isHeld; /* 1: until paceUntil, only messages that overtake others may be sent */
     Link_Env env;
-    const Link_Identity* session; /* identity of the current session, whose key seals the frames */
+    const Link_Identity* session; /* identity of the current session; its key seals the frames */
     Link_Unanswered* radio;
     struct Link* owner;
     U32 byteTimeUs16; /* time of one byte on the slowest line, in units of 1/16 us */
@@ -54,7 +55,7 @@ typedef struct Link_Pacing {
     Link_Backoff backoff;
 } Link_Pacing;
 
-/* Initialises a zeroed struct whose codec is set. There is no session yet, and the radio reports no
+/* Initialises a zeroed struct with its codec set. No session exists yet, and the radio reports no
  * results. */
 void link_initPacing(Link_Pacing* pacing, const Link_Identity* session, struct Link* owner,
                      U32 byteTimeUs16);
@@ -110,11 +111,11 @@ U32 link_room(const Link_Pacing* pacing);
  * room; the packet is then kept. */
 int link_flush(Link_Pacing* pacing);
 
-/* Seals a frame whose payload is in place, adds the frame to the packet, and passes the packet to
+/* Seals a frame with its payload in place, adds the frame to the packet, and passes the packet to
  * the radio at once if the radio has room. Returns 1 if the frame is in the packet. */
 int link_sendNow(Link_Pacing* pacing, U8* frame, U32 header, const Link_Seal* seal);
 
-/* Uses the session's key to seal a frame whose payload is in place, and adds the frame to the
+/* Uses the session's key to seal a frame with its payload in place, and adds the frame to the
  * packet. The packet may then wait for more frames. The lowest byte of `number` is byte 1 of the
  * header. `acked` is the number that a PIGGYBACK acknowledges; otherwise 0. Returns 1 if the
  * frame is in the packet. */

@@ -22,7 +22,7 @@ typedef enum Link_Outcome {
 
 typedef enum Link_Status {
     LINK_OK = 0,
-    LINK_DOWN, /* there is no session with the peer */
+    LINK_DOWN, /* no session with the peer */
     /* the send queue has no room, or the channel is still being closed; try again later */
     LINK_FULL,
     LINK_TOO_LONG, /* the message is larger than LINK_MAX_MESSAGE or the queue, or has 0 bytes */

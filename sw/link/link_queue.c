@@ -66,9 +66,9 @@ void link_rewind(Link_Queue* queue, int isWiped) {
 
 /* Finds an entry that may overtake the current long message, and sets `start` to the offset of the
  * entry's bytes. The entry must satisfy four conditions. It has at most `most` bytes. Its channel
- * differs from those of all entries that it overtakes. It does not overtake a header that the peer
- * must learn first. The chunk that was cut last does not belong to an entry that has overtaken.
- * Returns 0 if there is no such entry. */
+ * differs from the channels of all entries that it overtakes. It does not overtake a header that
+ * the peer must learn first. The chunk that was cut last does not belong to an entry that has
+ * overtaken. Returns 0 if no such entry exists. */
 static Link_Entry* findAhead(Link_Queue* queue, U32 most, U32* start) {
     Link_Entry* entry = entryAt(queue, queue->cutEntry);
     U32 channels = 0;

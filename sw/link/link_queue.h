@@ -32,7 +32,7 @@ typedef struct Link_Chunk {
 
 typedef struct Link_Queue {
     U8 first, count; /* index of the oldest entry; number of entries */
-    U8 wasFull;      /* 1: link_enqueue has failed because there was no room */
+    U8 wasFull;      /* 1: link_enqueue has failed because the queue was full */
     U8 isSummed;     /* 1: link_put computes a check of the newest message */
     U8 isAhead;      /* 1: the newest chunk has overtaken a long message */
     /* entry from which the next chunk in order will be cut, counted from `first` */
@@ -52,7 +52,7 @@ typedef struct Link_Queue {
     ((queue)->bytes = (buffer), (queue)->mask = (size) - 1U)
 
 /* Adds an entry for `size` bytes; the caller must then append these bytes. `longest` is the size of
- * the largest chunk, bytes. Returns 0 if there is no room. */
+ * the largest chunk, bytes. Returns 0 if the queue is full. */
 Link_Entry* link_enqueue(Link_Queue* queue, U32 flags, U32 size, U32 longest);
 
 /* Begins to append bytes to the newest entry. If `summed` is 1, link_put computes the check of the

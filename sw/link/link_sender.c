@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <string.h>
 
-/* Credit before the peer's first acknowledgement, in fragments. */
+/* Credit before the first acknowledgement of the peer, in fragments. */
 #define LEAST_WINDOW 8U
 
 /* Size of the longest acknowledgement, bytes. */
@@ -249,8 +249,8 @@ static void setTimer(Link_Sender* sender) {
     sender->timerAt = sender->pacing->env.now + rto;
 }
 
-/* Marks fragments as lost, so that they are sent again: all unacknowledged fragments whose last
- * transmission was before transmission number `order`. */
+/* Marks fragments as lost, so that they are sent again: all unacknowledged fragments that were last
+ * transmitted before transmission number `order`. */
 static void sendAgain(Link_Sender* sender, U32 order) {
     U32 seq;
     for (seq = sender->base; seq != sender->next; ++seq) {
@@ -338,7 +338,7 @@ void link_onAnswer(Link_Sender* sender, U32 packet, int isDelivered) {
 }
 
 /* Finds the next fragment to send: a short message that overtakes others, else a lost fragment,
- * else a new one. Returns 0 if there is no such fragment. */
+ * else a new one. Returns 0 if no such fragment exists. */
 static int nextFragment(Link_Sender* sender, U32* seq) {
     int isRepeated = 0;
     for (*seq = sender->base; *seq != sender->next; ++*seq)

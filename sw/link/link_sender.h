@@ -14,7 +14,7 @@ typedef enum Link_FragmentState { LINK_TO_SEND, LINK_SENT, LINK_ACKED } Link_Fra
  * been acknowledged. */
 typedef struct Link_Fragment {
     Link_Chunk chunk;
-    U32 firstAt, sentAt; /* times of the fragment's first and last transmission, us */
+    U32 firstAt, sentAt; /* times of the first and last transmission, us */
     U32 order;           /* number of its last transmission, as counted by Link_Sender.order */
     U8 tries;            /* number of its transmissions: 0, 1, or 2 for two and more */
     U8 state;            /* state, a Link_FragmentState */
@@ -25,7 +25,7 @@ typedef struct Link_Fragment {
 
 typedef struct Link_Sender {
     Link_Pacing* pacing;
-    /* receiver of the same link, whose acknowledgements may be sent together with fragments */
+    /* receiver of the same link; its acknowledgements may be sent together with fragments */
     Link_Receiver* receiver;
     Link_Fragment* window; /* window of fragments, owned by the caller */
     U8 mask;               /* number of fragments in the window minus 1 */

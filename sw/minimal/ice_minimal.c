@@ -220,7 +220,7 @@ U32 Ice_numberOption(const char* options, char letter, U32 otherwise) {
     return otherwise;
 }
 
-/* Returns the options that follow the transport's name; 0 if the text names another transport. */
+/* Returns the options that follow the transport name; 0 if the text names another transport. */
 static const char* optionsOf(Ice_CommunicatorPtr ic, const char* text) {
     size_t size = strlen(ic->endpoint->name);
     return strncmp(text, ic->endpoint->name, size) == 0 && text[size] <= ' ' ? text + size : 0;

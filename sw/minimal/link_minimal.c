@@ -14,7 +14,7 @@
 #define CLOSING 2U /* this side has closed the channel; the peer's closing has not arrived yet */
 #define DUE (LINK_FIRST | LINK_LAST)
 
-/* Sends link->frame, whose payload is already in place (link_seal). If the radio has no room, the
+/* Sends link->frame with its payload already in place (link_seal). If the radio has no room, the
  * frame is lost; the link handles this like a loss on the air. */
 static void transmit(Link* link, U32 header) {
     (void)link->port->transmit(link->context, link->frame,

@@ -4,7 +4,7 @@
  */
 #include "os_core.h"
 
-/* Allocates an event. Returns 0 if there is no free event, or in an interrupt. */
+/* Allocates an event. Returns 0 if all events are in use, or in an interrupt. */
 static OS_EVENT* create(OS_EventType type) {
     OS_CPU_SR cpu_sr;
     OS_EVENT* found = 0;

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
  * ucos_ii: the part of uC/OS-II's API (2.9x) that the firmware uses. Names, argument orders, error
- * codes and blocking rules are those of uC/OS-II, so that the original kernel can replace this one.
- * Manual: "MicroC/OS-II, The Real-Time Kernel", chapter 16. Time-outs and delays count ticks of
- * 1/OS_TICKS_PER_SEC s.
+ * codes and blocking rules are the same as in uC/OS-II, so that the original kernel can replace
+ * this one. Manual: "MicroC/OS-II, The Real-Time Kernel", chapter 16. Time-outs and delays count
+ * ticks of 1/OS_TICKS_PER_SEC s.
  */
 #pragma once
 

@@ -18,7 +18,7 @@
 #define POLL_TICKS (OS_TICKS_PER_SEC / 100U)
 #define MODE_STEP 13U /* number of the set-up step that sends ATAP */
 
-/* API mode: each buffer holds the contents of a frame, whose first byte is its type. In a packet to
+/* API mode: each buffer holds the contents of a frame; the first byte is its type. In a packet to
  * send, five bytes, including the type, precede the data.
  *     01 ID TARGET TARGET 00 DATA...          packet to send
  *     89 ID STATUS                            result; 0: received by the target's modem
@@ -223,7 +223,7 @@ static void takeStatus(U8 id, int isDelivered) {
     }
 }
 
-/* Reports packets whose results did not arrive in time as lost. */
+/* Reports packets without a result in time as lost. */
 static void expire(void) {
     if (radio.handed != radio.answered && OSTimeGet() - radio.handedAt >= SILENT_TICKS)
         takeStatus((U8)(radio.handed - 1U), 0);

@@ -25,7 +25,7 @@
 #endif
 
 /* Baud rates, with the codes of the modem's command BD. The names XBEE_BD_..., XBeeInitTypeDef and
- * xbeeInit are those of the paper (Figure 5). */
+ * xbeeInit come from the paper (Figure 5). */
 typedef enum Radio_Baud {
     XBEE_BD_1200,
     XBEE_BD_2400,
@@ -43,7 +43,7 @@ typedef enum Radio_Baud {
 /* Called with the modem's result for each sent packet: delivered to the target's modem, or lost. */
 typedef void (*Radio_OnAnswer)(int isDelivered);
 
-/* Settings of the modem. The first three are those of the paper. For each of the others, 0 selects
+/* Settings of the modem. The first three are in the paper. For each of the others, 0 selects
  * its default. */
 typedef struct XBeeInitTypeDef {
     Radio_Baud baud;

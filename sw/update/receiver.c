@@ -55,7 +55,7 @@ static int hasBegun(const Receiver* self, const Slots_Header* header) {
            isErased(self, slotAt(self) + self->port->layout->readyAt, 4);
 }
 
-/* Continues the image whose header is in flash. The last piece may have been written only in part,
+/* Continues the image with its header in flash. The last piece may have been written only in part,
  * so it must be sent again. */
 static void takeUp(Receiver* self) {
     const U32 at = slotAt(self) + SLOTS_IMAGE_AT;

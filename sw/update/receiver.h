@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * receiver: receives a new image (firmware or bitstream) into the free slot, in steps. A function
- * whose work takes long (a check, an erase) only requests this work. Receiver_work does the work
- * later, in a task of low priority; nothing else may use the flash while it runs.
+ * with work that takes long (a check, an erase) only requests this work. Receiver_work does the
+ * work later, in a task of low priority; nothing else may use the flash while it runs.
  */
 #pragma once
 

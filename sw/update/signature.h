@@ -7,7 +7,7 @@
 
 #include "slots.h"
 
-/* Returns 1 if the signature (64 bytes) is that of the message under the public key (32 bytes).
+/* Returns 1 if the signature (64 bytes) of the message is valid for the public key (32 bytes).
  * Takes 3.5 KB of stack. */
 int Signature_isGood(const U8* signature, const U8* message, U32 bytes, const U8* key);
 /* Writes the digest (64 bytes) of `bytes` bytes, which `read` returns from `offset` onwards. */

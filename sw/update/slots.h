@@ -107,7 +107,7 @@ U32 Slots_confirmed(const Slots_Port* port, U32 product);
 int Slots_retire(const Slots_Port* port, U32 slot);
 
 /* Returns the slot to run, or SLOTS_NONE. With `mayTry`, chooses a new image, but only once;
- * otherwise the newest confirmed image; if there is none, any valid image. The chosen image is
+ * otherwise the newest confirmed image; without one, any valid image. The chosen image is
  * always signed and complete. */
 U32 Slots_choose(const Slots_Port* port, U32 product, int mayTry);
 

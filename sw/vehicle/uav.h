@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * uav: the application on the UAV; its structure is that of the paper's Figure 5.
+ * uav: the application on the UAV; its structure follows Figure 5 of the paper.
  */
 #pragma once
 

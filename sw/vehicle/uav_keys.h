@@ -10,7 +10,7 @@
 #include "link.h"
 #include "uav_peers.h"
 
-/* state of the first ground station if there is no key and any ground station may call */
+/* state of the first ground station without a key, if any ground station may call */
 #define UAV_STATE_OPEN 0x4F50454EU
 #define UAV_PEER_WORDS ((U32)(sizeof(Backup_Other) / sizeof(U32)))
 

@@ -8,7 +8,7 @@
 #include "uav.h"
 #include "uav_keys.h"
 
-/* limit of the packets that were sent and whose status has not arrived yet */
+/* limit of the packets that were sent and have no status yet */
 #define MOST_UNANSWERED 2U
 
 static U8 areUp; /* peers with a session, one bit each */

@@ -24,7 +24,7 @@ extern XBeeATEndpoint uav_endpoint;
 extern OS_EVENT* uav_radioWork; /* semaphore that is posted when there is work for the radio task */
 extern U32 uav_now;             /* time at which the radio task began its current pass, us */
 extern U8 uav_isAnswered;       /* 1 if the modem reports a status for each packet */
-/* 1 if all links must be polled, not only that of the first ground station */
+/* 1 if all links must be polled, not only the link to the first ground station */
 extern U8 uav_pollsAll;
 
 void UAV_initState(void);

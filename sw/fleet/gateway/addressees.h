@@ -53,7 +53,7 @@ public:
 
 private:
     static constexpr size_t mostOwnerless = 10000;
-    // for each object, the connected clients that have passed a proxy of this object
+    // connected clients of each object: the clients that have passed a proxy of this object
     std::map<Ice::Identity, std::set<Connection>> owners_;
     bool forgets_ = false; // true once entries without an owner have been dropped
 };

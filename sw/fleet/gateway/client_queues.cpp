@@ -125,7 +125,7 @@ std::shared_ptr<Request> ClientQueues::pop(const std::shared_ptr<Client>& client
     return request;
 }
 
-// Returns the client whose turn is next among those clients of a subject that may send now; null if
+// Returns the next client in turn among those clients of a subject that may send now; null if
 // no client may send.
 std::shared_ptr<Client> ClientQueues::firstOf(const Subject& subject, const MayGo& mayGo) const {
     std::shared_ptr<Client> first;

@@ -60,7 +60,7 @@ public:
     using MayGo = std::function<bool(const Client&)>;
     // Returns whether the condition is true for at least one client that has waiting requests.
     bool isAnyWaiting(const MayGo& condition) const;
-    // Among the clients that may send now, chooses the client whose turn is next; removes and
+    // Among the clients that may send now, chooses the next client in turn; removes and
     // returns this client's oldest request. Returns null if no client may send.
     std::shared_ptr<Request> popNext(const MayGo& mayGo);
     // Removes and returns the requests that arrived before `due`.

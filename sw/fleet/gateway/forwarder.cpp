@@ -135,8 +135,8 @@ bool Forwarder::mayGo(const Client& client) const {
                                    lane.bytes + request.bytes <= mostBytesUnderWay[number]));
 }
 
-// Returns a lane that has no connection although requests wait for this lane; -1 if there is no
-// such lane.
+// Returns a lane that has no connection although requests wait for this lane; -1 if no such
+// lane exists.
 int Forwarder::laneToConnect() const {
     const bool isConnected = lanes_[shortCalls].connection != nullptr;
     int found = -1;
@@ -149,7 +149,7 @@ int Forwarder::laneToConnect() const {
     return found;
 }
 
-// Removes and returns the next request that may be sent now; returns null if there is none. The
+// Removes and returns the next request that may be sent now; returns null if none exists. The
 // caller holds the mutex.
 std::shared_ptr<Request> Forwarder::nextRequest() {
     auto request = queues_.popNext([this](const Client& client) { return mayGo(client); });
@@ -271,7 +271,7 @@ void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
 
 // ---- the lanes ----
 
-// Records the client as an owner of the objects whose proxies a request passes to the vehicle.
+// Records the client as an owner of all objects that a request passes to the vehicle as proxies.
 // Skips the operations that every object has, such as ice_ping, because they pass no proxies.
 void Forwarder::recordProxies(const Request& request) {
     if (!request.client || request.current.operation.compare(0, 4, "ice_") == 0)

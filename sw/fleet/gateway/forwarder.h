@@ -45,9 +45,9 @@ public:
 
     // Connects to the vehicle and keeps the connection; must be called periodically. Before the
     // first call of hold(), requests wait for a connection. After this call, a request that arrives
-    // while there is no connection fails with ObjectNotExistException.
+    // without a connection fails with ObjectNotExistException.
     void hold();
-    unsigned session() const; // number of the current connection; 0 if there is none
+    unsigned session() const; // number of the current connection; 0 without one
     void refuseWaiting();     // fails waiting requests with ObjectNotExistException
     // Fails requests in flight that are older than `age`. It is then unknown whether the vehicle
     // has executed them.

@@ -91,7 +91,7 @@ Take toVehicle(Forwarder& forwarder, const Rights& rights, const Pages& pages,
     };
 }
 
-// Returns a function that passes the vehicle's calls to the object `station`, whose endpoint is
+// Returns a function that passes the vehicle's calls to the object `station` at the endpoint
 // `where`, or to the topic of `events`. `vehicle` is a proxy by which programs on the ground can
 // call the vehicle.
 Take toStation(const std::shared_ptr<Ice::ObjectPrx>& station, const std::string& where,
@@ -290,7 +290,7 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
         vehicles.emplace_back(ic, o, rights, pages, name, address, int(vehicles.size()), publisher);
     pages.start(ic->getProperties()->getProperty("IceSSL.CertFile"));
     // Calls a function of the registration of each vehicle. Returns the text of the first error;
-    // empty if there is no error or no registry is configured.
+    // empty if all calls succeed or no registry is configured.
     const auto ask = [&](void (Registration::*question)()) -> std::string {
         try {
             for (Vehicle& vehicle : vehicles)
@@ -336,7 +336,7 @@ int main(int argc, char** argv) {
     try {
         Ice::StringSeq words(argv, argv + argc);
         Ice::InitializationData data;
-        // the program's name, which is the first word, appears in the log
+        // the name of the program, which is the first word, appears in the log
         data.properties = Ice::createProperties(words);
         words.erase(words.begin());
         for (const char* prefix : {"IceSSL", "XBeeAT"})

@@ -28,7 +28,7 @@ void addOptions(CLI::App& app, Options& o);
 // Sets the properties of Ice and of the radio plugin, except those that the command line sets.
 void setProperties(const std::shared_ptr<Ice::Properties>& p, const Options& o);
 
-// Returns the address of each vehicle by the vehicle's name. Throws an exception if a name or an
+// Returns the address of each vehicle by its name. Throws an exception if a name or an
 // address is not valid.
 std::map<std::string, int> fleetOf(const Options& o);
 // Returns the endpoint of a vehicle on the radio. A proxy with this endpoint reaches the vehicle;

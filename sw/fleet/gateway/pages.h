@@ -43,7 +43,7 @@ public:
 private:
     const Options& o_;
     std::string host_, port_, secret_, protocol_;
-    std::vector<std::string> origins_;  // origins of the gateway's own page
+    std::vector<std::string> origins_;  // origins of the page that the gateway serves
     std::vector<std::string> vehicles_; // arguments for icesoc-page, such as uav1=wss:10002
     pid_t server_ = -1;
 };

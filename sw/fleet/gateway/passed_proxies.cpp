@@ -14,8 +14,8 @@ constexpr size_t head = 6;
 // length of the longest accepted name, bytes; up to this length, the encoded length has one byte
 constexpr size_t longestName = 254;
 
-// Reads bytes, starting at `at`. Clears isRight if there are no more bytes, or if a byte is outside
-// its expected range.
+// Reads bytes, starting at `at`. Clears isRight if all bytes are already read, or if a byte is
+// outside its expected range.
 struct Reader {
     const std::vector<Ice::Byte>& bytes;
     size_t at;

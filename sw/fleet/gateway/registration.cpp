@@ -83,7 +83,8 @@ std::shared_ptr<Ice::ObjectPrx> Registration::find() const {
     }
 }
 
-// Sets the vehicle's endpoints in the registry to those of a proxy. A null proxy removes the entry.
+// Sets the vehicle's endpoints in the registry to the endpoints of a proxy. A null proxy removes
+// the entry.
 void Registration::enter(const std::shared_ptr<Ice::ObjectPrx>& proxy) const {
     const auto registry = locator_->getRegistry();
     registry->ice_invocationTimeout(patienceMs)->setAdapterDirectProxy(name_, proxy);

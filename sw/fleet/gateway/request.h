@@ -53,7 +53,7 @@ struct Request {
 
 using Requests = std::vector<std::shared_ptr<Request>>;
 
-// Returns an Ice UnknownException whose text is "icesoc-gateway: " and `why`.
+// Returns an Ice UnknownException with the text "icesoc-gateway: " and `why`.
 std::exception_ptr unknown(const std::string& why);
 
 // Fails the requests with this exception. Logs how many of them are one-way, because the senders of

@@ -26,7 +26,7 @@ from reasons import reason_of
 
 def write(path, lines):
     """Writes these lines to a new file in the folder of `path`. The new file has the same owner as
-    `path`, and only this owner can read it. Returns the new file's name."""
+    `path`, and only this owner can read it. Returns the name of the new file."""
     temporary = path + ".new"
     with contextlib.suppress(FileNotFoundError):
         os.remove(temporary)

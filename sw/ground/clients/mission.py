@@ -176,7 +176,7 @@ def part_of(folder):
 
 
 def differences(chip):
-    """Returns a line of text for each block whose registers differ between the chip and the
+    """Returns a line of text for each block with different registers in the chip and the
     firmware."""
     return ["%s: expected registers with hash 0x%08X, as the firmware was built for, got 0x%08X "
             "in the chip"
@@ -290,8 +290,8 @@ class Mission:
         self.log.note(f"{name}: {result.found} corners")
 
     def observe(self):
-        """Acts as a second ground station, which has a modem and keys of its own. Asks each vehicle
-        for its state."""
+        """Acts as a second ground station with a separate modem and separate keys. Asks each
+        vehicle for its state."""
         args, device = self.args, self.args.observer_device
         plugged.use_second_clock()
         with plugged.initialize({"XBeeAT.Trace": str(args.trace), "Ice.ACM.Close": "0",

@@ -35,7 +35,7 @@ class Air:
 
 
 class Patience:
-    """A time-out in simulated time, or in real time if there is no simulator. It also expires if
+    """A time-out in simulated time, or in real time without a simulator. It also expires if
     simulated time has not advanced for the same number of seconds of real time."""
 
     def __init__(self, air, seconds):

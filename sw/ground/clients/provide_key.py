@@ -67,8 +67,8 @@ def open_secret(path):
 
 def read_key(path, vehicle):
     """Returns a vehicle's key from a key file. As in the plugin (docs/security.md), uses the line
-    that begins with the vehicle's address, or the line without an address if there is no such
-    line."""
+    that begins with the vehicle's address, or the line without an address if no such line
+    exists."""
     keys = {}
     with open_secret(path) as f:
         for number, line in enumerate(f.read(65536).split("\n"), 1):

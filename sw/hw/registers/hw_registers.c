@@ -103,7 +103,7 @@ static int number(Ice_String name, U32* value) {
 }
 
 /* Finds a register by its name, or by its byte address in the core; in the second case fills
- * `place`. Returns 0 and sets the reason if there is no such register. */
+ * `place`. Returns 0 and sets the reason if no such register exists. */
 static const Hw_Register* lookUp(Hw_Registers_Core* self, Ice_String name, Hw_Register* place) {
     const Hw_Register* r = find(self, name);
     const Hw_Register* page = find(self, Ice_String_from("PAGE.ADDRESS"));

@@ -35,7 +35,7 @@ void Hw_Registers_Core_interrupt(Hw_Registers_Core* self);
 U32 Hw_Registers_Core_poll(Hw_Registers_Core* self, U32 nowMs);
 
 /* Compare the registers of the chip with those for which the firmware was built. One hash per slot
- * represents the slot's registers; SYSTEM.CONTRACT returns the hash (docs/bus.md).
+ * represents its registers; SYSTEM.CONTRACT returns the hash (docs/bus.md).
  * Hw_Contracts_read copies the `count` entries of `built` to `found` and adds the hashes of the
  * chip. Hw_Contracts_hold returns 1 if the slot is in the list and its two hashes are equal. */
 void Hw_Contracts_read(Hw_Contract* found, const Hw_Contract* built, U32 count);

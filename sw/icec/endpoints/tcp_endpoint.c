@@ -76,7 +76,7 @@ static Ice_Int frontSize(TcpEndpoint_Connection* c) {
     return TcpEndpoint_refuse(c, size) ? 0 : -1;
 }
 
-/* Fetches one event that has already occurred, without waiting. Returns 0 if there is none. */
+/* Fetches one event that has already occurred, without waiting. Returns 0 if none has. */
 static int ready(TcpEndpoint* self, Ice_Byte* buffer, Ice_Event* event) {
     int i;
     for (i = 0; i < ICE_CONNECTIONS; ++i) {

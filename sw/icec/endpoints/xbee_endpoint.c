@@ -151,7 +151,7 @@ static Ice_Status receive(void* context, Ice_Byte* buffer, Ice_Int timeoutMs, Ic
 }
 
 /* Opens this side's channel to a peer. If the peer is a vehicle without a session, dials the
- * vehicle; the channel is then opened later, and the vehicle's first message ends the caller's
+ * vehicle; the channel is then opened later, and the first message of the vehicle ends the caller's
  * wait. */
 static Link_Status openOwn(XBeeATEndpoint* self, int peer) {
     Link_Status status = LINK_OK;
@@ -240,7 +240,7 @@ static Ice_Status sendMessage(void* context, int connection, const Ice_Byte* mes
     return offer(context, connection, message, size);
 }
 
-/* Returns the peer with the address in an encoded endpoint; -1 if there is no such peer. */
+/* Returns the peer with the address in an encoded endpoint; -1 if no such peer exists. */
 static int peerOf(const XBeeATEndpoint* self, const Ice_Byte* encoded, Ice_Int size) {
     if (size < HEAD + 2)
         return 0;

@@ -48,12 +48,12 @@ typedef struct XBeeATEndpoint {
     /* buffer of the receiving task; 0 while no task receives, so that the link keeps messages */
     Ice_Byte* buffer;
     Ice_Byte from;    /* connection of the pending message */
-    Ice_Byte ownOpen; /* peers on whose links this side's channel is open, one bit each */
+    Ice_Byte ownOpen; /* peers with an open channel of this side, one bit each */
     Ice_Byte held;    /* 1: the link keeps a message that could not be delivered */
     /* connection of the message that is being sent; NOBODY if this connection has ended */
     Ice_Byte offered;
     /* ---- fields for xbee_peers.c ---- */
-    Ice_Byte own[XBEE_PEERS]; /* for each peer, number of the connection that this side opens */
+    Ice_Byte own[XBEE_PEERS]; /* number of the connection that this side opens to each peer */
     /* vehicles: peers that are vehicles. dialed: vehicles that this side dials now. One bit for
      * each peer. */
     Ice_Byte vehicles, dialed;

@@ -17,7 +17,7 @@ int XBeePeers_find(const XBeeATEndpoint* self, U16 address);
  * if the peer is a vehicle that is being dialed. Ground stations are never dialed. */
 int XBeePeers_setDialed(XBeeATEndpoint* self, int peer, int isDialed);
 
-/* Returns 1 if this side still dials the vehicle, there is no session, and no message has arrived
+/* Returns 1 if this side still dials the vehicle, no session exists, and no message has arrived
  * since dialing began. A session can end without a message if both sides start a session at the
  * same time. The callers then continue to wait. */
 int XBeePeers_isDialedOn(const XBeeATEndpoint* self, int peer);

@@ -11,7 +11,7 @@ void Ice_Communicator_setProperties(Ice_CommunicatorPtr ic, const char* const* t
     ic->properties = table;
 }
 
-/* Returns the value of the property whose name is `key` followed by `suffix`; 0 if this property is
+/* Returns the value of the property with the name `key` followed by `suffix`; 0 if this property is
  * not set. */
 static const char* find(Ice_CommunicatorPtr ic, const char* key, const char* suffix) {
     const char* const* entry;

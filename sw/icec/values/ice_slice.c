@@ -129,7 +129,7 @@ static void skipTable(Ice_InputStreamPtr is, int depth) {
         Ice_Byte flags = ICE_SLICE_LAST;
         Ice_Int end;
         if (Ice_InputStream_readSize(is) != 1)
-            continue; /* a reference to an earlier instance has no slices of its own */
+            continue; /* a reference to an earlier instance has no slices */
         do {
             flags = Ice_InputStream_readByte(is);
             if ((flags & ICE_SLICE_COMPACT_ID) == ICE_SLICE_TYPE_STRING)

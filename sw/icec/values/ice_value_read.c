@@ -141,7 +141,7 @@ static void readTable(Ice_InputStreamPtr is) {
 }
 
 /* Preserves the current slice and skips it; only possible in encoding 1.1. Returns 0 if the end of
- * the slice is unknown, or if there is no room. */
+ * the slice is unknown, or if it does not fit. */
 static Ice_UnknownSlice* keepSlice(Ice_InputStreamPtr is, Ice_String id, Ice_Int compactId) {
     Ice_Byte flags = is->sliceFlags, optionals = (flags & ICE_SLICE_OPTIONALS) != 0;
     Ice_UnknownSlice* slice;
@@ -197,7 +197,7 @@ static void endUnknown(Ice_InputStreamPtr is) {
 
 typedef struct SliceHead {
     Ice_String id;
-    Ice_Int compactId;         /* compact id; -1 if there is none */
+    Ice_Int compactId;         /* compact id; -1 without one */
     const Ice_ValueType* type; /* type of the slice; 0 if it is unknown */
     /* 1 for ::Ice::Object, the base of all classes; its slice ends an instance in encoding 1.0 */
     Ice_Bool isObject;

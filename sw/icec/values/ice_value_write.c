@@ -139,7 +139,7 @@ static void writeInstance(Ice_OutputStreamPtr os, const Ice_Value* v) {
 }
 
 /* Writes the table of the instances to which a slice's members refer, after the slice. Returns 0 if
- * there are no such instances. */
+ * no such instances exist. */
 static Ice_Bool writeTable(Ice_OutputStreamPtr os) {
     Ice_OutputValues* values = os->values;
     Ice_Int begin = values->tableBegin, end = values->tableEnd, i;

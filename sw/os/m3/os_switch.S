@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * os_switch: switches tasks in PendSV. It saves the registers that the processor has not saved,
- * calls OS_Switch to get the stack of the next task, and restores that task's registers.
+ * calls OS_Switch to get the stack of the next task, and restores the registers of that task.
  *
  * Stack of a suspended task, from its stack pointer upwards: r4..r11, then the frame that the
  * processor has pushed: r0..r3, r12, lr, pc, xPSR (ARMv7-M ARM, B1.5.6).

@@ -7,7 +7,7 @@
 
 #include "slots.h"
 
-/* Returns the slots of bitstreams in the FPGA's flash; 0 if there is no such flash. Makes the FPGA
+/* Returns the slots of bitstreams in the FPGA's flash; 0 without such a flash. Makes the FPGA
  * load a bitstream and waits for DONE before it returns. With `mayTry`, a new bitstream is loaded
  * if there is one. If the new bitstream was tried before and not confirmed, or if the FPGA does not
  * accept it, the golden bitstream is loaded. With `mustLoad`, the FPGA loads its bitstream again,

@@ -45,7 +45,7 @@ static const Slots_Port port = {&slots_firmware,      0,
                                 Signature_digest,     LOADER_KEYS,
                                 (const U8*)FLASH_BASE};
 
-/* Starts the program whose vector table is at this address. */
+/* Starts the program with its vector table at this address. */
 static void __attribute__((naked, noreturn)) jump(const U32* at) {
     __asm__ volatile("ldrd r1, r2, [r0]\n\t"
                      "msr msp, r1\n\t"

@@ -13,7 +13,8 @@ extern U32 image_begin[]; /* firmware.ld */
 static Slots_Port port;
 
 /* Erases a sector. The processor stalls during an erase and cannot refresh the watchdog. The
- * watchdog's time is therefore set to 4 s (2.8 s if its oscillator has the highest frequency). */
+ * time-out of the watchdog is therefore set to 4 s (2.8 s if its oscillator has the highest
+ * frequency). */
 static int erase(void* context, U32 offset) {
     const U32 usual = IWDG_RLR;
     int good;

@@ -20,7 +20,7 @@ template <class T> T at(const std::vector<uint8_t>& file, size_t offset) {
 }
 
 // Returns the CRC over all words of an image except the last word, which contains the CRC. The CRC
-// is that of the STM32's CRC unit (RM0033, 3.2).
+// is computed as in the STM32's CRC unit (RM0033, 3.2).
 uint32_t checksum(const std::vector<uint8_t>& image) {
     uint32_t crc = 0xFFFFFFFF;
     for (size_t offset = 0; offset + 4 < image.size(); offset += 4) {

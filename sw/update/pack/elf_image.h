@@ -24,7 +24,7 @@ public:
     };
     const std::vector<Segment>& segments() const { return segments_; }
     bool has(const std::string& symbol) const { return symbols_.count(symbol) != 0; }
-    // Returns the value of a symbol. Throws std::runtime_error if there is no such symbol.
+    // Returns the value of a symbol. Throws std::runtime_error if no such symbol exists.
     uint32_t symbol(const std::string& name) const;
     uint32_t size(const std::string& name) const { return sizes_.at(name); }
     // Returns the name of the function at an address; "?" if the address is in no function.

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * without_keys: functions for a vehicle without keys (ICESOC_KEYS=OFF), whose links are not
+ * without_keys: functions for a vehicle without keys (ICESOC_KEYS=OFF); its links are not
  * encrypted. The vehicle starts only if it was explicitly opened (provision.h), so that a vehicle
  * that had a key never flies unprotected.
  */

@@ -24,7 +24,7 @@ PICTURE = "docs/pictures/{}.png"
 MISSION = PICTURE.format("mission")
 
 # The output of `make run` in README.md. The picture of the same flight contains the same text.
-TRANSCRIPT = re.compile(r"(?<=Ice's log lines\):\n\n```\n).*?(?=```)", re.S)
+TRANSCRIPT = re.compile(r"(?<=Ice's log lines are left out here:\n\n```\n).*?(?=```)", re.S)
 
 # Page or picture -> texts that it contains. In these texts, a name in braces stands for a figure.
 # If a figure has no source, it must be the same in all texts that contain its name.

@@ -8,7 +8,7 @@
 // error. The core may still perform this access later. Until the core has answered this access, all
 // further accesses end with an error, and the interrupt line is low. core_valid_o falls only when
 // core_ready_i is high or the core is reset. The handshake has no reset, so a reset of either side
-// neither creates nor loses a request. Constraints: those of cdc_bus, cdc_bit and cdc_reset;
+// neither creates nor loses a request. Constraints: as for cdc_bus, cdc_bit and cdc_reset;
 // coremap writes them for each core with a separate clock.
 
 `default_nettype none
@@ -18,7 +18,7 @@ module bus_crossing #(
 ) (
     `include "slot_ports.vh"
     output wire        irq_o,
-    // clock of the core, and the slot's signals in the core's clock domain
+    // clock of the core, and the signals of the slot in the clock domain of the core
     input  wire        core_clk_i,
     output wire        core_rst_o,
     output wire        core_valid_o,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// bus_crossing_core: the part of bus_crossing in the core's clock domain. It carries out each
+// bus_crossing_core: the part of bus_crossing in the clock domain of the core. It carries out each
 // request as one access to the core, and keeps the answer until the next access ends.
 //
 // A reset of the core ends the access with an error. Requests do not overlap: the next request

@@ -64,7 +64,7 @@ module bus_to_wishbone #(
 
 `ifdef RULES // the rules are included in proofs and in tests of cores
     // Checks of the Wishbone B4 handshakes of a master that has one transfer at a time. The numbers
-    // are those of the rules in the standard (B4, 2010). The slave is assumed to follow its rules.
+    // come from the rules in the standard (B4, 2010). The slave is assumed to follow its rules.
     reg past = 1'b0;
     reg outstanding = 1'b0; // a strobe was taken and has not been answered yet (pipelined mode)
     // 1: the cycle may end in the next clock without an answer

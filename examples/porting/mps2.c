@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * mps2: start-up, serial port and clock of ARM's MPS2 board with a Cortex-M3 (application note
- * 385). The UART is that of ARM's CMSDK (DDI 0479).
+ * 385). The UART comes from ARM's CMSDK (DDI 0479).
  */
 #include "mps2.h"
 
@@ -102,7 +102,7 @@ static void halt(void) {
 }
 
 /* Handlers for a program without a kernel. A kernel replaces them by its own handlers with these
- * names, which are those of CMSIS. */
+ * names, as in CMSIS. */
 void SVC_Handler(void) __attribute__((weak, alias("halt")));
 void PendSV_Handler(void) __attribute__((weak, alias("halt")));
 void SysTick_Handler(void) __attribute__((weak, alias("onTick")));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // line_tester: lets the microcontroller read and drive every pin of the FPGA, to find bad wires on
-// a new board. It is a separate design (synth/ise/lines.v) and needs neither the board's clock nor
+// a new board. It is a separate design (synth/ise/lines.v) and needs neither the board clock nor
 // DDR3.
 //
 // The microcontroller uses three GPIO lines as a serial interface to a shift register: clock, data
@@ -20,7 +20,7 @@
 //                   levels of LINES pins, levels of the modem's 5 pins EARLY clocks after the last
 //                   stop
 //
-// The clock count is in units of 64 clocks of the board's clock. The levels EARLY clocks after the
+// The clock count is in units of 64 board clocks. The levels EARLY clocks after the
 // last stop distinguish a driver, which moves a released pin immediately, from a pull resistor,
 // which needs a microsecond for this.
 //
@@ -87,7 +87,7 @@ module line_tester #(
     wire [2:0] rises  = clock & ~clock_was;
 
     // ---- frame
-    // channel on which the current frame arrives, one-hot; 0 while there is no frame
+    // channel on which the current frame arrives, one-hot; 0 between frames
     reg [2:0]        channel = 3'd0;
     reg [2*LINES:0]  sent = 0;       // bits of the last frame
     reg [ANSWER-1:0] answer = 0;

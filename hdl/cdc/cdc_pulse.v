@@ -3,11 +3,11 @@
 // cdc_pulse: converts an event in src_clk_i to a pulse of one cycle in dst_clk_i, two to three
 // clocks later.
 //
-// Each event toggles a flip-flop, whose output passes through a two-stage synchroniser; each change
-// of the synchroniser's output is an event. The time between two events must be at least two clocks
+// Each event toggles a flip-flop. A two-stage synchroniser passes its output on; each change of the
+// synchroniser's output is an event. The time between two events must be at least two clocks
 // of dst_clk_i plus the delays of the paths; events that are closer to each other, such as ringing,
 // count as one event. src_clk_i needs an edge only for each event. The module has no reset, so a
-// reset of either side neither creates nor loses an event. Constraints: those of cdc_bit, and one
+// reset of either side neither creates nor loses an event. Constraints: as for cdc_bit, and one
 // period of dst_clk_i from turned_sync to turned.
 
 `default_nettype none

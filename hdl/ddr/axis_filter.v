@@ -29,7 +29,7 @@ module axis_filter #(
     input  wire [31:0]          target_i,
     output wire                 done_o,     // high for one clock at the end of an operation
     output wire                 refused_o,  // with done
-    output wire [BYTE_BITS-1:0] bytes_o,    // number of output bytes, valid from done_o on
+    output wire [BYTE_BITS-1:0] bytes_o,    // number of output bytes, valid starting with done_o
     // stream to the core
     output wire                 m_axis_tvalid_o,
     input  wire                 m_axis_tready_i,

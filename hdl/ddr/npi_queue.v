@@ -5,9 +5,9 @@
 //
 // One LUT RAM holds 2**LOG2 requests (one place stays free). Four pointers follow each other:
 //   head   place for the next accepted request
-//   move   write whose words are being sent to the back-end (reads are skipped)
-//   issue  request whose command is sent next; a write first sends all its words
-//   back   read whose words are arriving (writes are skipped)
+//   move   write with words that are being sent to the back-end (reads are skipped)
+//   issue  request of the next command; a write first sends all its words
+//   back   read with words that are arriving (writes are skipped)
 // In the same cycle, a request can be accepted, a write word can be sent, a command can be issued
 // and a read word can arrive. Commands are issued in the order of acceptance.
 
@@ -159,7 +159,7 @@ module npi_queue #(
 
 `ifdef FORMAL
     // Proves that the four pointers never pass each other, and that the kind of a request does not
-    // change. npi_arbiter_proof reads the following copies of the queue's registers, in which the
+    // change. npi_arbiter_proof reads the following copies of the queue registers, in which the
     // requests are numbered by their position.
     `SHIFT_NUMBERS(place_of, number_of, after, LOG2)
     wire [(KIND<<LOG2)-1:0]      f_kinds;

@@ -2,7 +2,7 @@
 //
 // npi_select: round-robin arbiter for PORTS requesters, with an optional urgent class.
 //
-// Ports whose bit in URGENT is 1 are urgent, and are served before the other ports; within each of
+// Ports with a 1 in URGENT are urgent, and are served before the other ports; within each of
 // these two classes, ports are served round-robin. While a port that is not urgent waits, there are
 // at most URGENT_RUN urgent grants in a row. With N ports, U of them urgent, a request waits for at
 // most this number of grants to other ports:

@@ -29,7 +29,7 @@ module fsmc_memory #(
     input  wire                 rst_i,
     // page: address bits above the window; may change only while idle_o is high
     input  wire [5:0]           page_i,
-    // writes: one per cycle of wr_i; a write is lost if there is no room for it
+    // writes: one per cycle of wr_i; a write that does not fit is lost
     input  wire                 wr_i,
     input  wire [ADDR_BITS-1:0] wr_addr_i, // halfword address
     input  wire [WIDTH-1:0]     wr_data_i,

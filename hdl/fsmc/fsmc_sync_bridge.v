@@ -4,7 +4,7 @@
 // clk_i. No pin is a clock or an asynchronous clear, and the only paths from pin to pin are those
 // from NE and NOE to NWAIT and to the output enable of the data bus.
 //
-// Use it on a board whose timing does not meet the constraints of fsmc_bridge. An access takes
+// Use it on a board with timing that does not meet the constraints of fsmc_bridge. An access takes
 // about twice as long, and the settings of the FSMC must satisfy these rules (docs/fsmc.md):
 // - modes A, C or D, or the multiplexed mode, with NWAIT for reads and for writes
 // - between accesses, NOE and NWE are both high for at least four clocks plus the delay of NWAIT

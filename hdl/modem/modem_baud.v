@@ -20,7 +20,7 @@ module modem_baud #(
     input  wire [3:0] bd_i,
     output reg        tick_o
 );
-    // width of the phase, bits; for 38400 baud at 100 MHz the step is 805 / 2**18, whose error is
+    // width of the phase, bits; for 38400 baud at 100 MHz the step is 805 / 2**18, with an error
     // below 0.04 %
     localparam WIDTH = 18;
     // Steps of the phase per clock: 8 * rate * 2**18 / CLK_HZ, rounded.

@@ -5,7 +5,7 @@
 //
 // The proof shows that at the time at which the gate closes, no register of the core would take
 // another value at the next clock, whatever the inputs are. Therefore the core behaves the same
-// with and without gating. In this proof the core's clock is the signal `closes`; idle_registers.v
+// with and without gating. In this proof the signal `closes` clocks the core; idle_registers.v
 // adds an assertion for each flip-flop with this clock: the flip-flop keeps its value.
 
 `default_nettype none

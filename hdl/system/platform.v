@@ -93,7 +93,7 @@ module platform #(
     wire        npi_init_done;
 
     // The macro FSMC_SYNC_BRIDGE selects the bridge that samples its pins (docs/fsmc.md). The macro
-    // FSMC_MUXED builds the bridge for a board whose data pins also carry the address.
+    // FSMC_MUXED builds the bridge for a board with data pins that also carry the address.
 `ifdef FSMC_SYNC_BRIDGE
     fsmc_sync_bridge
 `else

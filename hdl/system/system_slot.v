@@ -22,7 +22,7 @@ module system_slot #(
     input  wire             access_error_i, // one cycle
     // the error belongs to an access to memory; it is reported with the register address 0x3FF
     input  wire             error_memory_i,
-    // address of the register whose access failed; unused for a memory error
+    // address of the register with the failed access; unused for a memory error
     input  wire [9:0]       error_addr_i,
     input  wire             error_write_i,
     input  wire             late_i
@@ -52,7 +52,7 @@ module system_slot #(
 
     assign irq_o = |lines;
 
-    // hash of the slot whose number is being written to CONTRACT; the write stores the hash in the
+    // hash of the slot with the number being written to CONTRACT; the write stores the hash in the
     // register `contract`, which a read returns
     reg [31:0] asked;
     integer    s;

@@ -350,7 +350,7 @@ module ascon (
 
 `ifdef FORMAL
     // Invariants for formal.idle_ascon: the flags agree with the state, and the stream is idle
-    // while there is no job and before the first LOAD_SOURCE.
+    // without a job and before the first LOAD_SOURCE.
     (* hierconn *) wire [23:0] \u_stream.to_give ; // signals of u_stream
     (* hierconn *) wire [5:0]  \u_stream.outstanding ;
     (* hierconn *) wire [2:0]  \u_stream.filled , \u_stream.bursts ;

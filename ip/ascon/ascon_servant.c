@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ascon_servant: implements Cores::Ascon with the core: it accesses the core's registers and
- * buffers through the FSMC.
+ * ascon_servant: implements Cores::Ascon with the core: it accesses the registers of the core and
+ * its buffers through the FSMC.
  */
 #include "ascon_servant.h"
 #include "ascon_regs.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// camera_test: tests the core with a sensor whose clock is independent and has jitter, with a
+// camera_test: tests the core with a sensor that has an independent clock with jitter, with a
 // memory that stalls, and with all kinds of damaged frames.
 
 #include "Vcamera_slot.h"

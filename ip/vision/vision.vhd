@@ -320,7 +320,7 @@ begin
   end process;
 
   -- The score that leaves vision_suppress belongs to the centre of its neighbourhood. This centre
-  -- is one line and one column before the pixel whose score entered KEPT_DELAY steps ago.
+  -- is one line and one column before the pixel of the score that entered KEPT_DELAY steps ago.
   kept_position : process (clk_i)
   begin
     if rising_edge(clk_i) then

@@ -103,7 +103,7 @@ static Ice_Status finishFrame(Vision_Core* self) {
         return ICE_UNKNOWN_EXCEPTION;
     readResults(self);
     if (port->busErrors(self->core.context) != errorsBefore)
-        return ICE_UNKNOWN_EXCEPTION; /* the core hangs, so there is no valid result */
+        return ICE_UNKNOWN_EXCEPTION; /* the core hangs, so the result is invalid */
     port->frames->processed((U32)self->found);
     return ICE_OK;
 }

@@ -116,8 +116,8 @@ std::string proxySignature(const Declaration& d, const Operation& o);
 std::string asyncSignature(const Declaration& d, const Operation& o);
 // True if the operation may throw an exception that preserves unknown slices.
 bool throwsPreserved(const Unit& unit, const Operation& o);
-// Returns the signature of a servant's function. `name` is the function's name, or "(*op)" for a
-// pointer; `self` is the servant's type.
+// Returns the signature of a servant's function. `name` is the name of the function, or "(*op)" for
+// a pointer; `self` is the servant's type.
 std::string servantSignature(const Declaration& owner, const Operation& o, const std::string& name);
 std::string responseSignature(const Declaration& d, const Operation& o);
 

@@ -177,5 +177,5 @@ struct Unit {
 Declaration::Facts factsOf(const Type& type);
 // Returns whether the directive is present.
 bool hasMetadata(const std::vector<std::string>& metadata, const std::string& directive);
-// Returns the text after "prefix:" in a directive; an empty string if there is no such directive.
+// Returns the text after "prefix:" in a directive; an empty string if no such directive exists.
 std::string metadataValue(const std::vector<std::string>& metadata, const std::string& prefix);

@@ -121,7 +121,7 @@ void Parser::readMetadata(std::string& text, Metadata& found) {
         text = doc();
 }
 
-// Returns whether this is the main file, whose path the preprocessor may write differently from the
+// Returns whether this is the main file; the preprocessor may write its path differently from the
 // command line.
 bool Parser::isMain(std::string_view file) {
     auto [it, isNew] = isMain_.try_emplace(file, false);

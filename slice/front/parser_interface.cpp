@@ -201,7 +201,7 @@ void Parser::throwsClause(Operation& o, const Declaration& owner) {
         Location begin = token().at;
         std::string written = scopedName("an exception");
         Symbol* s = resolve(written, begin);
-        // An operation's name must not have another meaning in its interface.
+        // The name of an operation must not have another meaning in its interface.
         std::string first = lowerCase(written.substr(0, written.find("::")));
         bool isOperation = first == lowerCase(o.name);
         for (const Operation& other : owner.operations)

@@ -45,7 +45,7 @@ public:
     Symbol* declare(const std::string& scope, const std::string& name, const Location& at,
                     bool& isNew);
     // Searches `scope`, then the enclosing scopes, for the symbol to which `written` refers;
-    // returns 0 if there is no such symbol. Records the meaning for `user`, a module or type:
+    // returns 0 if no such symbol exists. Records the meaning for `user`, a module or type:
     // later, `user` must not use the same name with another meaning.
     Symbol* resolve(const std::string& scope, const std::string& written, const Location& at,
                     const std::string& user);

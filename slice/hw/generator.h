@@ -26,8 +26,8 @@ constexpr unsigned bufferAlignment = 128;
 constexpr unsigned mostPins = 32; // largest number of pins of a core in one direction
 constexpr unsigned mostOperations = 16, refusedLsb = 16, resetBit = 31;
 
-// A field of a word: a scalar, or half of a 64-bit scalar. The same bits are also a range of bits
-// of a port.
+// A field of a word: a scalar, or half of a 64-bit scalar. The same bits are also a range of a
+// port.
 struct Piece {
     Type type;
     std::string name; // name of the field: a_x for member x of parameter a
@@ -101,7 +101,7 @@ struct Block {
     bool hasOwnClock = false;
     // The number of pages is 2^pageBits. 0: the slot has one page, and no word PAGE (word 5).
     unsigned pageBits = 0;
-    unsigned memoryWord = 0;  // number of the word MEMORY; 0 if there are no sequences
+    unsigned memoryWord = 0;  // number of the word MEMORY; 0 without sequences
     unsigned memoryBytes = 0; // size of all buffers in bytes, a power of two
 
     bool hasLong() const;

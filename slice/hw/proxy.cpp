@@ -58,8 +58,8 @@ void method(Writer& w, const Block& b, const Call& c) {
             });
 }
 
-// Writes the method for an event. The method returns whether the event was raised, and the values
-// of the event.
+// Writes the method for an event. The method returns whether the event was raised, and its
+// values.
 void event(Writer& w, const Block& b, const Call& c) {
     std::string parameters, arguments;
     for (const Slot& s : inVariables(*c.operation)) {

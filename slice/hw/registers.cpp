@@ -15,7 +15,7 @@ namespace {
 using json = nlohmann::ordered_json;
 
 // Returns the first line of a doc comment, with any end of a C comment removed; returns `otherwise`
-// if there is no doc comment.
+// if the doc comment is missing.
 std::string firstLine(const std::string& doc, const std::string& otherwise) {
     auto lines = docLines(doc);
     return lines.empty() ? otherwise : lines.front();

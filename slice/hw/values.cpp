@@ -44,8 +44,8 @@ std::string bitsOf(const Piece& p) {
     }
 }
 
-// Returns the start of the C call that reads or writes a word: the function's name and first
-// arguments. If the word is on a page, the function that is called also selects the page.
+// Returns the start of the C call that reads or writes a word: the name and first arguments
+// of the function. If the word is on a page, the function that is called also selects the page.
 std::string access(const Block& b, const Word& word, const std::string& what) {
     std::string name = upperCase(b.name) + "_" + word.name;
     return b.isPaged(word.number)
@@ -120,8 +120,8 @@ void readPiece(Writer& w, const Block& b, const Call& c, const Word& word, const
     w.line(to + " = (" + cType(p.type) + ")" + whole + ";");
 }
 
-// Writes code that reads the words with the values of an exception; if `exception` is 0, the words
-// with the results of the call.
+// Writes code that reads the words with the values of an exception; if `exception` is 0, reads the
+// words with the results of the call.
 void readWords(Writer& w, const Block& b, const Call& c, unsigned exception) {
     for (const Word& word : c.words) {
         bool isRead = false;

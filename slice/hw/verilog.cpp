@@ -24,7 +24,7 @@ std::string portOf(const Word& word, const Piece& p) {
     return p.portWidth > 32 ? slice(port, p.portLsb, p.width) : port;
 }
 
-// Returns the index of a word's first bit in the vectors of bus_registers.
+// Returns the index of the first bit of a word in the vectors of bus_registers.
 unsigned base(unsigned word) {
     return 32 * (word % slotWords - firstWord);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// writer: writes indented text for generators. Templates look like their output; {name} is replaced
-// by a value.
+// writer: writes indented text for generators. Templates look like their output; a value
+// replaces {name}.
 
 #pragma once
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// polar_test: compares the core's angles with those of atan2, for points on a circle.
+// polar_test: compares the core's angles with the results of atan2, for points on a circle.
 
 #include "Vpolar_slot.h"
 #include "polar_proxy.h"

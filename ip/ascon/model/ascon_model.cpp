@@ -27,7 +27,7 @@ public:
                 word[i] ^= right(word[i], turns[i][0]) ^ right(word[i], turns[i][1]);
         }
     }
-    // Returns byte n of the state, whose words are little-endian.
+    // Returns byte n of the state. Its words are little-endian.
     uint8_t byte(size_t n) const { return static_cast<uint8_t>(word[n / 8] >> (8 * (n % 8))); }
     void add(size_t n, uint8_t value) { word[n / 8] ^= uint64_t(value) << (8 * (n % 8)); }
     void addAt(size_t n, const AsconKey& bytes) {

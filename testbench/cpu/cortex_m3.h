@@ -145,7 +145,10 @@ public:
     const MaskedTime::Longest& longestMasked() const { return masked_.longest(); }
 
     std::set<uint32_t> breakpoints; // breakpoint addresses, with bit 0 clear
-    std::string lastFault;          // text of the last fault, for a message to the user
+    // true while a debugger is connected (DHCSR.C_DEBUGEN): a BKPT instruction then stops run();
+    // otherwise it is a hard fault
+    bool hasDebugger = true;
+    std::string lastFault; // text of the last fault, for a message to the user
 
     // Functions that are called when an exception is entered or left, and before a system reset is
     // carried out.

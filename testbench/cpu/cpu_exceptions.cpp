@@ -300,7 +300,8 @@ void CortexM3::fault(unsigned number, uint32_t cfsrBits, const std::string& text
     bool possible = number == SupervisorCall || exceptions_[number].enabled;
     int own = exceptions_.priorityOf(number), running = exceptions_.runningPriority();
     if (!possible || own >= running) { // escalation
-        control_.reportHardFault(SystemControl::forced);
+        control_.reportHardFault(number == DebugMonitor ? SystemControl::debugEvent
+                                                        : SystemControl::forced);
         if (running <= -1) {
             lockedUp_ = true;
             lastFault += "; in the handler of a hard fault: the processor locks up";
@@ -360,7 +361,10 @@ void CortexM3::handleRaised() {
         return;
     case Breakpoint:
         pc_ = executing_;
-        breakpointHit_ = true; // a BKPT instruction stops run() even if no debugger is connected
+        if (hasDebugger)
+            breakpointHit_ = true;
+        else // C1.6.1; the exception DebugMonitor is never enabled, so this is a hard fault
+            fault(DebugMonitor, 0, "BKPT without a debugger");
         return;
     case Fetch:
         return fetchFault();

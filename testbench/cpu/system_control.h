@@ -228,7 +228,8 @@ public:
                               preciseBus = 1u << 9, impreciseBus = 1u << 10, bfarValid = 1u << 15,
                               undefined = 1u << 16, invalidState = 1u << 17,
                               invalidReturn = 1u << 18, noCoprocessor = 1u << 19,
-                              unaligned = 1u << 24, instructionBus = 1u << 8, forced = 1u << 30;
+                              unaligned = 1u << 24, instructionBus = 1u << 8, forced = 1u << 30,
+                              debugEvent = 1u << 31;
 
 private:
     struct Stored;

@@ -48,6 +48,7 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
           soc.fsmc(), [&soc] { return soc.now(); },
           configOf(config.hclkHz, config.seed, soc.wires().oscillatorHz())) {
     stm32_.load(config.firmware);
+    cpu().hasDebugger = false;
     SimulatedBoard board;
     provideKeys(board, config);
     std::copy(board.words.begin(), board.words.end(), stm32_.backup().begin());
@@ -164,7 +165,9 @@ void M3Machine::debug(GdbStub& stub, bool canGoBack) {
     do {
         checkpoints_ = canGoBack ? std::make_unique<Checkpoints>() : nullptr;
         nextCopyNs_ = soc_.now();
+        cpu().hasDebugger = true;
         const bool goesOn = stub.serve(target(), mayWait);
+        cpu().hasDebugger = false;
         checkpoints_ = nullptr;
         if (!goesOn)
             break;

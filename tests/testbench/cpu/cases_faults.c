@@ -117,6 +117,12 @@ void Case_escalation(void) {
     Case_say('.');
 }
 
+void Case_breakpoint(void) {
+    Case_action[3] = skip;
+    __asm__ volatile("bkpt #2");
+    Case_say('.');
+}
+
 void Case_undefinedInstruction(void) {
     SCB_SHCSR = SCB_SHCSR_FAULTS;
     Case_action[6] = skip;

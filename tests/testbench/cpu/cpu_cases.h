@@ -43,7 +43,7 @@ void Case_countCycles(void); /* starts the cycle counter of DWT */
     X(resetRequest) X(work) X(exclusive) X(unaligned) X(executeNever) X(basepriBits) \
     X(cycleCounter) X(tickRules) X(interruptState) X(bitBand) X(stackedState) X(unprivileged) \
     X(sleepOnExit) X(waitForEvent) X(unknownRegister) X(noBackground) X(alignmentTrap) \
-    X(faultmaskIgnored) X(regionBits) X(byteOfRegister) X(unprivilegedLoad) X(unprivilegedStore)
+    X(breakpoint) X(faultmaskIgnored) X(regionBits) X(byteOfRegister) X(unprivilegedLoad) X(unprivilegedStore)
 /* clang-format on */
 #define DECLARED(name) void Case_##name(void);
 CASES(DECLARED)

@@ -204,6 +204,17 @@ TEST_F(Cpu, AFaultInTheHardFaultHandlerLocksUpUntilReset) {
     EXPECT_EQ(run("Case_nesting"), "abBA");
 }
 
+// C1.6.1: without a debugger, BKPT is a hard fault. The debugger of this test connects when the
+// handler begins, so that the BKPT at the end stops the program.
+TEST_F(Cpu, ABreakpointInstructionWithoutADebuggerIsAHardFault) {
+    m3.cpu.hasDebugger = false;
+    m3.cpu.listener.entered = [this](unsigned number) { m3.cpu.hasDebugger = number == 3; };
+    EXPECT_EQ(run("Case_breakpoint"), "h.");
+    EXPECT_EQ(value(2), 1u << 31) << "HFSR: DEBUGEVT";
+    EXPECT_NE(m3.cpu.lastFault.find("BKPT without a debugger (at 0x"), std::string::npos)
+        << m3.cpu.lastFault;
+}
+
 // B1.5.5: the lowest bit of the reset vector sets the Thumb state; SP is a multiple of four.
 TEST_F(Cpu, AResetVectorWithoutItsLowestBitFaults) {
     const uint32_t vectors[] = {m3.cpu.word(0) | 3, m3.cpu.word(4) & ~1u};

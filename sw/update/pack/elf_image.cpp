@@ -4,7 +4,9 @@
 
 #include "elf_image.h"
 #include <algorithm>
+#include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -33,15 +35,27 @@ uint32_t checksum(const std::vector<uint8_t>& image) {
 
 } // namespace
 
-ElfImage::ElfImage(const std::string& path) : path_(path) {
+std::vector<uint8_t> readBytes(const std::string& what, const std::string& path) {
+    const auto fail = [&](const std::string& why) {
+        throw std::runtime_error("cannot read " + what + " '" + path + "': " + why);
+    };
+    if (std::filesystem::is_directory(path))
+        fail("it is a folder");
     std::ifstream in(path, std::ios::binary);
     if (!in)
+        fail(std::strerror(errno));
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+ElfImage::ElfImage(const std::string& path) : path_(path) {
+    if (!std::filesystem::exists(path))
         throw std::runtime_error("cannot read firmware '" + path + "'; make firmware builds it");
-    std::vector<uint8_t> file((std::istreambuf_iterator<char>(in)), {});
+    const std::vector<uint8_t> file = readBytes("firmware", path);
     try {
         auto header = at<Elf32_Ehdr>(file, 0);
         if (std::memcmp(header.e_ident, ELFMAG, SELFMAG) != 0 ||
-            header.e_ident[EI_CLASS] != ELFCLASS32 || header.e_machine != EM_ARM)
+            header.e_ident[EI_CLASS] != ELFCLASS32 || header.e_ident[EI_DATA] != ELFDATA2LSB ||
+            header.e_machine != EM_ARM)
             throw std::runtime_error("not a 32-bit ARM ELF file");
         for (unsigned i = 0; i < header.e_phnum; ++i) {
             auto p = at<Elf32_Phdr>(file, header.e_phoff + i * sizeof(Elf32_Phdr));

@@ -11,6 +11,10 @@
 #include <string>
 #include <vector>
 
+// Returns the bytes of a file. Throws std::runtime_error if the file cannot be read; `what`
+// describes the file, such as "firmware".
+std::vector<uint8_t> readBytes(const std::string& what, const std::string& path);
+
 class ElfImage {
 public:
     // Reads the file. Throws std::runtime_error with the reason if the file cannot be used.

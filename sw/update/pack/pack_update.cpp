@@ -285,8 +285,7 @@ void checkHeader(const std::string& path, const Bytes& file) {
 // Reads a bitstream, from SLOTS_SYNC_AT bytes before its sync word. The sync word is replaced by
 // erased flash; the vehicle writes it later.
 Bytes readBitstream(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    const Bytes file((std::istreambuf_iterator<char>(in)), {});
+    const Bytes file = readBytes("bitstream", path);
     const auto end =
         file.begin() + static_cast<std::ptrdiff_t>(std::min<size_t>(file.size(), 4096));
     const auto found = std::search(file.begin(), end, std::begin(sync), std::end(sync));

@@ -396,6 +396,13 @@ TEST_F(Packing, ABitstreamThatIsCutOrHasMoreThanItsEndIsNotSigned) {
     refuses("bitstream short 5 key", "as its header states");
 }
 
+TEST_F(Packing, AFileThatCannotBeReadIsNamedWithItsReason) {
+    std::filesystem::create_directory(folder.path + "/other");
+    refuses("image other 5 key", "cannot read firmware 'other': it is a folder");
+    refuses("bitstream other 5 key", "cannot read bitstream 'other': it is a folder");
+    refuses("bitstream missing 5 key", "cannot read bitstream 'missing': No such file");
+}
+
 TEST_F(Packing, AVersionIsOfDigitsAlone) {
     folder.save("whole", whole);
     for (const char* version : {"-1", "+1", "-18446744073709551615", "0", "4294967295", "1x",

@@ -64,8 +64,8 @@ module soc #(
     localparam [PORTS-1:0] BYTES = WRITES_BYTES[PORTS-1:0];
 
     // A flip-flop drives the reset of all blocks, so that no combinational path leads from the
-    // reset pin through their logic. A simulator would have to evaluate such a path at each change
-    // of an input, and would be 1.07 times slower.
+    // reset pin through their logic. A simulator would have to evaluate such a path at each
+    // change of an input, and would be 1.07 times slower.
     wire rst;
     cdc_reset u_rst (.clk_i(clk_i), .rst_async_i(rst_i), .rst_o(rst));
 

@@ -98,8 +98,8 @@ bool save(const std::vector<GeneratedFile>& files, const std::string& directory)
 }
 
 // Returns the path that an #include uses for the header of `included`: the shortest path
-// relative to one of the -I folders; if the header is in none of these folders, the path relative
-// to the folder of `file`.
+// relative to one of the -I folders; if the header is in none of these folders, the path
+// relative to the folder of `file`.
 std::string headerOf(const std::string& included, const std::string& file, const Options& o) {
     fs::path path = fs::weakly_canonical(included), best;
     for (const std::string& dir : o.includes) {

@@ -2,8 +2,8 @@
 //
 // cdc_bus: transfers each word from src_clk_i to dst_clk_i exactly once, two to three clocks later.
 //
-// A register in the source's clock domain holds the word. The destination copies it in the clock in
-// which the second flip-flop of the synchroniser toggles. Without a handshake, the next word
+// A register in the source's clock domain holds the word. The destination copies it in the clock
+// in which the second flip-flop of the synchroniser toggles. Without a handshake, the next word
 // must come at least two clocks of dst_clk_i later, plus the skew of the paths. The module has no
 // reset. Constraints: one period of dst_clk_i from src_data's register to the copy, and the
 // constraints of cdc_bit.

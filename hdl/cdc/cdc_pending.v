@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// cdc_pending: reports that an event of cdc_pulse is still in transfer. Synthesis maps this module
-// to one LUT and does not merge it with other logic.
+// cdc_pending: reports that an event of cdc_pulse is still in transfer. Synthesis maps this
+// module to one LUT and does not merge it with other logic.
 //
 // Only one input changes at a time, because the time between two events is longer than the transfer
 // of an event. The output of a single LUT then does not glitch; the output of several LUTs might.

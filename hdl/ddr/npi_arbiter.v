@@ -48,8 +48,8 @@ module npi_arbiter #(
     generate
         if (PORTS < 2 || PORTS > 8 || URGENT_RUN == 0 || ADDR_WIDTH < 9 ||
             ADDR_WIDTH > 32) begin : g_refused
-            // Verilog-2005 has no module item for an error message. Icarus and XST report the name
-            // of an unknown module instead.
+            // Verilog-2005 has no module item for an error message. Icarus and XST report the
+            // name of an unknown module instead.
 `ifdef VERILATOR
             $error("npi_arbiter: PORTS is 2..8, URGENT_RUN 1..7, ADDR_WIDTH 9..32");
 `elsif YOSYS

@@ -122,12 +122,12 @@
     wire [3:0]   out_word  = {wr_be_o[7], wr_data_o[63], wr_be_o[0], wr_data_o[0]};
 
     // ---- Counts, modulo 2**W
-    // number of words of `me` that were pushed into its FIFO, claimed by accepted writes, or passed
-    // to the back-end
+    // number of words of `me` that were pushed into its FIFO, claimed by accepted writes, or
+    // passed to the back-end
     reg [W-1:0] w_pushed, w_claimed, w_moved;
     reg [W-1:0] r_claimed, r_pushed, r_popped;
-    // number of words in accepted writes of all ports, and number of these words that were passed
-    // to the back-end
+    // number of words in accepted writes of all ports, and number of these words that were
+    // passed to the back-end
     reg [W-1:0] all_w, all_moved;
     // number of words in accepted reads of all ports, in issued reads, and number of words that
     // have arrived from the back-end

@@ -91,8 +91,8 @@ module npi_fifo #(
     // 1: this is the proof of the FIFO itself, and assumptions exclude errors of the user
     parameter PROOF = 0;
 
-    // Numbers the words of the FIFO, and computes the numbers of the next word to write and to pop,
-    // for the proofs of its users.
+    // Numbers the words of the FIFO, and computes the numbers of the next word to write and to
+    // pop, for the proofs of its users.
     `SHIFT_NUMBERS(place_of, number_of, after, LOG2)
     wire [LOG2-1:0] f_write = number_of(write_place);
     wire [LOG2-1:0] f_read  = number_of(read_place) - {{(LOG2-1){1'b0}}, BLOCK != 0 && !empty_o};

@@ -72,8 +72,8 @@ module fsmc_bridge_proof #(
         .npi_rd_data_i(64'd0), .npi_rd_word_i(4'd0), .npi_rd_empty_i(1'b1), .npi_init_done_i(1'b1)
     );
 
-    // Internal signals of the bridge. Yosys's command flatten connects these wires to the signals
-    // of the same names.
+    // Internal signals of the bridge. Yosys's command flatten connects these wires to the
+    // signals of the same names.
     (* hierconn *) wire \u_fsmc_bridge.clear , \u_fsmc_bridge.excuse , \u_fsmc_bridge.same ,
         \u_fsmc_bridge.found , \u_fsmc_bridge.wr_async , \u_fsmc_bridge.busy ,
         \u_fsmc_bridge.roomy , \u_fsmc_bridge.excused_read , \u_fsmc_bridge.excused_write ,

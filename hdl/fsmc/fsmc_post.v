@@ -186,8 +186,8 @@ module fsmc_post #(
             assert (more_room_o || !$past(more_room_o && !wr_i));
             assert (room_o || !(more_room_o || $past(more_room_o)));
             assert (none == (count == 0));
-            // A complete word is closed at once; it does not wait for a write to another word, or
-            // for a flush.
+            // A complete word is closed at once; it does not wait for a write to another word,
+            // or for a flush.
             assert (push_o || !(open && push_be_o == 8'hFF && count != DEPTH - 1));
             // The word that has waited longest is stable until it is taken.
             if ($past(word_valid_o && !word_taken_i && !rst_i))

@@ -24,8 +24,8 @@ module modem #(
 );
     `include "modem_regs.vh"
 
-    // A bus access is answered one cycle later, so that no long path begins in the address decoder
-    // of the bus.
+    // A bus access is answered one cycle later, so that no long path begins in the address
+    // decoder of the bus.
     reg         turn;
     wire        set_configure, set_reset_modem, baud_write, net_write, settings_write;
     // Commands, one cycle after they are written; registers, because the paths from here are long.

@@ -171,8 +171,8 @@ module modem_rx (
             assert (!wr_valid_o || (!full_i && wr_index_o < most));
             assert (wr_be_o == 8'd1 << wr_index_o[2:0]);
             assert (!wr_valid_o || (wr_data_o == latest && wr_index_o == wrote && !lost));
-            // All bytes of a published packet were written and acknowledged, and a buffer was free
-            // for the packet.
+            // All bytes of a published packet were written and acknowledged, and a buffer was
+            // free for the packet.
             if (push_o)
                 assert (!owed && !wr_valid_o && !full_i && !lost &&
                         wrote == wr_index_o && wrote != 7'd0 && wrote <= most);

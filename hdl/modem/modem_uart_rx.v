@@ -20,8 +20,8 @@ module modem_uart_rx (
     wire      rxd_sync;
     cdc_bit #(.INITIAL(1'b1)) u_rxd (.clk_i(clk_i), .bit_async_i(rxd_i), .bit_sync_o(rxd_sync));
     reg [2:0] ticks;
-    // bits received so far. They enter at the top and shift down; a 1 below them reaches the bottom
-    // with the eighth bit
+    // bits received so far. They enter at the top and shift down; a 1 below them reaches the
+    // bottom with the eighth bit
     reg [8:0] bits;
     reg       idle;    // no start bit has been detected since the last byte
     reg       started; // the line was still low in the middle of the start bit

@@ -98,8 +98,8 @@ protected:
         }
         return all;
     }
-    // Checks that in each clock from the first change to the last, the recorded value is the value
-    // that the test applied. Clocks after a loss are not checked.
+    // Checks that in each clock from the first change to the last, the recorded value is the
+    // value that the test applied. Clocks after a loss are not checked.
     void expectGiven(const std::vector<Change>& all, bool loses = false) {
         unsigned found = 0;
         for (size_t i = 0; i < all.size(); ++i) {

@@ -130,8 +130,8 @@ private:
         if (!isNew && it->second != id)
             diagnostics_.error(e.at, "'" + id + "' and '" + it->second +
                                          "' (in another file) would both be named '" + c +
-                                         "' in C; [\"c:scoped\"] before the enum adds the name "
-                                         "of the enum");
+                                         "' in C; [\"c:scoped\"] before the enum adds the "
+                                         "name of the enum");
     }
 
     const Unit& unit_;

@@ -22,8 +22,8 @@ std::string cName(const Declaration& d);
 std::string cProxy(const Declaration& d);
 // Returns the C name for a name of the user. Generated code uses other names in the same scope:
 // they are listed in names.cpp, or begin with "ice_" or "Ice_". A user's name that equals such a
-// name, or a keyword of C, gets an underscore appended, which is safe because no name in Slice ends
-// with an underscore.
+// name, or a keyword of C, gets an underscore appended, which is safe because no name in Slice
+// ends with an underscore.
 std::string cIdentifier(const std::string& name);
 // Returns the name of a member of the struct, class or exception `d`.
 std::string cMember(const Declaration& d, const Field& member);

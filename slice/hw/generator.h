@@ -52,8 +52,8 @@ struct Word {
     unsigned width() const { return pieces.back().lsb + pieces.back().width; }
 };
 
-// A call of one of the core's operations, or an event: a call that the core makes, of an operation
-// of a callback interface.
+// A call of one of the core's operations, or an event: a call that the core makes, of an
+// operation of a callback interface.
 struct Call {
     const Operation* operation = nullptr;
     bool isEvent = false;

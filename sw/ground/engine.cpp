@@ -179,8 +179,8 @@ bool Engine::any(bool (Peer::*is)() const) const {
                        [is](const auto& p) { return (*p.second.*is)(); });
 }
 
-// Runs the links. If the port is lost or the modem does not answer, sets the modem up again as long
-// as a program wants to connect or listens.
+// Runs the links. If the port is lost or the modem does not answer, sets the modem up again as
+// long as a program wants to connect or listens.
 void Engine::run() {
     std::unique_lock<std::mutex> lock(mutex);
     while (!stop_) {

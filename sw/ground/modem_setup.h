@@ -21,8 +21,8 @@ public:
         : serial_(serial), settings_(settings), log_(log), wait_(std::move(wait)) {}
 
     // Configures the modem. Returns false on failure; trouble() then returns the reason, which is
-    // empty if `wait` has aborted the set-up. Takes about two guard times if the modem has the rate
-    // of the settings, and one more guard time for each wrong rate that is tried.
+    // empty if `wait` has aborted the set-up. Takes about two guard times if the modem has the
+    // rate of the settings, and one more guard time for each wrong rate that is tried.
     bool run();
     // Results of run(). encrypts: the modem encrypts packets (EE is on). isApi: the modem uses API
     // frames (AP is not 0). escapes: bytes in these frames are escaped (AP is 2).

@@ -61,8 +61,8 @@ public:
 
     // Sends a packet if the line is free. Returns whether the packet was accepted.
     bool send(Sender& sender, const U8* frame, U32 size, U32 now);
-    // Reads the available bytes. Calls `deliver` for received bytes, and `answer` when the result
-    // of a sent packet has arrived. Returns the result of read().
+    // Reads the available bytes. Calls `deliver` for received bytes, and `answer` when the
+    // result of a sent packet has arrived. Returns the result of read().
     ssize_t read(const Deliver& deliver, const Answer& answer);
     // Calls `answer(false)` for each packet without a result after LINK_ANSWER_LAST.
     void expire(U32 now, const Answer& answer) {

@@ -8,7 +8,7 @@
 #include "link_config.h"
 
 /* A loss is called quick if the radio reported it about as fast as it reports a delivered packet.
- * The modem has then made no retries, so the loss was no collision: after a collision, the modem
+ * The modem has then made no retries, so the loss was not a collision: after a collision, the modem
  * retries. If neither side sends a stream, this side must pause after a loss. The pause doubles
  * after each further loss, and shrinks to a quarter after each delivered packet. The limit of the
  * pause grows with the peer's silence. */

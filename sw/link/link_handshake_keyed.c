@@ -97,7 +97,7 @@ static void onHello(Link_Handshake* handshake, const U8* frame, U32 slot) {
         handshake->slot = (U8)slot;
         link_sendHandshake(handshake, 0, LINK_KIND_HELLO, LINK_VERSION | LINK_VERSION_UP);
         /* A session that the peer has not confirmed may belong to an earlier HELLO. The new HELLO
-         * is therefore answered as if there were no session. */
+         * is therefore answered as without a session. */
     } else {
         makeKeyed(handshake, slot, frame);
         offerPair(handshake);

@@ -36,8 +36,8 @@ public:
     // this request is one-way, the client's connection is closed.
     void take(std::shared_ptr<Request> request);
     // Passes a request of the vehicle to the only client that gave the vehicle a proxy with this
-    // identity. If no client has ever given such a proxy, passes the request to the only client
-    // with a two-way call in progress. If no client or several clients qualify, replies
+    // identity. If no client has ever given such a proxy, passes the request to the only
+    // client with a two-way call in progress. If no client or several clients qualify, replies
     // ObjectNotExistException.
     void takeCallback(std::shared_ptr<Request> request);
     // Sets the adapter that dispatches requests of the vehicle which arrive on the lanes.

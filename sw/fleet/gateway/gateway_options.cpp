@@ -195,8 +195,8 @@ std::map<std::string, int> fleetOf(const Options& o) {
         if (name.empty() || number.empty() || !std::isdigit(number[0]) || address > 0xFFFF || *end)
             throw std::runtime_error("--vehicle: expected NAME=ADDRESS such as uav7=0x0007, got '" +
                                      text + "'");
-        // no vehicle may have the address for calls to all vehicles; such calls use a one-way proxy
-        // with the plugin's endpoint (docs/fleet.md)
+        // no vehicle may have the address for calls to all vehicles; such calls use a one-way
+        // proxy with the plugin's endpoint (docs/fleet.md)
         if (address == XBeeAT::everybody)
             throw std::runtime_error(
                 "--vehicle " + text +

@@ -23,8 +23,8 @@ public:
     }
 
     // Decision about a request. Goes: the caller must send the request. Waits: the request waits
-    // here for the object's type. Asks: the request also waits, and the caller must ask the vehicle
-    // for the type and then call answered(). Refused: the caller must fail the request.
+    // here for the object's type. Asks: the request also waits, and the caller must ask the
+    // vehicle for the type and then call answered(). Refused: the caller must fail the request.
     enum class Verdict { Goes, Waits, Asks, Refused };
     Verdict verdictOn(const std::shared_ptr<Request>& request) {
         const Object object = objectOf(*request);

@@ -178,8 +178,8 @@ def part_of(folder):
 def differences(chip):
     """Returns a line of text for each block with different registers in the chip and the
     firmware."""
-    return ["%s: expected registers with hash 0x%08X, as the firmware was built for, got 0x%08X "
-            "in the chip"
+    return ["%s: expected registers with hash 0x%08X, as the firmware was built for, "
+            "got 0x%08X in the chip"
             % (c.block, c.firmware & 0xFFFFFFFF, c.chip & 0xFFFFFFFF)
             for c in chip.contracts() if c.chip != c.firmware]
 

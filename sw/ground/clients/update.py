@@ -39,8 +39,8 @@ TEXT = {
                   "first; a list of keys needs the previous list, and a running image that is "
                   "signed with a key of the new list",
     "flashFault": "the vehicle could not write its flash",
-    "wentBack": "the new version was started, then replaced by the old one: it was not confirmed "
-                "in time, or crashed",
+    "wentBack": "the new version was started, then replaced by the old one: it was not "
+                "confirmed in time, or crashed",
     "refused": "the FPGA has not accepted the bitstream: its CRC is wrong, or it is for another "
                "device; the golden bitstream runs",
 }

@@ -101,7 +101,7 @@ endfunction()
 
 # icesoc_test(NAME SOURCES... [LIBS lib...] [LABELS label...] [ARGS ...] [SANITIZED regexp]): adds a
 # GoogleTest program; CTest discovers its cases. LABELS select tests: `ctest -L rtl`. SANITIZED:
-# `make test` runs the cases whose names match the expression a second time, with sanitizers.
+# `make test` runs the cases with matching names a second time, with sanitizers.
 function(icesoc_test name)
   cmake_parse_arguments(A "" "SANITIZED" "SOURCES;LIBS;LABELS;ARGS" ${ARGN})
   if(NOT TARGET clock_listener)
@@ -302,7 +302,7 @@ set(STATE_MEMBERS ${CMAKE_SOURCE_DIR}/testbench/common/state_members.awk)
 
 # icesoc_netlist(NAME DESIGN design [PARAMS NAME=value...] [DEPENDS target...] [TOP module SOURCES
 # file... INCLUDES dir...] [FLAGS ...] [CLASS class]): builds a Verilated model of a netlist, as
-# icesoc_verilate does for a module. The netlist is that of the design as `make synth` measures it,
+# icesoc_verilate does for a module. The netlist is built as for `make synth`,
 # unless PARAMS sets other parameters. Each primitive in the netlist has a Verilog model. With TOP,
 # the model is of a module that contains the netlist.
 function(icesoc_netlist name)

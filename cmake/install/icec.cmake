@@ -21,7 +21,7 @@ list(APPEND installable icec_host icec_host_tcp)
 install(TARGETS icec_host icec_host_tcp ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
   COMPONENT ${component})
 install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/icec COMPONENT ${component})
-# The sources, for compiling IceC for other machines; the folders are those of the source tree. The
+# The sources, for compiling IceC for other machines; the folders are as in the source tree. The
 # radio endpoints are left out, because they need the sources of the link layer.
 install(DIRECTORY ${icec} DESTINATION ${CMAKE_INSTALL_DATADIR}/icec/src COMPONENT ${component}
   FILES_MATCHING PATTERN *.c PATTERN *.h PATTERN xbee_* EXCLUDE)

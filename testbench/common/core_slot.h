@@ -61,7 +61,7 @@ public:
 };
 
 // Clock of a core with a separate clock domain, in addition to the chip's 100 MHz. The edges of
-// this clock lie between the edges of the chip's clock.
+// this clock lie between the edges of the chip clock.
 #ifndef CORE_OWN_HZ
 #define CORE_OWN_HZ 24000000u
 #endif

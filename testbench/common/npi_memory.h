@@ -51,7 +51,7 @@ private:
 
     struct Word {
         uint64_t data;
-        // in a write: byte enables of the word; in a read: index of the word in its transfer
+        // byte enables of the word (write), or index of the word in its transfer (read)
         uint8_t extra;
     };
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
 # state_members: reads the header that declares the state of a Verilated model, and lists the
-# signals whose names begin with `top`, one line each: MEMBER(name, "path"). If `class` is set to
+# signals with the prefix `top`, one line each: MEMBER(name, "path"). If `class` is set to
 # the type of the state, the list is written as the function stateOf (registers_apart.h).
 # Two kinds of variables that Verilator adds are not listed: random values for reads beyond the end
 # of an array, and variables that take writes beyond the end of an array.

@@ -59,7 +59,7 @@ public:
         uint32_t ramBase = 0x20000000, ramBytes = 0x20000;
         uint32_t calibration = 15000; // value of SYST_CALIB: ticks of HCLK/8 in a millisecond
     };
-    // Address ranges whose accesses go to the bus.
+    // Address ranges mapped to the bus.
     struct Window {
         uint32_t base, bytes;
     };

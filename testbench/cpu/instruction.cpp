@@ -37,12 +37,12 @@ Instruction narrowInstruction(uint16_t op) {
     case 4:
         return takes(op & 0x0800 ? 2 : 1); // LDR literal
     case 5:
-        return takes(2); // load or store whose address has a register as offset
+        return takes(2); // load or store with a register as offset
     case 6:
     case 7:
     case 8:
     case 9:
-        // load or store whose address has an immediate offset; a store takes one cycle, since it
+        // load or store with an immediate offset; a store takes one cycle, since it
         // goes to the write buffer
         return takes(op & 0x0800 ? 2 : 1);
     case 12: // LDM, STM

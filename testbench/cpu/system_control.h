@@ -58,7 +58,7 @@ public:
     };
 
     void reset() { *this = Exceptions(), update(); }
-    // Sets or clears the pending state of an exception. An interrupt whose line is high becomes
+    // Sets or clears the pending state of an exception. An interrupt with its line high becomes
     // pending again at once, unless it is active.
     void pend(unsigned number, bool pending = true) {
         State& s = states_[number];

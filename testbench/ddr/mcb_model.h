@@ -155,7 +155,7 @@ public:
         // data masks that are stuck at a level; bit 0 is LDM, bit 1 is UDM
         uint8_t maskLow = 0, maskHigh = 0;
         uint16_t addressLow = 0, addressShort = 0; // A12..A0
-        // data strobes whose wire is broken, so that reads return noise; bit 0 is LDQS, bit 1 is
+        // data strobes with a broken wire, so that reads return noise; bit 0 is LDQS, bit 1 is
         // UDQS
         uint8_t strobeOpen = 0;
         uint8_t bankLow = 0, bankShort = 0; // BA2..BA0

@@ -98,7 +98,7 @@ public:
         for (Shared& s = *shared_; s.count && s.copies[s.count - 1].place > place; --s.count)
             kill(s.copies[s.count - 1].process, SIGKILL);
     }
-    // Returns true if there is no copy before this place.
+    // Returns true if no copy exists before this place.
     bool isFirst(uint64_t place) const {
         return shared_->count == 0 || place <= shared_->copies[0].place;
     }

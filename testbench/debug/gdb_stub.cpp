@@ -192,7 +192,7 @@ bool GdbStub::serve(const Target& target, const std::function<bool()>& mayWait) 
 }
 
 // Sets the time-out for the next packet. The first packet must arrive within 2 s, because a
-// debugger sends it at once; for later packets there is no time-out, because a debugger may be
+// debugger sends it at once; later packets have no time-out, because a debugger may be
 // silent for hours.
 void GdbStub::patient(bool on) {
     timeval limit{on ? 0 : 2, 0};

@@ -23,8 +23,8 @@ public:
         std::function<bool()> isOver;
         std::function<std::string()> describe;
         // Goes back by one instruction (if `singleStep` is true) or to the last breakpoint. `back`
-        // is empty if going back is not supported. `back` returns only if there is no earlier
-        // place; otherwise another process continues, in which `run` returns.
+        // is empty if going back is not supported. `back` returns only if no earlier place
+        // exists; otherwise another process continues, in which `run` returns.
         std::function<void(bool singleStep)> back = nullptr;
         // Returns "begin" or "end" if a reversible run has reached the beginning or the end of its
         // recording; otherwise returns "".

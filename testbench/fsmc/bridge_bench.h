@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// bridge_bench: tests the FSMC bridge alone. It connects the bridge to the pins of the processor,
-// to a memory, and to a bus slave that returns the ID of the system slot.
+// bridge_bench: tests the FSMC bridge alone. It connects the bridge to the processor pins, to a
+// memory, and to a bus slave that returns the ID of the system slot.
 
 #pragma once
 
@@ -27,10 +27,10 @@ public:
     }
 
     std::array<uint32_t, 1024> words{};
-    // first word whose accesses end with an error; all later words also report errors
+    // first word that reports an error when accessed; all later words also report errors
     unsigned firstError = 1024;
     bool hung = false; // never answers
-    // address of a word whose bits are cleared by writing 1 (default: no such word)
+    // address of a word with bits that are cleared by writing 1 (default: no such word)
     unsigned clearWord = 1024;
 
 private:
@@ -64,7 +64,7 @@ private:
         // Read data is only valid while ready is high, so before that it is noise.
         top_.bus_rdata_i = random_.next();
         top_.bus_error_i = random_.chance(0.5);
-        // in a clock with ready, answer() replaces the noise at once, as a decoder does
+        // answer() replaces the noise at once in a clock with ready, as a decoder does
         answer();
     }
 

@@ -25,7 +25,7 @@ FsmcMaster::FsmcMaster(FsmcPins& pins, Design design, unsigned hclkPerUnit, unsi
 FsmcMaster::~FsmcMaster() = default;
 
 void FsmcMaster::delay(const FsmcCorner& corner, FsmcPins& far, uint64_t seed, bool looksTwice) {
-    constexpr int clk = 10000; // period of the design's clock at 100 MHz, ps
+    constexpr int clk = 10000; // period of the design clock at 100 MHz, ps
     delays_ = std::make_unique<PinDelays>(pins_, far, design_, corner, seed,
                                           static_cast<int>(clk * clkPerUnit_ / hclkPerUnit_), clk);
     looksTwice_ = looksTwice;

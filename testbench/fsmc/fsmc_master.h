@@ -4,9 +4,9 @@
 // the pins to the FPGA.
 //
 // It is programmed through BCRx, BTRx and BWTRx like the real FSMC. It supports the asynchronous
-// modes 1, A, 2, B, C, D and multiplexed, with ASYNCWAIT. During an access the model runs the clock
-// of the design. HCLK and the design's clock have an exact fixed ratio (120 MHz to 100 MHz by
-// default). Pins change on HCLK edges, between edges of the design's clock.
+// modes 1, A, 2, B, C, D and multiplexed, with ASYNCWAIT. During an access the model runs the
+// design clock. HCLK and the design clock have an exact fixed ratio (120 MHz to 100 MHz by
+// default). Pins change on HCLK edges, between edges of the design clock.
 //
 // It throws FsmcError in these cases, in which a real system would fail: both sides drive the data
 // bus, no side drives it in a read, read data changes within its set-up time, NWAIT becomes active
@@ -69,7 +69,7 @@ public:
     // Makes each read return the halfword of the previous read, as a design with one register too
     // many in its data path does.
     void shiftReads() { shiftsReads_ = true; }
-    // Sets the frequencies of HCLK and of the design's clock, as cycles in the same unit of time.
+    // Sets the frequencies of HCLK and of the design clock, as cycles in the same unit of time.
     void setClocks(unsigned hclkPerUnit, unsigned clkPerUnit);
 
     // Sets whether the pause BUSTURN also applies between two writes to the same bank. RM0033 does

@@ -85,7 +85,7 @@ inline FsmcCorner cornerOf(unsigned index, unsigned hclk = 100) {
 
 class PinDelays {
 public:
-    // `near` are the processor's pins, `far` the design's pins; clock periods are in ps.
+    // `near` are the pins of the processor, `far` the pins of the design; clock periods are in ps.
     PinDelays(FsmcPins& near, FsmcPins& far, FsmcDesign design, const FsmcCorner& corner,
               uint64_t seed, int hclk, int clk)
         : near_(near), far_(far), design_(std::move(design)), corner_(corner), random_(seed),
@@ -93,7 +93,7 @@ public:
         nextEdge_ = 1 + static_cast<int64_t>(random_() % static_cast<uint64_t>(clk)); // any phase
     }
 
-    // Starts a delay for each of the processor's pins that has changed.
+    // Starts a delay for each processor pin that has changed.
     void show() {
         uint64_t levels = driven(near_);
         for (unsigned pin = 0; pin <= drives; ++pin)
@@ -102,7 +102,7 @@ public:
         sent_ = levels;
         pass(0);
     }
-    // Advances the time by HCLK cycles, and runs the design's clock.
+    // Advances the time by HCLK cycles, and runs the design clock.
     void pass(unsigned hclks) {
         int64_t end = now_ + int64_t(hclks) * hclk_;
         for (;;) {
@@ -154,7 +154,7 @@ public:
     }
     // Accepts signals that change at the wrong time as they are, instead of throwing FsmcError.
     void tolerate() { tolerant_ = true; }
-    // Returns true if the data at the processor's pins has been stable for the set-up time.
+    // Returns true if the data at the processor pins has been stable for the set-up time.
     bool dataIsSetUp() const { return now_ - dataMoved_ >= corner_.readSetup + hclk_; }
 
 private:

@@ -19,7 +19,7 @@ class SerialClient {
 public:
     virtual void fromHost(uint8_t byte, uint64_t now) = 0;
     virtual void framingError(uint64_t now) = 0;
-    // Sets `byte` to the next byte from the modem to the host. Returns false if there is no byte.
+    // Sets `byte` to the next byte from the modem to the host. Returns false without one.
     virtual bool nextToHost(uint8_t& byte) = 0;
 
 protected:
@@ -66,7 +66,7 @@ public:
         if (rxBit_ == 0 && txBit_ == 0)
             bitNs_ = wantedBitNs_;
     }
-    // Sets the rate of the design's clock, as a factor of its nominal rate. Times of this class are
+    // Sets the rate of the design clock, as a factor of its nominal rate. Times of this class are
     // counted in the design's clocks.
     void drift(double factor) {
         wantedBitNs_ *= factor / drift_;
@@ -163,7 +163,7 @@ private:
 
     bool level_ = true, txLevel_ = true, rts_ = true, armed_ = true;
     unsigned rxBit_ = 0, txBit_ = 0;
-    double drift_ = 1; // rate of the design's clock, as a factor of its nominal rate
+    double drift_ = 1; // rate of the design clock, as a factor of its nominal rate
     double wantedBitNs_ = bitNs_, rxStart_ = 0, rxAt_ = 0, txAt_ = 0;
     uint8_t rxByte_ = 0, txByte_ = 0;
 };
@@ -204,8 +204,8 @@ public:
     // Numbers of bytes that a program may report: written bytes and read bytes. With these numbers,
     // no byte is late only because the machine is busy (testbench/radio/ground_step.h).
     struct Count {
-        // returns the number of the program's session, or 0 if no program counts; counts start at 0
-        // in each session
+        // returns the number of the program's session, in which counts start at 0; 0 if no program
+        // counts
         std::function<uint64_t()> keeper;
         std::function<void(uint64_t keeper, size_t bytes)> toProgram;
         std::function<uint64_t()> fromProgram;

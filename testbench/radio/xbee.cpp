@@ -15,8 +15,8 @@ constexpr size_t outputBytes = 202;
 constexpr size_t legacyBytes = 100, legacyBytesEncrypted = 95;
 constexpr uint64_t msNs = 1'000'000, resetNs = 200;
 // Time that the modem's processor needs for each packet: before carrier sense for a packet that it
-// sends, and after the end of a packet that it receives. Together with the air time, this results
-// in the rates that the manufacturer measured for full packets: 80 kb/s, and 47 kb/s with
+// sends, and after the end of a packet that it receives. Together with the air time, this
+// results in the rates that the manufacturer measured for full packets: 80 kb/s, and 47 kb/s with
 // encryption. It is an assumption that short packets and the receiver need the same time
 // (docs/simulation.md).
 constexpr uint64_t processingNs = 4'688'000, processingEncryptedNs = 10'666'000;

@@ -166,6 +166,6 @@ private:
     Bytes frame_;
     bool inFrame_ = false, escaped_ = false;
     std::deque<ApiPacket> apiQueue_;
-    uint8_t apiId_ = 0; // frame id of the API frame whose packet is being sent
+    uint8_t apiId_ = 0; // frame id of the API frame that is being sent
     Counters counters_;
 };

@@ -61,7 +61,7 @@ void XBee::apiFrame(const Bytes& frame, uint64_t now) {
         apiSend(frame, now);
         break;
     case 0x08: // AT command
-    case 0x09: // AT command whose value takes effect with the command AC
+    case 0x09: // AT command; its value takes effect with the command AC
         apiCommand(frame, now);
         break;
     default:

@@ -73,7 +73,7 @@ bool XBee::setKey(const std::string& value) {
     return true;
 }
 
-// Executes a command that has no value. Returns "" if there is no such command.
+// Executes a command that has no value. Returns "" if it is unknown.
 std::string XBee::order(const std::string& letters, uint64_t now) {
     if (letters == "CN") {
         leaveCommandMode();

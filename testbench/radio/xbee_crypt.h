@@ -2,7 +2,7 @@
 //
 // xbee_crypt: encrypts payloads with AES-128 in counter mode as IEEE 802.15.4-2003 defines it
 // (security suite AES-CTR, 7.6.2). Frame counter and key sequence counter, five bytes, precede the
-// payload, so a packet has room for 95 bytes instead of 100. There is no integrity check: with a
+// payload, so a packet has room for 95 bytes instead of 100. Integrity is not checked: with a
 // wrong key the receiver gets random bytes, not an error.
 
 #pragma once

@@ -68,7 +68,7 @@ inline std::map<std::string, XBeeParameter> xbeeParameters(const XBeeProfile& pr
 }
 
 // Returns the baud rate that a value of BD selects. A rate without a code is rounded to the nearest
-// rate that the modem's clock can generate: on the series 1, 16 MHz / 16 divided by an integer.
+// rate that the modem clock can generate: on the series 1, 16 MHz / 16 divided by an integer.
 inline double xbeeBaud(const XBeeProfile& profile, uint32_t bd) {
     static const double rates[] = {1200,  2400,   4800,   9600,   19200, 38400,
                                    57600, 115200, 230400, 460800, 921600};

@@ -20,7 +20,7 @@
 
 class BoardWires : public PinWires {
 public:
-    // Signals, in the order of the chip's ports: 25 of A, 16 of D, 2 of NBL and of NE, and others.
+    // Signals, in the order of the chip ports: 25 of A, 16 of D, 2 of NBL and of NE, and others.
     enum Line : unsigned {
         A = 0,
         D = 25,
@@ -57,13 +57,13 @@ public:
     // Plants a fault of a wire or of a bank's supply. Returns false for other kinds of faults.
     bool plant(const WireFault& fault);
 
-    bool isStraight() const { return isStraight_; } // for the signals of the FSMC
+    bool isStraight() const { return isStraight_; } // concerns the FSMC signals
     bool areOthersStraight() const { return areOthersStraight_; }
     bool rings() const { return rings_; } // rising edges of NWE arrive twice
 
     // Returns the FSMC's pins as the chip sees them.
     FsmcPins atChip(const FsmcPins& near);
-    // Sets the processor's pins to the levels that the chip drives at its pins.
+    // Sets the processor pins to the levels that the chip drives at its pins.
     void toProcessor(const FsmcPins& chip, FsmcPins& near);
     // Sets the level of an output of the chip or of the modem: IRQ, and the modem's lines.
     void drive(Line line, bool high);
@@ -109,7 +109,7 @@ private:
     Drivers processor_, chip_, modemsOutputs_;
     // faults, a bit for each signal
     uint64_t faulty_ = 0, stuck_ = 0, stuckHigh_ = 0, pulled_ = 0, pulledHigh_ = 0, inverted_ = 0;
-    // for each signal: bits of this signal and of all signals shorted to it
+    // bits of a signal and of all signals shorted to it; one entry for each signal
     std::array<uint64_t, Lines> joined_;
     bool rings_ = false, hasSecondDriver_ = false;
 };

@@ -15,7 +15,7 @@
 void connectPins(SocModel& soc, const std::string& script, const std::string& log);
 
 // Calls `sends` every two milliseconds. If it returns true, sends the frame to the camera core, one
-// pixel every second clock. Between frames the sensor's clock stops, as in many sensors. `note`
+// pixel every second clock. Between frames the sensor clock stops, as in many sensors. `note`
 // receives the levels of the pins in each clock. Throws std::runtime_error if the chip has no
 // camera core.
 void connectSensor(

@@ -313,7 +313,7 @@ void Flight::adviseOnClock() {
 void Flight::mark(const char* what, const nlohmann::json& value) {
     if (ground_.recorded)
         ground_.recorded->note(soc_.now(), what, value);
-    // with a debugger the values are not compared, because the debugger may change them
+    // a debugger may change the values, so they are compared only without one
     else if (o_.gdb < 0)
         o_.replayed->compare(soc_.now(), what, value);
 }

@@ -21,7 +21,7 @@ REFERENCE = PREFIX / "libexec/icesoc/vision-reference"
 OTHER = {"app", "port", "live", "update", "clk_hz", "probe"}
 # Help texts that differ from the schema's descriptions, which are written for the source tree with
 # its boards.
-TEXTS = {"board": "folder made by ./icesoc board make, whose wires are flown; the vehicle runs the "
+TEXTS = {"board": "folder made by ./icesoc board make, to fly with its wires; the vehicle runs the "
                   "ARM binary"}
 CONFIG = Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config") / "icesoc"
 

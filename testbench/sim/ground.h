@@ -132,7 +132,7 @@ public:
 
     std::map<int, int> replies;                   // status of each reply; the key is the request id
     std::map<int, std::vector<uint8_t>> messages; // bytes of each reply; the key is the request id
-    // number of messages that were delivered, and of messages whose delivery is unknown
+    // number of messages that were delivered, and of messages with unknown delivery
     int delivered = 0, unknown = 0;
     uint64_t deliveredBytes = 0; // number of bytes in acknowledged messages
     // Returns the number of bytes in undelivered messages.
@@ -141,7 +141,7 @@ public:
     std::vector<uint8_t> key;
     const Link_Statistics& statistics() const { return *Link_statistics(link_.get()); }
     bool validated = false, running = true;
-    // factor by which the link's clock is faster than simulated time (UavMachine::hurry)
+    // factor by which the link clock is faster than simulated time (UavMachine::hurry)
     unsigned hurry = 1;
 
 private:
@@ -187,8 +187,8 @@ struct GroundAndChip {
         soc.onTime([this](uint64_t now) { return ground.advance(now); });
     }
     bool within(double seconds) const { return static_cast<double>(soc.now()) < seconds * 1e9; }
-    // Gives the vehicle a picture; `pixel` computes its pixels. If `pixel` is empty, only the size
-    // of the picture is set.
+    // Gives the vehicle a picture; `pixel` computes its pixels. If `pixel` is empty, sets only the
+    // size of the picture.
     void provide(uint32_t width, uint32_t height, const std::function<uint8_t(uint32_t)>& pixel) {
         const uint32_t size[2] = {width, height};
         std::memcpy(soc.memory().data() + UAV_FRAME_HEADER, size, sizeof size);

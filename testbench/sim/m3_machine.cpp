@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// m3_machine: connects the processor to the wires of the board, and computes the processor's time
-// from the cycles of its FSMC pins.
+// m3_machine: connects the processor to the wires of the board, and computes the time of the
+// processor from the cycles of its FSMC pins.
 
 #include "m3_machine.h"
 #include "tell_on_abort.h"
@@ -22,8 +22,8 @@ Stm32F2::Config configOf(uint32_t hclkHz, uint64_t seed, uint32_t oscillatorHz) 
     return {static_cast<unsigned>(hclkHz / pinHclkHz), hclkHz, seed, oscillatorHz};
 }
 
-// Returns the name of the current function, and the names of the functions whose return addresses
-// are on the stack.
+// Returns the name of the current function, and the names of the functions with return addresses
+// on the stack.
 std::string stackOf(Stm32F2& stm32) {
     const CortexM3& cpu = stm32.cpu();
     std::string text = "The program is in " + stm32.image()->functionAt(cpu.reg(CortexM3::Pc));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// m3_machine: runs the firmware's ARM binary on a SocModel: the Cortex-M3, with its FSMC connected
-// to the pins of the RTL.
+// m3_machine: runs the firmware's ARM binary on a SocModel: the FSMC of the Cortex-M3 is
+// connected to the pins of the RTL.
 
 #pragma once
 

@@ -22,7 +22,7 @@ constexpr uint32_t phaseMask = (1u << 18) - 1, phaseCarry = 1u << 18;
 constexpr uint32_t timerLast = (1u << 17) - 1; // count at which the timer of modem_timer.v ticks
 // lowest code of the baud rate for which each carry is a tick
 constexpr unsigned everyCarryTicks = 5;
-// number of a bit's last tick in modem_uart_rx.v and modem_uart_tx.v
+// number of the last tick of a bit in modem_uart_rx.v and modem_uart_tx.v
 constexpr uint8_t lastTick = 7;
 // smallest number of clocks that is skipped; fewer clocks are evaluated, because skipping them
 // would take longer
@@ -38,7 +38,7 @@ constexpr unsigned longest = 32; // largest number of clocks between two compari
 constexpr uint64_t blameEvery = 256;
 // blocks of soc.v that are not cores
 const std::set<std::string> platform = {"u_platform", "u_modem", "u_system_slot"};
-// blocks whose clock is stopped while the platform is quiet (testbench/sim/CMakeLists.txt)
+// blocks with their clock stopped while the platform is quiet (testbench/sim/CMakeLists.txt)
 const char* const resting[] = {"u_platform.u_fsmc_bridge.", "u_platform.u_bus_decoder.", "u_modem.",
                                "u_system_slot."};
 

@@ -69,7 +69,7 @@ public:
     uint64_t pass(uint64_t clocks);
 
     // Returns the name of the core that prevents skipping, because it changed in most of the
-    // evaluated clocks; empty if there is no such core.
+    // evaluated clocks; empty if no core did.
     std::string mover() const;
 
     // Discards the recorded state. Call this when an input changes.

@@ -148,8 +148,8 @@ private:
         count("down");
         return true;
     }
-    // Counts one byte of kind `what`. Begins a new line of the file if the kind or the time differs
-    // from the current line.
+    // Counts one byte of kind `what`. Begins a new line of the file if the kind or the time
+    // differs from the current line.
     void count(const char* what) {
         if (what_ && std::strcmp(what_, what) != 0)
             write();

@@ -10,7 +10,7 @@
 // platform are stable, and that no counter reaches its end. The outputs of the platform to cores,
 // memory and pins do not depend on the counters (tests/hdl/formal/platform_rests.ys).
 //
-// The signal `later` counts as the chip's clock here: idle_registers.v turns each flip-flop with
+// The signal `later` counts as the chip clock here: idle_registers.v turns each flip-flop with
 // this clock into one assumption and one assertion.
 
 `default_nettype none

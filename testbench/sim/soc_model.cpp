@@ -120,7 +120,7 @@ void SocModel::standStill() {
 }
 
 // Returns two numbers of clocks: until a model outside the chip must be called, and until a model
-// at the platform's pins must be called.
+// at the platform pins must be called.
 QuietSpan::Clocks SocModel::mayBeQuiet() const {
     if (!skips_ || now() >= nextEvent_)
         return {};
@@ -156,7 +156,7 @@ void SocModel::wake() {
     span_.forget();
 }
 
-// Updates the design after a change of the processor's pins between two clock edges.
+// Updates the design after a change of the processor pins between two clock edges.
 void SocModel::settle() {
     wake();
     VSoc& top = *top_;

@@ -23,11 +23,11 @@
 
 class SocModel {
 public:
-    // frequency of the design's clock, Hz; set by `make run CLK_HZ=`
+    // frequency of the design clock, Hz; set by `make run CLK_HZ=`
     static constexpr uint64_t clkHz = SOC_CLK_HZ;
     static constexpr uint64_t clkNs = 1'000'000'000 / clkHz;
 
-    // `hclkPerUnit` and `clkPerUnit` set the ratio of HCLK to the design's clock; the default is
+    // `hclkPerUnit` and `clkPerUnit` set the ratio of HCLK to the design clock; the default is
     // the ratio of 120 MHz to 100 MHz.
     SocModel(RfChannel& air, XBee::Options modemOptions, unsigned hclkPerUnit = 6,
              unsigned clkPerUnit = 5);
@@ -100,7 +100,7 @@ public:
     FsmcMaster& fsmc() { return fsmc_; }
     // The wires of the board between processor, modem and chip.
     BoardWires& wires() { return wires_; }
-    // Changes the rate of the chip's clock, in percent; -100 stops it. Call it before the reset.
+    // Changes the rate of the chip clock, in percent; -100 stops it. Call it before the reset.
     // The processor and the modem keep their rates; now() returns the time of the chip.
     void changeClock(double percent);
     // Adds delays to the FSMC's wires; only with a clock of 100 MHz.

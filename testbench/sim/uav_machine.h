@@ -43,7 +43,7 @@ public:
 
     SimulatedBoard board; // board of the UAV's application
 
-    // Makes the firmware's clock faster than the fabric's clock by the factor `times`. This
+    // Makes the firmware clock faster than the fabric clock by the factor `times`. This
     // shortens periods in which the firmware only waits for time-outs. The modem keeps its speed,
     // so it is too slow for the firmware during this time.
     void hurry(unsigned times);

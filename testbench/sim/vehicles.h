@@ -44,7 +44,7 @@ private:
 struct Station {
     static constexpr uint32_t second = 0x00F0; // modem address of a second ground station
 
-    // `out` is the folder for the station's files; `number` is appended to their names; `head` is
+    // `out` is the folder for station files; `number` is appended to their names; `head` is
     // the first line of the recording.
     Station(RfChannel& air, const XBee::Options& options, const std::string& out,
             const std::string& number, std::shared_ptr<ReplayedLine> from,
@@ -102,8 +102,8 @@ inline void giveKeys(M3Machine::Config& config, unsigned vehicles, const std::st
 
 // A fault, described by a text: `away:2:1.5:3` takes the modem with the address 2 out of reach for
 // 3 s, 1.5 s after the beginning of the flight. `twin:2:...` brings another vehicle with this
-// address and a different key into reach. `babble:2:...` adds a modem that continuously sends noise
-// to this address.
+// address and a different key into reach. `babble:2:...` adds a modem that continuously
+// sends noise to this address.
 class Trouble {
 public:
     explicit Trouble(const std::string& text) {

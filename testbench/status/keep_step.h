@@ -2,8 +2,8 @@
 //
 // keep_step: accesses the members of SimStatus with which a program keeps step with simulated time.
 //
-// Simulated time stops while the program works. It also stops until the program has read all bytes
-// that its serial port has received.
+// Simulated time stops while the program works. It also stops until the program has read all
+// bytes that its serial port has received.
 
 #pragma once
 

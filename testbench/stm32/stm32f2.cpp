@@ -202,8 +202,8 @@ void Stm32F2::requireFsmc() {
         return;
     if (!(stored(ahb3Enable) & 1))
         throw Error("the FSMC's clock is off (RCC_AHB3ENR)");
-    // with a board, a pin that is not switched to the FSMC does not drive its wire, so this check
-    // is not needed
+    // a board needs no check, because a pin that is not switched to the FSMC does not drive its
+    // wire
     if (wires_) {
         fsmcUsable_ = true;
         return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// chip_kit: simulates a board whose FPGA is loaded with the chip. The microcontroller runs the
+// chip_kit: simulates a board with the chip loaded in its FPGA. The microcontroller runs the
 // self-test, and reaches registers, DDR3 and modem through wires with delays.
 
 #pragma once

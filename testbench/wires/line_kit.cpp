@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// line_kit: moves levels between the microcontroller's pins, the wires and the tester.
+// line_kit: moves levels between the microcontroller pins, the wires and the tester.
 
 #include "line_kit.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// line_kit: simulates a board whose FPGA is loaded with line_tester: the pins of the
+// line_kit: simulates a board with line_tester loaded in its FPGA: the pins of the
 // microcontroller, the tester's RTL, an idle modem, and the wires between them.
 
 #pragma once
@@ -38,7 +38,7 @@ public:
 private:
     // period of 25 MHz, the slowest CFGMCLK (DS162: 50 MHz, 50 %)
     static constexpr uint64_t oscNs = 40;
-    // number of clocks of the board in one unit of the tester's clock count
+    // number of clocks of the board in one unit of the clock count in the tester
     static constexpr unsigned unitClocks = 64;
     static constexpr unsigned lines = 50, pins = 55;
 

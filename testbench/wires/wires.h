@@ -69,7 +69,7 @@ private:
 
     std::vector<std::string> names_;
     std::vector<Node> nodes_;
-    std::vector<unsigned> nodeOf_; // of each end
+    std::vector<unsigned> nodeOf_; // one for each end
     std::vector<bool> inverted_;   // an end sees the opposite level
     std::vector<bool> ringing_;
     std::vector<End> ends_;

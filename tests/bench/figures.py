@@ -33,8 +33,8 @@ NOTES = {  # notes that are printed below the titles
             "if a layer\nexceeds its smaller budget in "
             "[`tests/limits.toml`](../tests/limits.toml)."}
 
-# Patterns of those parts of a figure's name that become a column heading. Figures whose names
-# differ only in such a part share a row if the row has two to six columns.
+# Patterns of the parts of a figure name that become a column heading. Figures with names
+# that differ only in such a part share a row if the row has two to six columns.
 AXES = [r"\d+ vehicles?", r"loss \d\.\d\d", r"bursts, \w+", r"\d+ m, fading", r"interferer \d+ %",
         "in the clear|encrypted|with a key", r"of \d+ bytes", r"\d+ ports", r"HCLK \d+ MHz"]
 HEAD = """# Figures

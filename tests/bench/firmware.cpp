@@ -4,7 +4,7 @@
 //
 // Figures are in cycles of the board: processor cycles and, during an access, HCLK cycles at the
 // FSMC pins. (The simulated fabric is slower than the board's. As on the board, however, HCLK at
-// its pins is 1.2 times as fast as the fabric's clock.)
+// its pins is 1.2 times as fast as the fabric clock.)
 
 #include "figures.h"
 #include "ground.h"
@@ -21,8 +21,8 @@ const Ground::Call isAlive = {"uav", "isAlive", 0, {7, 0}};
 // vehicle's processor.
 class MeasuredFlight : public GroundAndChip {
 public:
-    // `scaled`: factor by which the processor's clock is faster than 6/5 of the simulated fabric
-    // clock. With 1, the ratio of the clocks is that of the board. With more (a simulated chip with
+    // `scaled`: factor by which the processor clock is faster than 6/5 of the simulated fabric
+    // clock. With 1, the ratio of the clocks is as on the board. With more (a simulated chip with
     // a lower CLK_HZ), the processor still runs at 120 MHz, so that it is as fast as on the board
     // in relation to the radio. `key`: key of the link, or empty. `isTransparent`: true if the
     // vehicle's modem is in transparent mode.
@@ -214,7 +214,7 @@ void measureCalls(MeasuredFlight& f, unsigned calls, const std::string& what, do
 void measureStream(MeasuredFlight& f, const std::string& what) {
     // Floods the vehicle with one-way requests of 1 KB to an object that does not exist. The link's
     // send window is always full, and more requests wait in the queue. This loads the link and
-    // IceC's dispatcher, but no servant, and there are no replies.
+    // IceC's dispatcher, but no servant, and causes no replies.
     f.ground.replies.clear();
     uint64_t bytes = 0;
     const std::vector<uint8_t> load(1000, 0x55);

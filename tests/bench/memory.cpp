@@ -35,8 +35,8 @@ template <class Request> uint64_t directMcb(size_t bytes, const std::vector<Requ
     McbModel memory(bytes);
     while (!memory.pins.calibDone)
         memory.cycle();
-    // pushing: index of the request whose words are pushed next; issuing: index of the request that
-    // is issued next
+    // pushing: index of the request with the words that are pushed next; issuing: index of the
+    // request that is issued next
     size_t pushing = 0, issuing = 0;
     unsigned pushed = 0, promised = 0;
     uint64_t words = 0, popped = 0, clocks = 0;

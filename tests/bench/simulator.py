@@ -34,7 +34,7 @@ def main(source, build, output, brief=""):
              "every": (build, *IMAGE, "--duration", "0.02", "--every-clock"),
              "flight": (build, "--replay", f"{work.name}/host"),
              "flight m3": (build, "--replay", f"{work.name}/m3")}
-    # for each kind: millions of clocks per second, and percentage of clocks that were skipped
+    # millions of clocks per second, and percentage of skipped clocks, of each kind
     best = dict.fromkeys(kinds, (0, 0))
     for run in range(runs):
         for kind, (folder, *options) in kinds.items():

@@ -100,7 +100,7 @@ WRONG = {
         "net MODEM_CTS: the input has no driver: expected 'modem', or 'pull' for a fixed level"]),
     "a strobe that only a pull holds": (net("NOE", mcu=None, pull="up"), [
         "net NOE: the input has no driver: a pull holds it for ever"]),
-    "a multiplexed board whose NADV only a pull holds": (put("fsmc", "muxed", True), [
+    "a multiplexed board with NADV held only by a pull": (put("fsmc", "muxed", True), [
         "net NADV: the input has no driver: a pull holds it for ever"]),
     "5 V on a ball": (net("CORE_I0", level=5.0), [
         "net CORE_I0: 5 V on C9, which takes 3.6 V at most; use a level shifter or a divider"]),

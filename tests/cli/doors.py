@@ -221,7 +221,7 @@ MISTAKES = {
     "./icesoc synth --design modme": "the name of a design, got 'modme'; did you mean modem?",
     "./icesoc synth edif --design socc": "got 'socc'; did you mean soc?",
     "./icesoc test --label frmware": "got 'frmware'; did you mean firmware?",
-    "./icesoc regress --name Brust": "expected a word of a test's name, got 'Brust'; did you mean ",
+    "./icesoc regress --name Brust": "expected a word of a test name, got 'Brust'; did you mean ",
     "./icesoc check mutants --block busses": "got 'busses'; did you mean bus",
     "./icesoc check sanitizers --kinds adress": "got 'adress'; did you mean address?",
     "./icesoc check netlist --family ecp6": "--family: expected xc6s or ecp5, got 'ecp6'",

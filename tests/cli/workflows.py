@@ -164,7 +164,7 @@ class Cases(Script):
         self.has("^changed$", file=mine / ".gitlab-ci.yml")
         self.ask(*new, "second", status=2)
         self.has("second already exists")
-        # A repository can also contain a third-party core, whose files are found wherever the
+        # A repository can also contain a third-party core. Its files are found wherever the
         # repository is.
         (mine / "others").mkdir()
         shutil.copy(TREE / "tests/ip/new_foreign/wb_port.v", mine / "others")

@@ -337,8 +337,8 @@ cc -std=c90 -ffunction-sections -fdata-sections -o by_pkg_config -Imade \\
             print(name, path.stat().st_size, "bytes")
         self.ask("dpkg-deb", "--info", found["icesoc-ground"])
         self.has("Depends: .*python3-zeroc-ice", "libzeroc-ice3.7", "postinst")
-        # The packages of programs for a vehicle and a ground station cannot be mixed with those of
-        # another version.
+        # The packages of programs for a vehicle and a ground station cannot be mixed with packages
+        # of another version.
         its = r"[0-9]+\.[0-9]+\.[0-9]+(\+git\.[0-9]{14}\.[0-9a-f]{12})?-1~deb[0-9]+\)"
         self.has(rf"Depends: icesoc-slice2c \(= {its}")
         self.ask("dpkg-deb", "--info", found["icesoc-sim"])

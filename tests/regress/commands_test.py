@@ -281,7 +281,7 @@ class Cases(Project):
         self.ask(*FETCH, "ghdl", work / "ghdl",
                  env={**os.environ, "XDG_CACHE_HOME": f"{work}/it's"})
         self.ask(work / "ghdl/ghdl", "--version")
-        # If there is no network, or a checksum is wrong, the build continues without the libraries
+        # Without a network, or if a checksum is wrong, the build continues without the libraries
         # for the pages, prints a message, and keeps no partial file.
         archive = "tabulator-tables-6.5.3.tgz"
         write(work / "npm/tabulator-tables/-" / archive, "wrong\n")

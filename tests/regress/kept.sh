@@ -67,7 +67,7 @@ for _ in 1 2; do
     run
     { [ $status -eq 3 ] && ! grep -q '^kept:' "$work/said"; } || fail "a failure: status $status"
 done
-# The result of a test that is killed, or whose files change while it runs, is not stored either.
+# The result is not stored either if the test is killed, or if its files change meanwhile.
 begun() { # earlier output
     rm -rf own
     $kept "$PWD/own" tests/t.sh "$PWD/own" >"$work/said" 2>&1 &

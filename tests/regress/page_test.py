@@ -122,7 +122,7 @@ class Cases(Project):
             'log <a href="failures/test_b.Bad-1.log"',
             'to have passed: <a href="../../tests/room/CMakeLists.txt">'
             r"tests/room/CMakeLists.txt:8</a> \(2 lines\)")
-        # there is no table of seeds, because all these failures have the same seed and are listed
+        # no table of seeds exists, because all these failures have the same seed and are listed
         # above
         self.lacks('id="seeds"')
         self.assertEqual(json.loads(Path("build/regress/report.json").read_text())["blocks"], [

@@ -216,7 +216,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.has(f"^stopped after {kept} of 200: {kept} passed, 0 failed$")
 
     def test_unchanged(self):
-        """Some changed inputs make a test run again: files whose paths its program contains, all
+        """Some changed inputs make a test run again: files with paths in its program, all
         files of the tree for a script, and the build's packages with their dependencies, but no
         other package."""
         source, build = self.work, self.work / "build/main"
@@ -322,7 +322,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
             ("--name 'soon\\.'", "test_soon"),
             # the text before the case already selects the test
             ("--name 'script\\.after'", "tool"),
-            ("--name One", "test_radio test_soon"),  # programs whose cases are unknown are built
+            ("--name One", "test_radio test_soon"),  # programs with unknown cases are built
             # no test name begins with these words
             ("--name '^One|^(script|docs).says'", "other tools"),
             ("--name '^test_tame.*Eat'", "test_tame"),

@@ -472,7 +472,7 @@ target_include_directories(same PRIVATE ${{CMAKE_BINARY_DIR}}/gen ${{CMAKE_SOURC
         self.has("--only: expected one of source, .*, got 'sauce'")
 
     def package(self, path, seconds):
-        """Writes a Debian package without files, whose time stamp is `seconds`."""
+        """Writes a Debian package without files, with the time stamp `seconds`."""
         write(path.with_suffix("") / "DEBIAN/control", "Package: a\nVersion: 1\nDescription: a\n"
               "Architecture: all\nMaintainer: a <a@b>\n")
         self.ask("dpkg-deb", "--root-owner-group", "-b", path.with_suffix(""), path,

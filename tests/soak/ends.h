@@ -106,8 +106,8 @@ public:
             out_.push_back(mailOf(name, target));
         }
     }
-    // number of the rival within this test; its address on the air is 0, as that of the first
-    // ground station
+    // number of the rival within this test; its address on the air is 0, like the address of
+    // the first ground station
     static constexpr int rival = 0x10000;
     // Restarts the program. `hasKeys` is true if each pair of vehicle and ground station has a key.
     // A key depends only on the pair, and on the number of the pair's key changes.
@@ -200,7 +200,7 @@ private:
     Random& random_;
     const bool isGround_, isRival_;
     const int address_;
-    // for each peer: the messages from this peer to this end, and those from the peer's rival
+    // the messages from each peer to this end, and the messages from the peer's rival
     std::vector<std::array<Mail*, 2>> in_;
     std::vector<Mail*> out_;
     std::vector<unsigned> keys_; // number of key changes with each peer

@@ -107,7 +107,7 @@ private:
     struct Stream {
         std::deque<Message> messages;
         size_t forgotten = 0; // number of older messages that are no longer stored
-        // for each receiver: number of the first message that may arrive next
+        // number of the first message that may arrive next, for each receiver
         std::map<int, size_t> next;
 
         size_t nextOf(int receiver) {

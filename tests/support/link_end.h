@@ -22,7 +22,7 @@ public:
 
 protected:
     // Starts the link without earlier state. `sixteenUs` is the time that 16 characters take on the
-    // line, us; the default is that of 111,111 baud.
+    // line, us; the default is for 111,111 baud.
     void begin(U32 sixteenUs = 1440) {
         const Link_Config config = {linkPort(), linkProgram(), sixteenUs, LINK_USE(*buffers_)};
         Link_init(link(), &config);

@@ -410,7 +410,7 @@ class Cores(unittest.TestCase):
 
 
 class Simulated(unittest.TestCase):
-    """Tests of blocks whose netlist is tested by simulation instead of a proof."""
+    """Tests of blocks with a netlist that is tested by simulation instead of a proof."""
 
     def test_each_kind_of_tests_must_have_run_and_passed(self):
         for ran, red, said, good in (

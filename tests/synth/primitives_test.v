@@ -100,7 +100,7 @@ module primitives_test;
                 2: c = 12;
                 3: d = 8;
                 4: pcin = 14;
-                5: opmode[5] = 1; // two registers: that of OPMODE and that of the carry
+                5: opmode[5] = 1; // two registers, for OPMODE and for the carry
                 6: opmode[7] = 1;
             endcase
             edges(clocks - 1);

@@ -116,8 +116,8 @@ class Cases(Script):
         self.run_program()
         # A checkout of the same sources in another folder must have the same netlists.
         self.lacks(str(Path.cwd()), file=next(Path("out/cache").glob("store.xc6s.*.ys")))
-        # The generated Verilog, whose hash identifies accepted figures, must not contain this path
-        # either.
+        # The generated Verilog must not contain this path either, because its hash identifies
+        # accepted figures.
         for file in (PROGRAM.parents[1] / "gen").glob("*.v"):
             self.lacks(re.escape(f"{TREE}/"), file=file)
         # The clock and the LUTs are shown with their ranges over all mappings of the design.
@@ -371,7 +371,7 @@ class Cases(Script):
             if age:
                 os.utime("out/sim/whole.v", (age, age))
         self.assertEqual(Path("out/sim/whole.v").stat().st_mtime, 100)
-        # This file tells Ninja on which sources the netlist depends.
+        # From this file, Ninja knows on which sources the netlist depends.
         self.has(rf"^{Path.cwd()}/out/sim/whole.v: .*/blocks/counter.v .*/blocks/store.v",
                  file="out/sim/whole.d")
 

@@ -7,7 +7,7 @@ have no circular dependencies.
     arrows.py TREE                checks the includes in a checkout
     arrows.py --circles LIBRARY [PREFIX...]
                                   checks the object files of a static library for circular
-                                  dependencies; files whose names begin with the same PREFIX count
+                                  dependencies; files with names that share a PREFIX count
                                   as one file, because their recursion is intended
 
 A room is a folder in rooms.toml; a file belongs to the innermost room that contains it. A file may

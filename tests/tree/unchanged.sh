@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# unchanged: tests that an edit of RTL leaves the times of those files of Verilator alone whose
-# content stays the same. Usage: unchanged.sh path-of-unchanged.sh work-folder
+# unchanged: tests that an edit of RTL does not change the times of files of Verilator with
+# unchanged content. Usage: unchanged.sh path-of-unchanged.sh work-folder
 set -eu
 unchanged=$1 work=$2
 rm -rf "$work"

@@ -164,7 +164,7 @@ class Cases(Script):
         self.has(*(rf"{part}\." for part in parts), file="report.md")
 
     def test_sensor(self):
-        """The picture comes from the camera's pins to the vision core; the processor never reads
+        """The picture comes from the camera pins to the vision core; the processor never reads
         it."""
         self.fly("--camera", "--cpu", "m3")
         self.has(r"camera.capture\(96, 64\)", file="report.md")
@@ -272,7 +272,7 @@ class Cases(Script):
                     "2 software, 0 watchdog", status=None)
 
     def bitstreams(self, stored):
-        """Updates the bitstream of a vehicle whose FPGA flash is empty: with a file that is not a
+        """Updates the bitstream of a vehicle with an empty FPGA flash: with a file that is not a
         bitstream, with one that the FPGA rejects, with one that is never confirmed, and with one of
         full size."""
         self.update(BUILD / "firmware/uav.bin", "got no sync word", status=None)
@@ -290,7 +290,7 @@ class Cases(Script):
             self.update(bits, "runs and is confirmed")
 
     def test_slow(self):
-        """On a machine that is four times too slow, the ground follows the simulator's clock, so
+        """On a machine that is four times too slow, the ground follows the simulator clock, so
         the modem answers within the usual time."""
         self.fly()  # this flight writes the flight.json that is used below
         Path("after.png").unlink()

@@ -59,7 +59,7 @@ module same (
             assert (!clk_i || \u_simulated.g_gate.open == \u_chip.g_gate.u_buffer.passes );
         if (reset && !rises)
             assert (\u_proven.g_gate.closed == stopped);
-        // Before a rising edge of clk_i, the proof's clock is high only if the gate stops this edge
+        // Before a rising edge of clk_i, the proof clock is high only if the gate stops this edge
         // and has passed the previous one.
         if (rises && reset)
             assert (was_proven == (!chip && !stopped));
@@ -69,12 +69,12 @@ module same (
 endmodule
 `elsif CLOCK
 module same (
-    input wire clk_i // every edge of the chip's clock
+    input wire clk_i // every edge of the chip clock
 );
     wire made;
     simulated u_simulated (.clk_i(clk_i), .clk_o(made));
     (* hierconn, init = 10'd0 *) wire [9:0] \u_simulated.phase ;
-    // After n edges of the chip's clock, core_clock has made floor(n * MULTIPLY / DIVIDE) edges.
+    // After n edges of the chip clock, core_clock has made floor(n * MULTIPLY / DIVIDE) edges.
     // The sums wrap at 2**16.
     reg [15:0]  due = 16'd0, paid = 16'd0; // n * MULTIPLY, and the number of edges * DIVIDE
     reg         was = 1'b0;

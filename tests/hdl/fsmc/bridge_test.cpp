@@ -206,7 +206,7 @@ TEST_F(Bridge, StreamsAreRightHoweverSlowTheMemoryIs) {
 }
 
 // At an HCLK of 120 MHz, edges of NWE are 33.3 ns apart. With other ratios of the clocks, the edges
-// have every phase relative to the bridge's clock.
+// have every phase relative to the bridge clock.
 TEST(BridgeRatios, WritesOfAStreamAreTakenAtEveryPhase) {
     Random random(testSeed());
     for (auto [hclk, clk] :

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// corners_test: tests the bridge with real wires, whose pins have separate delays and skew. The
-// tests cover each corner, several frequencies of HCLK, and both interpretations of the time at
-// which the FSMC samples NWAIT.
+// corners_test: tests the bridge with real wires: its pins have separate delays and skew. The
+// tests cover each corner, several frequencies of HCLK, and both interpretations of when
+// the FSMC samples NWAIT.
 
 #include "VFsmcBridge.h"
 #include "pin_delays.h"

@@ -29,7 +29,7 @@ template <class Bridge> std::array<double, 4> costs(const FSMC_Bank& bank) {
             cost([&](unsigned i) { b.master.read32(control + 4 * (64 + i % 900)); })};
 }
 
-// Prints and records the costs of a bridge next to those of fsmc_bridge.
+// Prints and records the costs of a bridge next to the costs of fsmc_bridge.
 inline void showCosts(const char* name, const std::array<double, 4>& plain,
                       const std::array<double, 4>& other) {
     for (unsigned i = 0; i < 4; ++i) {

@@ -125,7 +125,7 @@ TEST(Modes, NwaitActiveHighAndTheLargestBuffers) {
     }
 }
 
-// An STM32F407 pauses between the halves of a written word; according to RM0033 there is no pause.
+// An STM32F407 pauses between the halves of a written word; according to RM0033 it does not pause.
 TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0, 120, 100);
     FSMC_Bank bank = {FSMC_MODE_A, FSMC_MODE_A, 0, 0, 1, 0, 1, {2, 1, 4}, {2, 1, 4}};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // sync_test: tests the synchronous bridge (fsmc_sync_bridge) in each mode of the FSMC that this
-// bridge supports. The accesses and the expected data are those of the tests of fsmc_bridge.
+// bridge supports. The accesses and the expected data are as in the tests of fsmc_bridge.
 
 #include "VFsmcBridge.h"
 #include "VFsmcSyncBridge.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// BUFGCE: declares the ports of Xilinx's clock buffer with enable (UG382), for lint.
+// BUFGCE: declares the ports of the Xilinx clock buffer with enable (UG382), for lint.
 
 (* blackbox *)
 module BUFGCE (

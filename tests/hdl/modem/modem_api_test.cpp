@@ -174,7 +174,7 @@ TEST_F(ModemApi, FramesOfAllTypesAreTakenAndTooLongOnesPassedOver) {
         other(0x80, 111),                   // the longest frame that a modem sends
         other(0x81, 112),                   // more data than a modem sends
         other(0x81, 255),                   // the longest frame with a one-byte length
-        // a length whose low byte would be valid without the high byte
+        // a length with a low byte that would be valid without the high byte
         other(0x81, 0x105),
     };
     for (size_t i = 0; i < strangers.size(); ++i) {

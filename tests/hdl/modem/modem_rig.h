@@ -73,7 +73,7 @@ protected:
         memory_.store(txRing + 128 * buffer, packet);
         bus_.write(MODEM_TX_PUT, static_cast<uint32_t>(packet.size()));
     }
-    // Returns a packet like those of the link layer, in which the first byte is the length.
+    // Returns a packet like the packets of the link layer, in which the first byte is the length.
     static std::vector<uint8_t> frame(unsigned size, uint8_t tag) {
         std::vector<uint8_t> bytes(size, tag);
         bytes[0] = static_cast<uint8_t>(size - 5);
@@ -93,7 +93,7 @@ protected:
         return packet;
     }
 
-    // Returns the error counters, except that of the set-up's retries: the set-up may need retries
+    // Returns the error counters, except the counter of set-up retries: the set-up may need retries
     // to find the baud rate.
     uint32_t errors() { return bus_.read(MODEM_ERRORS) & ~MODEM_ERRORS_RETRIES_MASK; }
     // Drives the line bit by bit in place of the modem's model, which cannot do this. The model is

@@ -120,7 +120,7 @@ module axis_twice (
             second <= !second;
 endmodule
 
-// req_words: a core whose request must last until the grant, which comes two clocks later. Word 3
+// req_words: a core with a request that must last until the grant, two clocks later. Word 3
 // is never granted.
 module req_words (
     input             clock, nrst,
@@ -143,7 +143,7 @@ module req_words (
     end
 endmodule
 
-// wbs_names: a core whose Wishbone signals have unusual names; the core is also a bus master. Its
+// wbs_names: a core with unusual names of Wishbone signals; the core is also a bus master. Its
 // strobe and acknowledge are missing.
 module wbs_names (
     input         wbs_clk, rst_ni, gate_clk_pad_i,

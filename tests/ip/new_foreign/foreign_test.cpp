@@ -241,7 +241,7 @@ TEST(RegistersApart, ACoreThatNeverRestsIsToldWithWhatMoves) {
         bool idle_o = true;
     };
     Counter::every = 1;
-    Bench<Idle> idle; // in the chip, this core has a clock gate
+    Bench<Idle> idle; // this core has a clock gate in the chip
     Bench<Vmy_port_slot> bench;
     bench.reset();
     ::testing::internal::CaptureStdout();

@@ -214,7 +214,7 @@ new_foreign.main(sys.argv[1:])'
     grep -q 'Yosys has not elaborated big in 2 s, so Verilator reads its ports' log ||
     { cat log && echo 'a slow core is not reported' && exit 1; }
 prints 'd: wdata'
-# Packed structures: a bus in the style of AXI with nested members, whose roles PORTS assigns, and a
+# Packed structures: a bus in the style of AXI with nested members that get roles from PORTS, and a
 # structure of pins.
 cat >nested.sv <<'END'
 package nested_types;
@@ -326,7 +326,7 @@ done <<'END'
 -2147483649 expected a number of at most 32 bits
 0x_ expected a number such as .*
 END
-# The same command by make, and a core whose name already exists.
+# The same command by make, and a core with a name that already exists.
 mkdir -p "$work/tree/ip"
 made() { "$source/tests/regress/make_in.sh" "$source" "$work/tree" build \
     new-foreign NAME=my_port TOP=req_words BUS=own FILES="$work/cores.v" "$@" >log 2>&1; }

@@ -126,8 +126,8 @@ class Cases(Script):
                 {"name": "leaf", "type": "::Top::Leaf"}],
              "throws": ["::Top::Worse"]}])
         self.assertIn("::Cores::Fir", described)
-        # An exception causes a warning if no operation throws it or an exception that is derived
-        # from it.
+        # An exception causes a warning if no operation throws it or an exception derived from
+        # it.
         Path("thrown.ice").write_text(
             "module M { exception Base { int a; }; exception Thrown extends Base { int b; };\n"
             "exception Forgotten { int c; };\n"

@@ -15,7 +15,7 @@ import subprocess
 import sys
 
 SLICE2C, SW, WORK = sys.argv[1:4]
-# without optimisation, which would take most of the test's time
+# without optimisation, which would take most of the time of the test
 C_FLAGS = ["-std=c90", "-pedantic", "-Werror"]
 INCLUDES = [f"-I{SW}/base", f"-I{SW}/icec"]
 COMMON = "struct qS { int qa; string qb; }; class qC { int qa; }; exception qE { int qa; };"
@@ -117,7 +117,7 @@ def main():
     bad, refused, tried = [], 0, 0
     for kind, template in TEMPLATES.items():
         folder = f"{WORK}/{kind}"
-        # A name that contains M_ occurs only in the C code of its own template.
+        # A name that contains M_ occurs only in the C code of its template.
         names = sorted(n for n in own[kind] | {n for n in parts if "M_" not in n}
                        if is_slice_name(n))
         left = dict(enumerate(names, 2))  # by line

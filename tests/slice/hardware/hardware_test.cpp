@@ -29,7 +29,7 @@ template <class Call> Ice_Status statusOf(Call call) {
 class CalculatorServant : public ::testing::Test {
 protected:
     ~CalculatorServant() override {
-        EXPECT_EQ(core_.errors_, 0u) << "the test accessed words that are no registers";
+        EXPECT_EQ(core_.errors_, 0u) << "the test accessed words that are not registers";
     }
     Ice_Int divide(Ice_Int a, Ice_Int b) {
         core_.started_ = core_.bench_.cycles();
@@ -116,8 +116,8 @@ TEST_F(CalculatorServant, OtherCallsGoOnWhileALongOneIsUnderWay) {
     EXPECT_EQ(divide(8, 2), 4);
 }
 
-// Calls operations with 64-bit values, with floating-point numbers, and with parameters whose
-// register words are chosen by metadata. Checks the pins of the wrapper.
+// Calls operations with 64-bit values, with floating-point numbers, and with parameters in
+// register words that metadata chooses. Checks the pins of the wrapper.
 class WideEchoServant : public ::testing::Test {
 protected:
     WideEchoServant() {
@@ -204,7 +204,7 @@ protected:
                              });
     }
     ~ManyServant() override {
-        EXPECT_EQ(rig_.errors_, 0u) << "the test accessed words that are no registers";
+        EXPECT_EQ(rig_.errors_, 0u) << "the test accessed words that are not registers";
     }
     static Ice_Long number(U32 n) { return {n * 0x9E3779B9U, static_cast<Ice_Int>(n * 77 + 1)}; }
     static Ice_Long inverted(Ice_Long n) { return {~n.low, ~n.high}; }

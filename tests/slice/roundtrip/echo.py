@@ -56,7 +56,7 @@ def members(t, a, b, encoding, seen):
 
 
 class Members:
-    """An object whose attributes are the members of an exception."""
+    """An object with the members of an exception as attributes."""
 
 
 def check(what, ok, *values):

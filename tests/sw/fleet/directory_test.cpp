@@ -131,8 +131,8 @@ protected:
         return Ice::initialize(data);
     }
     void followAVehicle(const Words& more);
-    // Calls repeatedly until a reply arrives. Returns the number of earlier calls of which the
-    // client does not know whether they were executed.
+    // Calls repeatedly until a reply arrives. Returns the number of earlier calls for which
+    // the client does not know whether they were executed.
     int callOn(const std::shared_ptr<RadioTest::UavPrx>& echo) {
         for (int unknown = 0;;)
             try {

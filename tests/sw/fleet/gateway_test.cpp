@@ -88,7 +88,7 @@ TEST_F(Gateway, ListensAtAnIPv6Address) {
 // ---- sharing the radio ----
 
 TEST_F(Gateway, WhatAProgramHasSentArrivesAlthoughItLeaves) {
-    // with a long --wait, a call does not fail even if it has to wait on a slow machine
+    // a call with a long --wait does not fail even if it has to wait on a slow machine
     start({"--wait", "600"});
     constexpr int count = 1000;
     {

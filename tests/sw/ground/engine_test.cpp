@@ -263,7 +263,7 @@ TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
     int ready = engine->listen();
     EXPECT_EQ(engine->listen(), -1) << "a second listener must be refused";
     int fd = engine->connect(0);
-    // there is no reply; the program that waits gets an error
+    // no reply arrives; the program that waits gets an error
     EXPECT_TRUE(rig_.read(fd, 1).empty());
     close(fd);
     EXPECT_TRUE(log_.has("0 no modem answers"));

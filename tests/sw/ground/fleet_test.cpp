@@ -363,7 +363,7 @@ Bytes callOf(uint8_t tag, uint8_t id = 0, size_t size = 40, uint8_t type = 0) {
     return m;
 }
 
-// Tests with five receivers, the last of which has another key, and with programs that call all
+// Tests with five receivers, the last with another key, and with programs that call all
 // vehicles.
 class BroadcastTest : public FleetTest {
 protected:

@@ -120,7 +120,7 @@ public:
             for (char c : {'O', 'K', '\r'})
                 toEngine.push_back(static_cast<uint8_t>(c));
     }
-    // Waits like the engine's clock: returns when a descriptor is ready or `us` have passed.
+    // Waits like the engine clock: returns when a descriptor is ready or `us` have passed.
     int wait(pollfd* fds, nfds_t count, uint32_t us) {
         std::unique_lock<std::mutex> lock(mutex_);
         changed_.wait(lock, [this] { return stage_ != Stage::Begins; });

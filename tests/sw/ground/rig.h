@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // rig: simulates the other end of the ground's serial port: a modem on a pty, the air, and a UAV
-// that consists of a modem and a link layer. Simulated time follows the machine's clock, but it
+// that consists of a modem and a link layer. Simulated time follows the machine clock, but it
 // waits for an engine that keeps step. On a busy machine, time therefore passes slowly, and no
 // time-out expires too early.
 
@@ -55,7 +55,7 @@ public:
 
     std::unique_ptr<XBee> modem;
     std::vector<std::pair<int, Bytes>> received;
-    // for each channel that was opened or closed: its number, and 1 (opened) or 0 (closed)
+    // number of each channel that was opened or closed, and 1 (opened) or 0 (closed)
     std::vector<std::pair<int, int>> opened;
     bool echo = false, refuse = false, runs = true;
     // If this function is set, it takes the messages instead of `received`. It is called in the

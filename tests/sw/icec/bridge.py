@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""bridge: bridge.py HEADER... >bridged.c writes servants whose operations call the proxy
+"""bridge: bridge.py HEADER... >bridged.c writes servants with operations that call the proxy
 Bridge_far.
 
 The headers are those that slice2c generates. A servant passes the parameters of each operation to
@@ -26,7 +26,7 @@ def operation(name, self, parameters, calls, servants, responses):
     call = re.sub("(Disp)?$", "Prx", owner, count=1) + name[len(owner):]
     own = parameters.split(", ")[1:]
     later = calls.get(call, parameters).split(", ")[len(own) + 1:]
-    # the parameters of the servant are const, those of the proxy are not
+    # the servant has const parameters, the proxy does not
     given = ["(void*)" * ("**" in p) + name_of(p) for p in own]
     print(f"\nIce_Status {name}({self}{parameters}, const Ice_Current* current) {{")
     for result in later:

@@ -47,7 +47,7 @@ TEST_F(Calls, AFailureIsToldOfItsProxyWhateverOthersCall) {
     EXPECT_EQ(failure.unknown.size, 0) << "the text is invalid after the reply was released";
 }
 
-// Makes a call whose result is the string `mine`. The result stays in the buffer of the reply.
+// Makes a call with the string `mine` as result. The result stays in the buffer of the reply.
 Ice_String askString(Ice_ObjectPrx& prx, const std::string& mine, Ice_Status expected = ICE_OK) {
     Ice_String result = {0, nullptr};
     Ice_InputStreamPtr is;

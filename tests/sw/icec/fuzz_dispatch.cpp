@@ -3,8 +3,8 @@
 // fuzz_dispatch: fuzzes the messages from a peer (the bytes after a valid header) and the parser of
 // proxy strings, with libFuzzer.
 //
-// The first byte of an input selects the type of the message, or a request of which only the
-// parameters are fuzzed. The servant then decodes the parameters by a sequence of read functions;
+// The first byte of an input selects the type of the message, or a request with only the
+// parameters fuzzed. The servant then decodes the parameters by a sequence of read functions;
 // two bytes select each of these functions and its argument. A proxy that was read or parsed must
 // be the same after conversion to a string and back, and to bytes and back. After each message the
 // communicator must still answer a ping. Built with ICEC_MINIMAL, fuzz_dispatch tests the minimal

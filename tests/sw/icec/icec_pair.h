@@ -136,7 +136,7 @@ private:
     std::unique_ptr<Side> here_, there_;
 };
 
-// A test suite whose tests are in several files.
+// A test suite with tests in several files.
 class Calls : public IcecPair {};
 
 using namespace IceMessages;

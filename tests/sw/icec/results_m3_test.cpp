@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// results_m3_test: checks on a Cortex-M3 that each task gets the results of its own call, at
+// results_m3_test: checks on a Cortex-M3 that each task gets the results of the call it made, at
 // whatever instruction the kernel switches to another task that also makes calls.
 
 #include "plain_bus.h"

@@ -7,7 +7,7 @@
 // air, as in the model of Dolev and Yao: he may deliver every frame that was ever sent, at any
 // time, to either side, any number of times, or never. He has no key, so the frames that he makes
 // have no valid tag, and only a side with a bug accepts them. A session has one key for each
-// direction, both of which depend on the two nonces; therefore a frame is identified by its nonces.
+// direction, and both depend on the two nonces; therefore a frame is identified by its nonces.
 
 #include <bitset>
 #include <cstdint>
@@ -345,7 +345,7 @@ private:
     // indexes in order_ of all states found so far
     std::unordered_map<State, uint32_t, Hash> seen_;
     std::vector<const State*> order_; // states in the order of discovery
-    // for each state: the index of the state before it, and the step between them
+    // index of the state before each state, and the step between them
     std::vector<std::pair<uint32_t, std::string>> from_;
     // index of the state that is being examined
     uint32_t at_ = 0;

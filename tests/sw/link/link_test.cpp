@@ -252,7 +252,7 @@ TEST_P(MinimalLayer, TheDeadlineIsWhenSomethingIsToBeDone) {
 INSTANTIATE_TEST_SUITE_P(Vehicles, MinimalLayer,
                          ::testing::Values(Variant{"full", "minimal", false}));
 
-// Tests with layers whose sessions end after 60 fragments in one direction, or after 50 wrong tags.
+// Tests with layers that end sessions after 60 fragments in one direction, or after 50 wrong tags.
 class Limits : public Variants {
 protected:
     Limits() { usualSize = longestSize = 40; } // one fragment

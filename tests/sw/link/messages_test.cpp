@@ -179,7 +179,7 @@ TEST_P(FullOvertaking, ACallTakesAtMostThreeTimesAsLongBehindAPicture) {
     const uint64_t idle = call();
     run(200'000);
     for (int i = 0; i < 5; ++i) {
-        send(0, Bytes(1000, 1)); // pictures of 1000 bytes, each of which takes 90 ms on the line
+        send(0, Bytes(1000, 1)); // pictures of 1000 bytes; each takes 90 ms on the line
         send(0, Bytes(1000, 1));
         run(30'000);
         EXPECT_LE(call(), 3 * idle);

@@ -269,7 +269,7 @@ TEST_F(RandomWait, WhoSendsLittleWaitsWherePacketsAreLost) {
     pair.air.weather.loss = 0.5;
     talk(pair, 1, 0);
     EXPECT_EQ(rn(pair.a), 2u);
-    talk(pair, 2000, 0); // in a stream, a packet is ready whenever the air is idle
+    talk(pair, 2000, 0); // a stream has a packet ready whenever the air is idle
     EXPECT_EQ(rn(pair.a), 0u);
     pair.air.weather.loss = 0;
     pair.pass(20'000 * ms);

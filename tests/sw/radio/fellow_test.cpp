@@ -185,8 +185,8 @@ void Simulation::step() {
     atStep();
 }
 
-// The vehicles 5 and 7, of which 5 acts as the ground station of 7, and the two ground stations of
-// vehicle 5.
+// Vehicle 5, its two ground stations, and vehicle 7, for which vehicle 5 acts as the ground
+// station.
 struct Team : Simulation {
     explicit Team(const Key& key = {}, const Key& keyOf7 = {}) {
         five.meets(seven, 7, Craft::fellow, true, key, LINK_GROUND | 7);
@@ -297,7 +297,7 @@ TEST(Fellows, OneThatIsAwayEndsTheCallInTimeAndTheGroundIsServedMeanwhile) {
         world.seven.isAway = false;
         EXPECT_EQ(world.five.call("it:xbee-at -a 7"), ICE_OK);
         EXPECT_EQ(world.seven.servant.calls, 1u)
-            << "a call whose caller has given up must not be executed later";
+            << "a call that its caller has abandoned must not be executed later";
     }
 }
 

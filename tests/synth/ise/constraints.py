@@ -56,15 +56,15 @@ def renamed():
 
 
 class Paths:
-    """The paths of the chip, as pairs (start, end) in `pairs`, and its pads without those of MIG in
-    `pads`.
+    """The paths of the chip, as pairs (start, end) in `pairs`, and its pads without the pads of
+    MIG in `pads`.
 
     A start or an end is ("pad", name) or ("clock", names of the net). A start may also be ("ram",
     names of its clock), and an end may be ("reset", the clock of the register that is reset)."""
 
     def __init__(self, module):
         self.names, self.pads = {}, []
-        # for each net: the start that drives it, or the nets (or starts) that its logic reads
+        # the start that drives each net, or the nets (or starts) that its logic reads
         self.source, self.comb = {}, {}
         # sinks: pairs (end, net); origins: for each net, its starts as far as they are known
         self.sinks, self.origins = [], {}

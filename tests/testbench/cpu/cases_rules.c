@@ -119,7 +119,7 @@ void Case_cycleCounter(void) {
 void Case_tickRules(void) {
     SYST_RVR = 0;
     SYST_CVR = 0;
-    SYST_CSR = 7; /* the counter stays at zero, because there is no reload value */
+    SYST_CSR = 7; /* the counter stays at zero without a reload value */
     __asm__ volatile("nop\n\tnop\n\tnop");
     SYST_RVR = 999;
     value[0] = SYST_CVR > 900UL;

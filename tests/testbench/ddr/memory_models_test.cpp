@@ -207,7 +207,7 @@ TEST(McbStart, NoCommandBeforeCalibration) {
 
 // the sanitizers write to the whole memory
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-// Each flight makes a memory of the board's size, of which it uses a small part.
+// Each flight makes a memory of the board's size, and uses a small part of it.
 TEST(McbStart, TheSizeOfTheMemoryCostsNoTime) {
     const std::clock_t begin = std::clock();
     for (int i = 0; i < 50; ++i) {

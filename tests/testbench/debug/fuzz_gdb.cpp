@@ -43,7 +43,7 @@ int connected(uint16_t port) {
     to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     to.sin_port = htons(port);
     const int fd = socket(AF_INET, SOCK_STREAM, 0);
-    // A long run makes 500 connections per second, and may use up the machine's ports for some
+    // A long run makes 500 connections per second, and may use up the ports of the machine for some
     // time; then connecting is repeated.
     while (connect(fd, reinterpret_cast<sockaddr*>(&to), sizeof to) != 0) {
         if (errno != EADDRNOTAVAIL) {

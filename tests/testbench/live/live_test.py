@@ -176,13 +176,13 @@ class Cases(Script):
         self.assertLess(int(found), 121)
         # The registers of the core are shown next to its operations, and registers that change are
         # marked.
-        beside = "document.querySelector('#cards [data-block=vision]')"
-        browser.until(f"/THRESHOLD\\s+0x0000003c/.test({beside}.innerText)")
-        browser.until(f"!{beside}.querySelector('.changed')")
+        card = "document.querySelector('#cards [data-block=vision]')"
+        browser.until(f"/THRESHOLD\\s+0x0000003c/.test({card}.innerText)")
+        browser.until(f"!{card}.querySelector('.changed')")
         browser.run("document.querySelector('[id=\"hwengine1.setParameterA.value\"]')"
                     ".value = 61; document.querySelector('[id="
                     "\"hwengine1.setParameterA.value\"]').closest('form').requestSubmit()")
-        browser.until(f"{beside}.querySelector('.changed')?.innerText.includes('0x0000003d')")
+        browser.until(f"{card}.querySelector('.changed')?.innerText.includes('0x0000003d')")
 
     def narrow(self, state):
         """At a width of 420 pixels, nothing is cut off, and no scroll bar is needed."""

@@ -21,7 +21,7 @@ public:
         air.onPacket([this](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
             toHinder_ += hinders_ && packet.bytes != lure_;
             // The attacker also hears its own packets, because the air does not distinguish them
-            // from those of the link.
+            // from packets of the link.
             if (heard_.size() < 100'000)
                 heard_.push_back(packet);
         });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // command_test: tests the command mode and every command of the XBee model, and its API frames with
-// and without escapes. The bytes are those of the examples in the manual.
+// and without escapes. The bytes are from the examples in the manual.
 
 #include "two_modems.h"
 

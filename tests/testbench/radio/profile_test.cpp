@@ -50,7 +50,7 @@ TEST_P(Profiles, HaveTheirOwnRangesOfParameters) {
 
 TEST_P(Profiles, DeassertCTSAtTheirThreshold) {
     perfect = false;
-    // with this setting, the modem tries for a long time to send a packet to a receiver that does
+    // the modem tries with this setting for a long time to send a packet to a receiver that does
     // not exist
     power({{"BD", 0x3D090}, {"RR", 6}}, {{"MY", 9}});
     send(std::string(GetParam().packet, 'x'), 10 * ms);

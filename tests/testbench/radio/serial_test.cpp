@@ -113,7 +113,7 @@ TEST_F(Buffers, TheOutputBufferHolds202BytesAndWhatComesThenIsAcknowledgedAndLos
     EXPECT_EQ(heardB(), std::string(100, 'x') + std::string(100, 'y'));
 }
 
-// Tests with a host whose UART is simulated bit by bit, so that its rate may differ from the
+// Tests with a host UART that is simulated bit by bit, so that its rate may differ from the
 // modem's.
 class Wire : public ::testing::Test {
 protected:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// app_hang: selects firmware whose interrupt routine never ends, for hang.sh.
+// app_hang: selects firmware with an interrupt routine that never ends, for hang.sh.
 
 #include "uav_machine.h"
 

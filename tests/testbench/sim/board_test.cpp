@@ -216,7 +216,7 @@ TEST_P(FaultFlights, EndAsTheFaultMakesThem) {
     EXPECT_EQ(isAnswered, isExpectedToAnswer(GetParam()));
 }
 
-// Flies the mission with the kit's pins and each modem: the controller sets the modem up by AT
+// Flies the mission with the pins of the kit and each modem: the controller sets the modem up by AT
 // commands, then a parameter is set, and a picture's result and telemetry are fetched.
 class ModemFlights : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(With, ModemFlights, testing::Values("s1", "s2c", "xb3"),

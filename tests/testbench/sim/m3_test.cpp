@@ -89,7 +89,7 @@ TEST(CortexM3Firmware, FliesTheMissionAsTheHostBuildDoesByteByByteOnTheAir) {
     EXPECT_TRUE(flies(host.soc, host.mission(2), 30));
     m3.fly(m3.mission(2), 30);
     ASSERT_EQ(host.ground.replies.size(), 7u);
-    EXPECT_EQ(host.ground.replies[7], 2); // there is no object with this name
+    EXPECT_EQ(host.ground.replies[7], 2); // no object has this name
     for (auto* flight : {&host, &m3})
         std::fill_n(flight->ground.messages[5].begin() + cyclesAt, cyclesBytes, 0);
     EXPECT_GT(host.ground.messages[5].size(), 60u) << "no corners were found";

@@ -43,7 +43,7 @@ TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
                      return hurry(10);
                  },
                  // The link is ended after 9 s of silence, and the modem is set up again 15 s
-                 // later. Both times are times of the vehicle's clock, which is faster here.
+                 // later. Both times are times of the vehicle clock, which is faster here.
                  [&] { return soc.now() - since > 2'350'000'000; },
                  [&] {
                      EXPECT_NE(Link_state(&uav_link), LINK_STATE_UP) << "the UAV has not noticed";

@@ -203,7 +203,7 @@ TEST(WireFault, NamesTheExpectedForm) {
     EXPECT_EQ(WireFault::parseAll("D3:open  BANK1:unpowered").at(1).bank(), 1);
 }
 
-// ---- with the chip ----
+// ---- chip ----
 
 std::string chipReport(const std::string& fault, uint32_t steps) {
     XBee::Options modem;

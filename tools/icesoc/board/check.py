@@ -41,7 +41,7 @@ def complete(board: Board):
 
 def ends(net: Net, muxed):
     """Compares the ends of each net with the ends of its signal. Finds missing ends, and ends that
-    the signal does not have. `muxed`: the board's data lines also carry the address."""
+    the signal does not have. `muxed`: the data lines of the board also carry the address."""
     signal = net.signal
     has = {end for end in ("mcu", "fpga", "modem", "to") if net.get(end)}
     if signal.port and "fpga" not in has:
@@ -212,7 +212,7 @@ def clocks(board: Board):
     derived."""
     hse, clock = board.facts["mcu"].get("hse_hz"), board.facts["fpga"].get("clock_hz")
     if hse is None:
-        yield "mcu.hse_hz: missing; the frequency of the microcontroller's clock in Hz"
+        yield "mcu.hse_hz: missing; the clock frequency of the microcontroller in Hz"
     elif hse % 1_000_000 or not 4_000_000 <= hse <= 26_000_000:
         yield (f"mcu.hse_hz: expected whole MHz, 4 to 26, got {hse / 1e6:g} MHz: the PLL divides "
                f"to 1 MHz and makes {MCU_HZ // 1_000_000} MHz of it")

@@ -9,7 +9,7 @@ from icesoc.board.signals import SIGNALS
 SPEEDS = {"low": 0, "medium": 1, "high": 2, "fast": 3}
 PULLS = {"up": 1, "down": 2}
 GPIO = 0x40020000
-# Values of the registers after reset (RM0033, 6.4). These values keep the debugger's pins, which
+# Values of the registers after reset (RM0033, 6.4). These values keep the debugger pins, which
 # are on ports A and B, in use.
 RESET = {"A": {"mode": 0xA8000000, "speed": 0, "pull": 0x64000000, "low": 0, "high": 0},
          "B": {"mode": 0x00000280, "speed": 0x000000C0, "pull": 0x00000100, "low": 0, "high": 0}}

@@ -28,7 +28,7 @@ def for_bench(board):
 
 
 def write(files, folder):
-    """Writes the files whose text has changed, and leaves the others as they are. Returns the paths
+    """Writes the files with changed text, and leaves the others as they are. Returns the paths
     of all files."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)

@@ -28,7 +28,7 @@ class Pin:
     number: str = ""  # number in the package; empty for a ball
     functions: dict = field(default_factory=dict)  # name of each alternate function -> its number
     bank: int | None = None
-    # Xilinx's name of a ball, such as IO_L41P_GCLK9_IRDY1_M1RASN_1 or VCCO_0; for a pin of a
+    # ball as Xilinx names it, such as IO_L41P_GCLK9_IRDY1_M1RASN_1 or VCCO_0; for a pin of a
     # microcontroller, empty if it is an I/O pin
     description: str = ""
 
@@ -123,7 +123,7 @@ class Board:
         return next((net for net in self.nets if net.name == name), None)
 
     def place(self, net, end):
-        """Returns (connector, number) of a net's end, or None."""
+        """Returns (connector, number) of an end of a net, or None."""
         module = self.modules.get(end)
         connectors = self.facts.get(end, {}).get("connectors", [])
         return module.place(net.get(end), connectors) if module and net.get(end) else None

@@ -9,7 +9,7 @@ from icesoc.board.model import Board
 
 # With a multiplexed address, NADV's rising edge stores the address, which the data pins carry from
 # 8 ns before this edge to 14 ns after it (HCLK 120 MHz, ADDSET 2, ADDHLD 2, and the delays in
-# testbench/fsmc/pin_delays.h). The groups soc_clk and fsmc_nwe are those of synth/ise/chip.ucf.
+# testbench/fsmc/pin_delays.h). The groups soc_clk and fsmc_nwe are defined in synth/ise/chip.ucf.
 MUXED = """
 # The address on the data pins, stored when NADV rises.
 NET "fsmc_nadv_n_i" TNM_NET = "fsmc_nadv";

@@ -15,7 +15,7 @@ from icesoc import TREE
 from icesoc.call.slices import Slices, listed
 from icesoc.util.errors import Stop, nearest
 
-# interface of a core without a servant; its operations read and write the core's registers by name
+# interface of a core without a servant; its operations read and write the core registers by name
 REGISTERS = "::Hw::Registers"
 ACCESSES = {"get": ("ro", "rw", "w1c", "w1s"), "set": ("rw", "w1c", "w1s", "ws")}
 LIVE = "live.json"  # file in the folder of a flight; it exists only during the flight

@@ -211,7 +211,7 @@ def waits(core):
 
 def instances_of(chip, slots):
     """Returns the firmware's table of cores. A core without a servant gets the common servant,
-    which accesses the core's registers by name."""
+    which accesses the core registers by name."""
     headers = set()
     for core in chip.cores:
         headers |= ({core.servant["header"]} if core.servant else

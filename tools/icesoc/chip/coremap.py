@@ -331,7 +331,7 @@ class Chip:
                 placed.append(core)
 
     def connect(self, core):
-        """Connects inputs of a core to outputs of other cores, and assigns bits of the chip's pins
+        """Connects inputs of a core to outputs of other cores, and assigns bits of the chip pins
         to the remaining pins of the core."""
         outputs = {f"{c.name}.{p.name}": p for c in self.cores for p in c.pins
                    if p.direction == "o"}

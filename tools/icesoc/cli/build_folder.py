@@ -110,8 +110,8 @@ class BuildFolder:
             raise Stop("CMake refuses " + " ".join(words[1:-1]) + "\n" + "\n".join(reasons))
 
     def other_cores(self):
-        """Returns the folders of cores outside ip/: those that the command names or, if it names
-        none, those of the earlier configuration."""
+        """Returns the folders of cores outside ip/ that the command names or, if it names none,
+        the folders in the earlier configuration."""
         if self.core_folders == "none":
             return []
         folders = self.core_folders or self.cached("CORE_FOLDERS")

@@ -129,7 +129,7 @@ def cases(values=None):
                    for names in CASE.findall(text)})
 
 
-@expecting("a word of a test's name")
+@expecting("a word of a test name")
 def words_of_tests(values=None):
     """Returns the words that occur in names of tests."""
     words = {word for names in cases() for word in names.split(".")}

@@ -240,7 +240,7 @@ def take_board(values):
 
 def kit(folder, described=""):
     """Returns the name or the file of the board for which the simulator and the firmware must be
-    built, or an empty text if those of any board fit. Only a board with multiplexed address and
+    built, or an empty text if any board fits. Only a board with multiplexed address and
     data needs a separate build, because its bridge and its firmware differ. `folder`: output of
     `./icesoc board make`. `described`: the board's file, if known."""
     try:

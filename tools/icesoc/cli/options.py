@@ -111,7 +111,7 @@ def matching(pattern, expected, convert=str, schema=None, metavar="VALUE"):
 
 
 def number(low, high=None, unit="", convert=int):
-    """Returns the kind of a number from `low` to `high`; without `high` there is no upper limit."""
+    """Returns the kind of a number from `low` to `high`; without `high` it has no upper limit."""
     kind = "number" if convert is float else "whole number"
     between = f"a {kind}, at least {low}" if high is None else f"{low} to {high}"
     pattern = r"\d{1,18}" if convert is int else r"\d+(\.\d*)?|\.\d+"
@@ -207,7 +207,7 @@ SHARE = number(0, 1, convert=float)
 COUNT = number(1)
 SECONDS = number(0, unit="s", convert=float)
 MINUTES = number(0.001, unit="minutes", convert=float)
-# Kinds whose values are paths relative to the caller's folder.
+# Kinds with values that are paths relative to the caller's folder.
 PATHS = (FILE, KEY_FILE, FOLDER, INPUT_FOLDER, PATH, FLIGHT)
 
 BUILD = Option("build", FOLDER, "build folder", "build/main")

@@ -164,7 +164,7 @@ def packages_first(files):
 
 
 def filled(file, defines):
-    """Returns the text of a file with two changes. Paths of existing files, such as those of
+    """Returns the text of a file with two changes. Paths of existing files, for example in
     $readmemh, become absolute, because a simulation may run in any folder. If the file contains a
     module, the macros `defines` are defined before the text and undefined after it."""
     def path(m):
@@ -179,7 +179,7 @@ def filled(file, defines):
 
 def macros_of(files):
     """Returns the macros that are byte addresses of registers, as {name: value}. These are all
-    macros whose value is a hexadecimal number with a size. The result is empty unless all sizes are
+    macros with a sized hexadecimal number as value. The result is empty unless all sizes are
     equal and all values are different multiples of 4."""
     found = re.findall(r"^\s*`define\s+(\w+)\s+(\d+)'h([0-9a-fA-F_]+)\s*(?://.*)?$",
                        "\n".join(map(text_of, files)), re.M)
@@ -190,8 +190,8 @@ def macros_of(files):
 
 
 def names_of(top, files, core):
-    """Returns the names of the core's registers by word address. The names come from localparams in
-    the file of module `top` that are as wide as the address. If there are no such constants, they
+    """Returns the names of the core registers by word address. The names come from localparams in
+    the file of module `top` that are as wide as the address. Without such constants, they
     come from the macros. If two names such as KEY0 and KEY7 are 7 words apart, the words between
     them get the names KEY1 to KEY6."""
     text = next((t for t in map(text_of, files) if re.search(rf"^\s*module\s+{top}\b", t, re.M)),
@@ -226,7 +226,7 @@ def vector(width):
 
 
 def pin_name(name, port):
-    """Returns the name of a port in the form of the platform's pins: in lower case, with _i or _o
+    """Returns the name of a port in the form of the platform pins: in lower case, with _i or _o
     at its end."""
     base = "_".join(re.sub(r"^[io]_|_[io]$", "", part) for part in name.lower().split("."))
     return base + ("_i" if port["direction"] == "input" else "_o")

@@ -208,7 +208,7 @@ def read_module(top, files, headers=(), params=(), defines=(), is_whole=True, gh
                 library="", libraries=()):
     """Returns the ports of the module `top` in order, and whether Yosys can read the module
     (otherwise only Verilator can). A port that resets registers asynchronously has the key "reset",
-    its active level. `headers`: files whose folders are searched by `include. `params`: NAME=value
+    its active level. `headers`: files in the folders that `include searches. `params`: NAME=value
     of parameters or generics. `defines`: NAME or NAME=value of macros. `is_whole`: the files
     contain all modules of the design. `ghdl`: the program that reads VHDL. `library`: the name of
     the files' VHDL library. `libraries`: other libraries, NAME=FILE for each of their files."""

@@ -18,7 +18,7 @@ LIBRARY   VHDL library of the files; NAME=FILE puts one file, or the files of a 
 ADDRESS   unit of the core's address: words or bytes
 PARAM     parameter or generic of TOP
 DEFINE    Verilog macro, NAME or NAME=value
-ROLE      role of a port whose name does not show its role
+ROLE      role of a port, if its name does not show its role
 """
 import fnmatch
 import json
@@ -118,7 +118,7 @@ class Request:
             found = [f for f in files if fnmatch.fnmatch(f, os.path.abspath(pattern))
                      or fnmatch.fnmatch(os.path.basename(f), pattern)]
             if not found or not re.fullmatch(r"[A-Za-z]\w*", library):
-                fail(f"LIBRARY: {library}={pattern}: expected a library's name and a file of FILES")
+                fail(f"LIBRARY: {library}={pattern}: expected a library and a file of FILES")
             self.libraries += [f"{library}={f}" for f in found]
             files = [f for f in files if f not in found]
         self.headers = [f for f in files if kind_of(f) == "header"]
@@ -139,8 +139,8 @@ def read_core(asked):
                                         asked.defines, ghdl=asked.ghdl, library=asked.library,
                                         libraries=asked.libraries)
     if odd := [n for n in ports if not re.fullmatch(r"\w+", n)]:
-        fail(f"{asked.top} has the port '{odd[0]}', an escaped name; write a module around it "
-             "whose ports have plain names")
+        fail(f"{asked.top} has the port '{odd[0]}', an escaped name; write a module around it with "
+             "plain names of ports")
     if two_way := [n for n, p in ports.items() if p["direction"] == "inout"]:
         fail(f"{asked.top} has the inout port '{two_way[0]}': a core inside the chip cannot have "
              "tri-state ports; choose a top module without such ports")

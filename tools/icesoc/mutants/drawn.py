@@ -15,7 +15,7 @@ from icesoc.util.progress import clock, is_tenth
 from icesoc.util.tree import tree_state
 from concurrent.futures import ThreadPoolExecutor
 
-# Programs that test a module; the first expression that matches the module's name applies.
+# Programs that test a module; the first expression that matches the module name applies.
 TESTS = {
     "bus_": "test_ip_new_foreign", "npi_stream": "test_ip_foreign_axis test_ip_fir",
     "npi_|mcb_": "test_ddr_memory", "axis_filter": "test_ip_foreign_axis",

@@ -61,7 +61,7 @@ def cells(path):
             for index, bit in enumerate(net["bits"] if not net["hide_name"] else []):
                 signals.setdefault(bit, f" {name}[{index}]")
         for name, cell in sorted(content["cells"].items(), key=made):
-            # The last of several locations is that of the cell. Yosys puts the location of a
+            # The cell itself has the last of several locations. Yosys puts the location of a
             # condition that it could not resolve before the cell's location.
             source = cell["attributes"].get("src", "").split("|")[-1]
             source = re.sub(r".*/((bus|hdl|ip)/)", r"\1", source)

@@ -23,7 +23,7 @@ class Blocks:
         return "/".join(path.split("/")[:-1][:2])
 
     def of_module(self, name):
-        """Returns the block of the module `name`. If there is no such module, uses the module with
+        """Returns the block of the module `name`. If it does not exist, uses the module with
         the longest name that `name` begins with, or else the first module that begins with the
         first word of `name`. Returns "" if neither exists."""
         first = name.partition("_")[0] + "_"

@@ -48,7 +48,7 @@ class Failure:
     wave: str = ""  # path of an FST or VCD file, or ""
     about: str = ""  # text that names the relevant signals: the assertion of a proof, or the reason
     scope: str = ""  # instance to look at first, such as "u_window.u_wrapper", or ""
-    # for a proof: True if the failed assertion is in the proven module itself
+    # True if the failed assertion of a proof is in the proven module itself
     own_assertion: bool = False
     save: str = ""  # path of the GTKWave save file, or ""
     clock: int = 0  # clock of the failure in the waveform; 0: the end of the waveform

@@ -59,8 +59,8 @@ class History:
         return next((each for each in reversed(self.ends[name]) if each[0][0] == "p"), None)
 
     def seconds(self, name):
-        """Returns the duration of a test in s, from the newest run that included it; None if there
-        is no such run."""
+        """Returns the duration of a test in s, from the newest run that included it; None without
+        such a run."""
         return self.ends[name][-1][0][1] if self.ends[name] else None
 
     def usual(self, name):

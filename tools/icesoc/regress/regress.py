@@ -59,7 +59,7 @@ def parse(words):
     add("--label", type=regex, default=regex(""), help="labels: rtl, formal, lint, firmware, ...")
     only = parser.add_mutually_exclusive_group()
     only.add_argument("--changed", action="store_true", help="only tests that failed in their "
-                      "last run, and tests whose program or sources have changed since they passed")
+                      "last run, and tests with a program or sources changed since they passed")
     only.add_argument("--rerun-failed", action="store_true", help="only tests that failed "
                       "in their last run")
     only.add_argument("--kept", action="store_true", help="only tests that failed earlier and "
@@ -119,8 +119,8 @@ class Regression:
         return chosen
 
     def _outdated(self, tests, known):
-        """Finds programs, other than those in `known`, that are older than their sources and whose
-        sources may contain a case with the requested name. Returns one test of each of these
+        """Finds programs, other than those in `known`, that are older than their sources, if these
+        may contain a case with the requested name. Returns one test of each of these
         programs, so that the program is built."""
         o, found, known = self.options, {}, set(known)
         for test in tests:
@@ -145,7 +145,7 @@ class Regression:
     def _changed(self, test, built):
         """Returns whether --changed selects a test. It selects a test that failed in its last run,
         and a test that has passed, but not with the current sources. A test that has never passed
-        here is selected if its files differ from those of the last commit."""
+        here is selected if its files differ from the last commit."""
         passed = self.history.last_pass(test.name)
         if self.history.last(test.name) == "f":
             return True

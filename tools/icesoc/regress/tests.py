@@ -85,7 +85,7 @@ class Test:
 
     def blocks(self):
         """Returns the words that --block may select this test by: the words of its folder, and
-        those of its name up to the name of the case."""
+        the words of its name up to the name of the case."""
         kind, _, rest = self.name.partition(".")
         more = rest if kind in ("formal", "lint", "wave") else ""
         return set(re.findall("[A-Za-z0-9]+", f"{self.place}/{kind}/{more}"))
@@ -159,7 +159,7 @@ def list_tests(build):
 
 def targets_of(test, build, outputs):
     """Returns the targets that ninja must build for a test. These are `Test.targets` or, if that is
-    None, those of the build's `outputs` that the test's command names. The target is "all" if the
+    None, the `outputs` of the build that the test's command names. The target is "all" if the
     command names the build folder itself, or an unknown file in it."""
     if test.unbuilt:
         return [test.program]

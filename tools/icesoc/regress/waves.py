@@ -27,7 +27,7 @@ class Scene:
     program: str  # target in the build with waveforms; "" for a test under GHDL
     clock: int
     flight: str = ""  # folder of the recording
-    slot: int = 0  # slot of the core whose event was last reported to the processor; 0: no core
+    slot: int = 0  # slot of the core that last reported an event to the processor; 0: no core
     before: int = 2000
     after: int = 20
 
@@ -45,7 +45,7 @@ def scene_of(failure, test):
                 event = json.loads(line)
             except ValueError:
                 continue
-            # the core whose event was last reported to the processor is shown or, without one, the
+            # the core that last reported an event to the processor is shown or, without one, the
             # modem
             slot = event.get("slot", -1)
             if slot >= FIRST_CORE or slot >= 0 and not scene.slot:
@@ -98,7 +98,7 @@ def instances(changed, source, build):
 
 def scope_in(signals, names):
     """Returns the first of these names that is an instance in the waveform, spelled as in the
-    waveform (GHDL writes lower-case letters); "" if there is no such instance."""
+    waveform (GHDL writes lower-case letters); "" without such an instance."""
     scopes = {scope.lower(): scope for signal in signals for scope in signal.scopes}
     return next((scopes[name.lower()] for name in names if name.lower() in scopes), "")
 

@@ -83,8 +83,8 @@ class Register:
     access: str
     doc: str
     width: int = 32
-    # byte address in the core, if the register is accessed through an adapter; -1: the register is
-    # in the slot itself
+    # byte address in the core, if the register is accessed through an adapter; -1: the register
+    # is in the slot itself
     page: int = -1
     fields: list = field(default_factory=list)
     reset: int | None = 0  # reset value of a register without fields

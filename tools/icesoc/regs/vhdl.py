@@ -88,7 +88,7 @@ def vhdl_reads(b):
 
 
 def word_cover(b):
-    """Returns the words of the block's registers as a choice of a VHDL case, such as 0 to 10 |
+    """Returns the words of the registers in the block as a choice of a VHDL case, such as 0 to 10 |
     13."""
     words, runs = sorted(r.word for r in b.registers), []
     for word in words:

@@ -19,7 +19,7 @@ PARTS = {  # parts of a release, in the order in which they are made
     "icec": "icec-VERSION.tar.gz (single files, PlatformIO, Zephyr) and the CMSIS-Pack",
     "changes": "CHANGES-VERSION.md: the section of the changelog",
     "site": "icesoc-VERSION-site.tar.gz: the documentation",
-    "packages": "Debian packages for the release of this machine, or those of given folders",
+    "packages": "Debian packages for the release of this machine, or from given folders",
     "sbom": "icesoc-VERSION.spdx.json: bill of materials (SPDX 2.3)"}
 
 
@@ -41,7 +41,7 @@ class Release:
 
     @property
     def changes(self):
-        """Returns the text in the changelog about unreleased changes or, if there are none, about
+        """Returns the text in the changelog about unreleased changes or, without such text, about
         the newest version."""
         text = self.files["CHANGELOG.md"].decode()
         return version.unreleased(text) or dict(version.sections(text))[version.newest(text)]

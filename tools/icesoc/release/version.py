@@ -38,7 +38,7 @@ def unreleased(text=None):
 
 def of_text(text, commit, seconds):
     """Returns the version of a commit with this changelog. If the changelog has unreleased changes,
-    the version consists of the last version and the commit's time and hash: dpkg regards it as
+    the version consists of the last version and the time and hash of the commit: dpkg regards it as
     newer than the last version and than the versions of earlier commits. `seconds` is the time of
     the commit."""
     if not unreleased(text):
@@ -48,7 +48,7 @@ def of_text(text, commit, seconds):
 
 
 def of_commit(tree=TREE):
-    """Returns the version of the tree's last commit. If the tree is not a repository, for instance
+    """Returns the version of the last commit. If the tree is not a repository, for instance
     an unpacked release, returns the newest version."""
     text = (Path(tree) / "CHANGELOG.md").read_text(encoding="utf-8")
     if not (Path(tree) / ".git").exists():

@@ -98,7 +98,7 @@ def written(baseline):
 
 
 def accept(report, file):
-    """Replaces the accepted figures of the measured designs, keeps those of other designs (unless
+    """Replaces the accepted figures of the measured designs, keeps the figures of others (unless
     another version of Yosys has measured them), and drops designs that no longer exist. Rejects
     figures above a limit of synth/designs.json; a limit can only be changed there."""
     old = report.baseline

@@ -218,7 +218,7 @@ def read_json(file):
 
 def read_plan(file, library, root):
     """Returns the plan: the designs in the file, and a design for every other module that has a
-    file of its own name. `*_rules` and `*_proof` are left out, because they are properties, not
+    file of the same name. `*_rules` and `*_proof` are left out, because they are properties, not
     hardware."""
     j = read_json(file)
     designs = [Design(**design) for design in j["designs"]]

@@ -32,7 +32,7 @@ PAGE = pathlib.Path(__file__).with_name("page.html")
 
 def rtl_of(o):
     """Returns the library of all modules. If several have the same name, the first one counts:
-    modules of the platform precede those of cores and generated ones."""
+    modules of the platform precede cores and generated modules."""
     if not o.generated.is_dir():
         raise Stop(f"{o.generated} not found; run ./icesoc build first")
     rooms = sorted(folder for room in ("hdl", "ip") for folder in (o.source / room).iterdir()

@@ -156,7 +156,7 @@ def elements(address, *options, **size):
 
 def fault(page):
     """Opens a page, and returns the first exception in its scripts, with line and text; empty if
-    there is none."""
+    without one."""
     page = Path(page).resolve()
     with Browser() as browser:
         browser.open(page.as_uri())

@@ -7,7 +7,7 @@ changing the system.
 A download is rejected if its checksum differs from the checksum that is listed here. Downloads are
 kept in ${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network. ICESOC_NPM is a
 mirror of registry.npmjs.org, ICESOC_RAW a mirror of raw.githubusercontent.com. Exit status 77:
-there is no network, and only optional parts need this thing.
+the network is missing, and only optional parts need this thing.
 """
 
 import argparse

@@ -18,7 +18,7 @@ def commit(name, option="BASE"):
 
 def tracked(source):
     """Returns the paths of all files in the tree, except those that .gitignore excludes. Also works
-    in a copy without git's data."""
+    in a copy without the data of git."""
     return collect(["git", "-C", source, "grep", "--no-index", "--exclude-standard", "--no-color",
                 "-l", ""])[1].splitlines()
 
@@ -40,6 +40,6 @@ def write_state(folder, state):
 
 
 def read_state(folder):
-    """Returns the stored state of a measurement, or "" if there is none."""
+    """Returns the stored state of a measurement, or "" if none is stored."""
     path = Path(folder, "tree")
     return path.read_text().strip() if path.exists() else ""

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// adder: a core for tests that has no registers of its own.
+// adder: a core for tests without registers.
 
 `default_nettype none
 

@@ -13,7 +13,7 @@
 #include "ucos_ii.h"
 
 #define STACK_WORDS 1024
-#define PAUSE_TICKS (OS_TICKS_PER_SEC / 100U) /* pause if there is no message to send */
+#define PAUSE_TICKS (OS_TICKS_PER_SEC / 100U) /* pause without a message to send */
 #define TIMEOUT_MS 20000                      /* time-out of a call to the ground, ms */
 
 static OS_STK serverStack[STACK_WORDS], clientStack[STACK_WORDS], radioStack[STACK_WORDS],

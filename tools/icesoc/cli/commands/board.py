@@ -38,8 +38,8 @@ def read(name):
 def board_list(_):
     """list the boards that are described in the folder boards/
 
-    Prints name, number of wires, title and state of each board. A board whose description lacks
-    facts cannot be built."""
+    Prints name, number of wires, title and state of each board. A board with facts missing
+    from its description cannot be built."""
     for name in model.names():
         board = read(name)
         state = ("facts are missing; cannot be built" if board.facts.get("unknown")

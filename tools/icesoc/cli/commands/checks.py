@@ -167,7 +167,7 @@ def fuzz(values):
 
 
 @command("check mutants", [
-    dataclasses.replace(BLOCK, help="block whose seeded bugs are planted, or one bug as BLOCK/BUG",
+    dataclasses.replace(BLOCK, help="block with seeded bugs to plant, or one bug as BLOCK/BUG",
                         choices=choices.seeded, is_checked=True),
     Option("draw", COUNT,
            "instead of the bugs in tests/mutants, plant this number of random mutants per proof"),

@@ -317,7 +317,7 @@ def wave(values):
     """write the waveform of one test for GTKWave, build/wave/NAME.fst
 
     The save file NAME.gtkw lists the ports, then internal signals. For a core in VHDL,
-    `vhdl.NAME` in place of the core's name selects GHDL's waveform, which has the names and types
+    `vhdl.NAME` in place of the core name selects GHDL's waveform, which has the names and types
     of the source."""
     what = values.ip
     if not what or not (values.test or what.startswith("vhdl.")):

@@ -13,7 +13,7 @@ from icesoc.util.errors import Stop
 from icesoc.util.process import run, tool
 from icesoc.util.tree import tree_state, write_state
 
-# labels of the tests whose coverage is measured
+# labels of the tests that coverage is measured with
 COUNTED = "rtl|firmware|vhdl|models|slice|interop|e2e"
 # Tests that are left out: fuzzers have coverage counters of another kind, and e2e.cores builds a
 # separate chip.

@@ -30,7 +30,7 @@ def foreign_words(values):
     Option("bus", TEXT, "bus of the core: wishbone, axil, apb, avalon, memory, axis, or own (any "
                         "other bus, described by --ports)", ""),
     Option("files", FILES, "Verilog or VHDL files of the core"),
-    Option("ports", WORDS, "roles of the core's ports, as ROLE=PORT, such as write=we ack=done"),
+    Option("ports", WORDS, "roles of the core ports, as ROLE=PORT, such as write=we ack=done"),
     Option("params", WORDS, "parameters of the top module, such as DEPTH=16"),
     Option("defines", WORDS, "Verilog macros to define, such as WIDE"),
     Option("clock", COUNT, "frequency of a separate clock, Hz"),
@@ -65,7 +65,7 @@ def foreign_core(values):
 
 def into_slot(source, slot, words, folder, ghdl):
     """Runs new_foreign.py, which writes the folder of a slot. `words`: the module, the bus, further
-    arguments, and patterns of the core's files, relative to the folder `source`."""
+    arguments, and patterns of the core files, relative to the folder `source`."""
     top, bus, *more = words.split()
     rest = [part for word in more for part in (
         [word] if "=" in word or word.startswith("DEFINE:") else sorted(source.glob(word)))]

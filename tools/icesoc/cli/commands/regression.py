@@ -69,7 +69,7 @@ def test(values):
 
 
 def every_test(build, values, tests, seed):
-    """Runs all tests, or only those whose inputs have changed since they passed."""
+    """Runs all tests, or only the tests with inputs that have changed since they passed."""
     status = changed_tests(build, values, tests, seed)
     if not status:
         sanitized = BuildFolder("build/sanitized", values)
@@ -101,7 +101,7 @@ def changed_tests(build, values, tests, seed, label=""):
 
 @command("regress", [
     TEST_NAME, LABEL, BLOCK,
-    Option("changed", SWITCH, "only tests whose files have changed since the tests passed"),
+    Option("changed", SWITCH, "only tests with files that have changed since the tests passed"),
     Option("failed", SWITCH, "only tests that failed last time"),
     Option("kept", SWITCH, "only tests that failed earlier and have not passed since, each with "
                            "the seeds with which it failed"),

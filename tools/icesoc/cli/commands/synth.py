@@ -130,8 +130,8 @@ def named(base):
 
 def tests_of(names):
     """Returns lines that compare the test results of two commits. The counts for a commit are from
-    the run of this commit with the most tests in the history. The last lines list the tests whose
-    results differ."""
+    the run of this commit with the most tests in the history. The last lines list the tests with
+    different results."""
     kept = History().runs
     runs = [max((each for each in kept if each["commit"] == name), default={},
                 key=lambda each: each["passed"] + each["failed"]) for name in names]

@@ -246,7 +246,7 @@ class Slice {
             static get _parent() { return base; }
             _mostDerivedType() { return made; }
             _readMemberImpl(is) {
-                // Fields of the base are read after those of the derived exception.
+                // Fields of the base are read after the fields of the derived exception.
                 this.fields = {...Object.fromEntries(slice.readMembers(is, slice.get(id).fields || [])), ...this.fields};
             }
         };

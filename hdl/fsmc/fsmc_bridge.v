@@ -10,7 +10,6 @@
 // bridge ends the wait and raises access_error_o, so that NWAIT is never low for ever.
 
 `default_nettype none
-`include "shift_order.vh"
 
 module fsmc_bridge #(
     parameter MUXED        = 0, // 1: the data pins carry address bits 15..0 while NADV is low
@@ -52,24 +51,10 @@ module fsmc_bridge #(
     input  wire [31:0] bus_rdata_i,
     input  wire        bus_error_i
 );
-    // Reports a wrong parameter at elaboration. $error as a module item is SystemVerilog, so for
-    // Icarus and XST the name of an undefined module serves as the message.
-`ifdef VERILATOR
-    `define TELLS_ERRORS
-`endif
-`ifdef YOSYS
-    `define TELLS_ERRORS
-`endif
-    generate
-        if (MUXED >> 1 != 0 || WAIT_HIGH >> 1 != 0 || TIMEOUT_LOG2 < 1 || TIMEOUT_LOG2 > 24 ||
-            POST_LOG2 < 2 || POST_LOG2 > 5 || BLOCK_LOG2 < 1 || BLOCK_LOG2 > 4) begin : g_refused
-`ifdef TELLS_ERRORS
-            $error("fsmc_bridge: MUXED, WAIT_HIGH 0..1, TIMEOUT_LOG2 1..24, POST 2..5, BLOCK 1..4");
-`else
-            fsmc_bridge_parameter_out_of_range u_refused ();
-`endif
-        end
-    endgenerate
+    fsmc_parameter_rules #(
+        .MUXED(MUXED), .WAIT_HIGH(WAIT_HIGH), .TIMEOUT_LOG2(TIMEOUT_LOG2), .POST_LOG2(POST_LOG2),
+        .BLOCK_LOG2(BLOCK_LOG2)
+    ) u_fsmc_parameter_rules ();
 
     // ---- Pins
     wire ne1 = !fsmc_ne_n_i[0], ne2 = !fsmc_ne_n_i[1];
@@ -152,24 +137,14 @@ module fsmc_bridge #(
     // ---- Time-out of accesses to memory. After the time-out, excused_read or excused_write goes
     // high and ends the wait of the access. It stays high until the strobe of the access rises.
     // fsmc_registers handles the time-out of accesses to registers.
-    localparam PATIENCE = TIMEOUT_LOG2 > 1 ? TIMEOUT_LOG2 : 2;
-    `SHIFT_ORDER(after, PATIENCE)
-    localparam [PATIENCE-1:0] LAST = 1 << (TIMEOUT_LOG2 - 1);
-    reg [PATIENCE-1:0] patience;
-    reg  ran_out;
-    wire reg_restart;
-    wire expired = ran_out;
+    wire reg_restart, expired;
     wire waiting = (mem_reading && !hit_seen) || (writing && !room);
     assign excuse = expired && clear_sync && waiting && !excused_read && !excused_write;
 
-    always @(posedge clk_i) begin
-        ran_out  <= patience == LAST;
-        patience <= after(patience);
-        if (rst_i || expired || (reg_restart && (busy || !waiting))) begin
-            ran_out  <= 1'b0;
-            patience <= 0;
-        end
-    end
+    fsmc_timeout #(.TIMEOUT_LOG2(TIMEOUT_LOG2)) u_fsmc_timeout (
+        .clk_i(clk_i), .rst_i(rst_i), .restart_i(reg_restart && (busy || !waiting)),
+        .expired_o(expired)
+    );
 
     // ---- NWAIT depends on NE and NOE. Until NOE falls, an access counts as a write, so that NWAIT
     // is valid one address phase before the data phase of a write begins. No access waits while

@@ -17,7 +17,6 @@
 // write before `ready` is high, the write is carried out completely or not at all.
 
 `default_nettype none
-`include "shift_order.vh"
 
 module fsmc_sync_bridge #(
     parameter MUXED        = 0, // 1: the data pins carry address bits 15..0 while NADV is low
@@ -59,23 +58,10 @@ module fsmc_sync_bridge #(
     input  wire [31:0] bus_rdata_i,
     input  wire        bus_error_i
 );
-    // Reports a wrong parameter at elaboration, as fsmc_bridge does.
-`ifdef VERILATOR
-    `define TELLS_ERRORS
-`endif
-`ifdef YOSYS
-    `define TELLS_ERRORS
-`endif
-    generate
-        if (MUXED >> 1 != 0 || WAIT_HIGH >> 1 != 0 || TIMEOUT_LOG2 < 1 || TIMEOUT_LOG2 > 24 ||
-            POST_LOG2 < 2 || POST_LOG2 > 5 || BLOCK_LOG2 < 1 || BLOCK_LOG2 > 4) begin : g_refused
-`ifdef TELLS_ERRORS
-            $error("fsmc_sync_bridge: MUXED, WAIT_HIGH 0..1, TIMEOUT 1..24, POST 2..5, BLOCK 1..4");
-`else
-            fsmc_sync_bridge_parameter_out_of_range u_refused ();
-`endif
-        end
-    endgenerate
+    fsmc_parameter_rules #(
+        .MUXED(MUXED), .WAIT_HIGH(WAIT_HIGH), .TIMEOUT_LOG2(TIMEOUT_LOG2), .POST_LOG2(POST_LOG2),
+        .BLOCK_LOG2(BLOCK_LOG2)
+    ) u_fsmc_parameter_rules ();
 
     // ---- Samples of the pins. A strobe counts only with a chip select.
     wire [1:0]  ne = ~fsmc_ne_n_i;
@@ -173,21 +159,10 @@ module fsmc_sync_bridge #(
     assign fsmc_d_oe_o    = |ne && !fsmc_noe_n_i;
 
     // ---- Time-out, as in fsmc_bridge
-    localparam PATIENCE = TIMEOUT_LOG2 > 1 ? TIMEOUT_LOG2 : 2;
-    `SHIFT_ORDER(after, PATIENCE)
-    localparam [PATIENCE-1:0] LAST = 1 << (TIMEOUT_LOG2 - 1);
-    reg [PATIENCE-1:0] patience;
-    reg  ran_out;
     wire reg_restart;
-    assign expired = ran_out;
-    always @(posedge clk_i) begin
-        ran_out  <= patience == LAST;
-        patience <= after(patience);
-        if (rst_i || expired || (reg_restart && !waiting)) begin
-            ran_out  <= 1'b0;
-            patience <= 0;
-        end
-    end
+    fsmc_timeout #(.TIMEOUT_LOG2(TIMEOUT_LOG2)) u_fsmc_timeout (
+        .clk_i(clk_i), .rst_i(rst_i), .restart_i(reg_restart && !waiting), .expired_o(expired)
+    );
 
     // ---- Registers
     wire reg_error, reg_error_memory, error_of_write, reg_flush, mem_idle;

@@ -60,6 +60,10 @@ module table1 #(
 );
     localparam SLOTS = 2, PORTS = 2, READ_FIFO = 2'b00, BYTES = 2'b10;
 
+    // As in the chip, a flip-flop drives the reset (hdl/soc.v).
+    wire rst;
+    cdc_reset u_rst (.clk_i(clk_i), .rst_async_i(rst_i), .rst_o(rst));
+
     // register bus of all slots
     wire [SLOTS-1:0]     slot_valid, slot_ready, slot_error;
     wire [32*SLOTS-1:0]  slot_rdata;
@@ -79,7 +83,7 @@ module table1 #(
     platform #(
         .SLOTS(SLOTS), .PORTS(PORTS), .READ_FIFO(READ_FIFO), .BYTES(BYTES)
     ) u_platform (
-        .clk_i(clk_i), .rst_i(rst_i),
+        .clk_i(clk_i), .rst_i(rst),
         .slot_valid_o(slot_valid), .slot_write_o(slot_write), .slot_addr_o(slot_addr),
         .slot_wdata_o(slot_wdata), .slot_ready_i(slot_ready), .slot_rdata_i(slot_rdata),
         .slot_error_i(slot_error),
@@ -106,7 +110,7 @@ module table1 #(
     );
 
     modem #(.CLK_HZ(CLK_HZ), .API(MODEM_API)) u_modem (
-        .clk_i(clk_i), .rst_i(rst_i),
+        .clk_i(clk_i), .rst_i(rst),
         .bus_valid_i(slot_valid[1]), .bus_write_i(slot_write),
         .bus_addr_i(slot_addr[4*1 +: 4]), .bus_wdata_i(slot_wdata),
         .bus_ready_o(slot_ready[1]), .bus_rdata_o(slot_rdata[32*1 +: 32]),

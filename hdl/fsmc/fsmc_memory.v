@@ -155,8 +155,14 @@ module fsmc_memory #(
     wire                  at_block = rd_at_i[BLOCK_LOG2+2];
     wire [PAIR-1:0]       at_pair  = rd_at_i[REGION_LOG2+1:BLOCK_LOG2+3];
     wire [UPPER-1:0]      at_upper = rd_at_i[ADDR_BITS-1:REGION_LOG2+2];
-    wire same_sync;
-    cdc_copy #(.WIDTH(1)) u_same (.clk_i(clk_i), .bus_async_i(same_block), .bus_sync_o(same_sync));
+    // Copies of both comparisons of the address at the pins, registered together with rd_at_i. If
+    // the pins change meanwhile, a copy may be wrong; then only a useless word is fetched, or valid
+    // data is discarded.
+    wire same_sync, same_region;
+    cdc_copy #(.WIDTH(2)) u_same (
+        .clk_i(clk_i), .bus_async_i({same_block, &same_upper}),
+        .bus_sync_o({same_sync, same_region})
+    );
     wire at_alone = same_sync && fetch_block == at_block && have_one;
     wire at_whole = same_sync && idle_o && (at_block ? full[1] : full[0]);
 
@@ -222,7 +228,7 @@ module fsmc_memory #(
         end
         if (miss) begin
             current <= at_block;
-            if (at_upper != upper)
+            if (!same_region)
                 full <= 2'b00;
         end
         // If the address has changed since the previous clock, the words of another address are
@@ -352,18 +358,21 @@ module fsmc_memory #(
                 // previous one
                 assert (miss || at_whole || (at_alone && !(|(at_word ^ one_word))));
             // A block stays valid until a fetch replaces it, or all data is discarded.
-            if ($past(!rst_i && !drop_i && !wr_i && !(miss && at_upper != upper)))
+            if ($past(!rst_i && !drop_i && !wr_i && !(miss && !same_region)))
                 assert (($past(full) & ~full &
                          ($past(miss || next) ? ~(2'b01 << target) : 2'b11)) == 2'b00);
             // Both blocks have the same upper address bits, so a miss in another region invalidates
             // both.
-            if ($past(miss && at_upper != upper))
+            if ($past(miss && !same_region))
                 assert (full == 2'b00);
             // Read-ahead never replaces the block being read, and the block that it fetches is in
             // the same region.
             assert (!ahead || fetching_for != current);
             if (ahead && steady && fetching && !loads)
                 assert (fetch_addr[WORD-1:BLOCK_LOG2] == read_block + 1'b1);
+            // A miss fetches the address that was requested, also in another region.
+            if (!ahead && steady && fetching && !loads && !stale)
+                assert (fetch_addr[WORD-1:BLOCK_LOG2] == next_at[ADDR_BITS-1:BLOCK_LOG2+2]);
             if (ahead && loads && true_at)
                 assert (full[current] && next_at[ADDR_BITS-1:BLOCK_LOG2+2] == read_block &&
                         !(&read_block[REGION_LOG2-BLOCK_LOG2-1:0]));

@@ -197,15 +197,13 @@ module modem #(
 
     generate
         if (API != 0) begin : g_api
-            wire       frame_valid, frame_bad;
-            wire [7:0] frame_data;
-            assign packet_tx_data = packet_tx_valid ? frame_data : 8'd0;
+            wire frame_valid, frame_bad;
 
             modem_api_tx u_api_tx (
                 .clk_i(clk_i), .rst_i(rings_reset || configure), .api_i(api),
                 .valid_i(body_valid), .data_i(body_data), .last_i(body_last),
                 .bytes_i(tx_bytes), .ready_o(body_ready), .cts_i(cts),
-                .valid_o(packet_tx_valid), .data_o(frame_data), .ready_i(tx_ready)
+                .valid_o(packet_tx_valid), .data_o(packet_tx_data), .ready_i(tx_ready)
             );
             modem_api_rx u_api_rx (
                 .clk_i(clk_i), .rst_i(rst_i || !ready || !api),

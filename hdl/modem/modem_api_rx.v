@@ -36,7 +36,8 @@ module modem_api_rx (
         end_o <= valid_i && state == CHECKSUM && right;
         bad_o <= valid_i && state == CHECKSUM && !right;
         if (valid_i) begin
-            left <= state == LOW ? data_i[6:0] : left - 7'd1;
+            // loads data_i[6:0] in state LOW, otherwise counts down: one LUT site per bit
+            left <= (state == LOW ? 7'd0 : left) + (state == LOW ? data_i[6:0] : 7'h7F);
             sum  <= state == LOW ? 8'd0 : sum + data_i;
             case (state)
                 DELIMITER: if (data_i == 8'h7E)

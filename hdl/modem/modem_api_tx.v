@@ -20,7 +20,7 @@ module modem_api_tx (
     // bytes out
     input  wire       cts_i,
     output wire       valid_o,
-    output reg  [7:0] data_o,
+    output reg  [7:0] data_o,  // 0 while valid_o is low
     input  wire       ready_i
 );
     localparam [2:0] DATA = 3'd3, CHECKSUM = 3'd4;
@@ -34,8 +34,10 @@ module modem_api_tx (
     assign valid_o = place == CHECKSUM ? cts_i : valid_i;
     assign ready_o = ready_i && place == DATA;
 
+    // The byte at position 1 is 0, so it also serves as the output without a byte.
+    wire [2:0] shown = valid_o ? place : 3'd1;
     always @* begin
-        case (place)
+        case (shown)
             3'd0:     data_o = 8'h7E;
             3'd1:     data_o = 8'h00;
             3'd2:     data_o = {1'b0, bytes_i};
@@ -83,9 +85,10 @@ module modem_api_tx (
             assert (!valid_o || cts_i);
             assert (place != CHECKSUM || valid_o == cts_i);
             // The first bytes are the delimiter and the length of the packet.
-            assert (place != 3'd0 || data_o == 8'h7E);
-            assert (place != 3'd1 || data_o == 8'h00);
-            assert (place != 3'd2 || data_o == {1'b0, bytes_i});
+            assert (!valid_o || place != 3'd0 || data_o == 8'h7E);
+            assert (!valid_o || place != 3'd1 || data_o == 8'h00);
+            assert (!valid_o || place != 3'd2 || data_o == {1'b0, bytes_i});
+            assert (valid_o || data_o == 8'h00);
             // The bytes of the packet are taken only in state DATA.
             assert (!ready_o || place == DATA);
             // The sum of the bytes after the length is 0xFF.

@@ -250,8 +250,8 @@ function(icesoc_core_folder folder binary)
   add_subdirectory(${folder} ${binary})
 endfunction()
 
-# icesoc_chip_property(OUT KIND): sets OUT to the values that all cores
-# in the list have for the property KIND (files, slices, ...).
+# icesoc_chip_property(OUT KIND): collects in OUT the values of
+# the property KIND (files, slices, ...) from all cores in the list.
 function(icesoc_chip_property out what)
   set(all)
   foreach(name IN LISTS CHIP_CORES)

@@ -139,8 +139,8 @@ private:
         int status;
     };
 
-    // Keeps this copy frozen. Each time it is woken, it forks; only the forked process returns,
-    // with the order.
+    // Keeps this copy frozen. Each time it is woken, it forks; only the forked process returns
+    // the order.
     std::optional<Order> sleep() {
         sigset_t all, wakes, before;
         sigfillset(&all);

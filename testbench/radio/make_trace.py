@@ -11,8 +11,8 @@ import random
 import sys
 
 SENSITIVITY, FIRST_METRE = -92, 40  # dBm, dB
-# Probabilities per second (about ten packets) that a burst begins and that it ends; probability
-# that a packet in a burst is lost
+# Probabilities per second (about ten packets) that a burst begins and that it ends; loss rate
+# inside a burst
 BEGIN, END, INSIDE = 0.01 * 10, 0.08 * 10, 0.9
 
 

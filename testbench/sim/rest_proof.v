@@ -59,7 +59,7 @@ module rest_proof (
         {older, before} <= {before, now};
         last            <= later;
     end
-    // in the first clock, the timer's count (`clocks`) increases by one or does not change
+    // the timer's count (`clocks`) increases by at most one in the first clock
     always @* assume (!later || last || now[16:0] - before[16:0] <= 17'd1);
     always @* if (last) begin
         assert (now[98:35] - before[98:35] == before[98:35] - older[98:35]);

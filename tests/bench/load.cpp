@@ -62,7 +62,7 @@ public:
     }
 
 private:
-    // Runs one program after another, until there are no more; several threads do this at the same
+    // Runs one program after another, until all have run; several threads do this at the same
     // time.
     void work() {
         for (unsigned program; (program = next_++) < programs_;) {

@@ -20,7 +20,7 @@ fail() {
 [ -d /run/systemd/system ] || fail "systemd is not running: use boot.sh"
 cd /home/tester
 
-step "the modem's name"
+step "the name of the modem"
 rule=/lib/udev/rules.d/70-icesoc-modem.rules
 if udevadm verify --help >/dev/null 2>&1; then
     udevadm verify $rule

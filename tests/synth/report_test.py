@@ -166,7 +166,7 @@ class Cases(Script):
         shutil.copytree("out/cache", KEPT)
 
     def test_growth(self):
-        """An additional register makes the check fail, with the register's name. After --accept the
+        """An additional register makes the check fail and is named. After --accept the
         check passes, with results from the cache."""
         self.run_program("--accept")
         self.run_program()

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * bridge: IceC as server and as client between two stock programs (with server.c). Each request
- * passes through generated code to the server whose port is the argument. The program ends with the
- * operation `shutdown`.
+ * passes through generated code to the server on the port given as argument. The program ends with
+ * the operation `shutdown`.
  */
 #include "serve.h"
 

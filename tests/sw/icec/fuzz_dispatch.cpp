@@ -56,8 +56,8 @@ void checkProxy(const Ice_ObjectPrx& prx, Ice_Byte minor) {
     if (Ice_Communicator_stringToProxy(&ic, text, &again) != ICE_OK ||
         (!Ice_ObjectPrx_isNull(&prx) && !Ice_ObjectPrx_equals(&prx, &again))) {
         // These differences are allowed. An endpoint of this transport is printed in a canonical
-        // form, without unknown bytes. As in stock Ice, some strings cannot be parsed: those of an
-        // opaque endpoint that is empty or has a type above 32767, and those with a version 0.x.
+        // form, without unknown bytes. As in stock Ice, some strings cannot be parsed, if an
+        // opaque endpoint is empty or has a type above 32767, or a version is 0.x.
         // Octal escapes may make the string longer than the limit.
         size_t n = strlen(text);
         bool isHigh = false;

@@ -14,7 +14,7 @@ extern "C" {
 #include "tcp_private.h"
 }
 
-// A resolver that replaces that of the system: "twofold.test" has the addresses 127.0.0.2 and
+// A resolver that replaces the system's: "twofold.test" has the addresses 127.0.0.2 and
 // 127.0.0.1, "mixed.test" has ::1 and 127.0.0.1.
 static const auto real = reinterpret_cast<decltype(&getaddrinfo)>(dlsym(RTLD_NEXT, "getaddrinfo"));
 static addrinfo* inFront(const char* address, const char* port, addrinfo* rest) {

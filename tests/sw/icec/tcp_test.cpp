@@ -304,7 +304,7 @@ TEST_F(Tcp, APeerWhoseOperationIsUnderWayIsNotDisplaced) {
         ASSERT_TRUE(ping(peers.back())) << i;
     }
     EXPECT_EQ(peers[1].receive(1000), message(4, {}))
-        << "of the other connections, the one idle for longest must be closed";
+        << "the longest idle of the other connections must be closed";
     EXPECT_EQ(peers[0].receive(1000), message(3, {}));
     EXPECT_TRUE(peers[0].receive(100).empty())
         << "a client that waits for an answer must stay connected";

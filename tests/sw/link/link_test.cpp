@@ -128,7 +128,7 @@ TEST_P(LinkLayer, AVanishedPeerIsNoticedAndAReturningOneFound) {
     EXPECT_TRUE(a.received.empty() && b.received.empty());
 }
 
-// The reply to the ground's next frame tells the ground of the reboot, so it need not wait for 9 s
+// The reply to the ground's next frame reveals the reboot, so it need not wait for 9 s
 // of silence.
 TEST_P(LinkLayer, ARebootOfTheVehicleIsNoticedByTheNextFrame) {
     ASSERT_TRUE(connect());

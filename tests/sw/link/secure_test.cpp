@@ -212,7 +212,7 @@ TEST_P(Attacked, AConfirmThatWasHeldBackMakesNoSession) {
         listen();
         Bytes held = recorded_.back().bytes;
         ASSERT_EQ(kindOf(held), LINK_KIND_CONFIRM);
-        a.boot(); // from now on no frame of A arrives
+        a.boot(); // no later frame of A arrives
         if (isGone) {
             run(LINK_NONCE_LIFE);
         } else {

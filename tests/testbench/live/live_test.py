@@ -110,7 +110,7 @@ class Cases(Script):
         self.narrow(state)
 
     def test_late(self):
-        """A browser that loads the page only after the mission shows the vehicle's last state; the
+        """A browser that loads the page only after the mission shows how the mission ended; the
         flight does not wait for a browser that cannot be started."""
         write("browser", "#!/bin/sh\n")
         flight = (TREE / "icesoc", "run", "--built", "--build", BUILD, "--size", "48x32",

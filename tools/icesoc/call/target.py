@@ -88,8 +88,8 @@ def of(values):
     progress; for the installed program, it is a vehicle in vehicles.conf."""
     given = [name for name in ("flight", "device", "gateway", "locator") if getattr(values, name)]
     if len(given) > 1:
-        raise Stop(f"{', '.join('--' + name for name in given)} exclude each other; give only one "
-                   "of them",
+        raise Stop(f"{', '.join('--' + name for name in given)} exclude each other; give only "
+                   "one of them",
                    2)
     if values.locator:
         name = values.vehicle or "uav1"

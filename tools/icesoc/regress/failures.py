@@ -76,8 +76,8 @@ def comparison(match):
 
 
 def reason_of(log):
-    """Returns the reason in a test's log: GoogleTest's lines after the first "Failure"; otherwise a
-    compiler's first message about a file, the first line about an error, or the last line. If an
+    """Returns the reason in a test's log: GoogleTest's lines after the first "Failure"; otherwise
+    the first compiler message about a file, the first line about an error, or the last line. If an
     exception ends in a colon, the next line is included. From a diff, the first removed line and
     the line that replaces it are included."""
     last, of_file, of_value, failure = "", "", "", None

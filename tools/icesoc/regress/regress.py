@@ -60,8 +60,8 @@ def parse(words):
     only = parser.add_mutually_exclusive_group()
     only.add_argument("--changed", action="store_true", help="only tests that failed in their "
                       "last run, and tests with a program or sources changed since they passed")
-    only.add_argument("--rerun-failed", action="store_true", help="only tests that failed "
-                      "in their last run")
+    only.add_argument("--rerun-failed", action="store_true", help="only tests that "
+                      "failed in their last run")
     only.add_argument("--kept", action="store_true", help="only tests that failed earlier and "
                       "have not passed since, each with the seeds with which it failed")
     add("--seed", default="1", help="seed of the random tests, or `random`")

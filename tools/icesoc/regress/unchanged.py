@@ -3,9 +3,9 @@
 only the other tests.
 
 When a test passes, a digest of its inputs is stored. The inputs are:
-- for a test program: its bytes, and all files in the tree or the build folder whose absolute
-  paths these bytes contain (from compile definitions). If a path is a folder, all files in the
-  folder are inputs.
+- for a test program: its bytes, and all files in the tree or the build folder, if these
+  bytes contain their absolute paths (from compile definitions). If a path is a folder, all files
+  in the folder are inputs.
 - for any other test: all files of the tree, and the programs of the build.
 - for both: the seed, and the versions of the packages in cmake/setup.sh and of all packages that
   these depend on. Other packages of the machine do not count.

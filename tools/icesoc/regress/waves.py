@@ -231,8 +231,8 @@ def drawing_of(failure, room):
     ...]], ...], first: number of signals listed before the tree of instances, more: number of
     signals left out}.
 
-    The first signals are those of the program, those that the failure's text names, and those that
-    change below the failure's instance, except for words of memories. They are followed by the
+    The first signals belong to the program, are named in the failure's text, or change below the
+    failure's instance, except for words of memories. They are followed by the
     other signals that change, and by constant signals. Each group begins with the outermost
     signals. Signals with names that a converter has invented are left out. If the drawing exceeds
     `room` bytes, its older changes are left out, then the last signals."""

@@ -127,7 +127,7 @@ class Register:
         return [p for p in self.parts if self.holds(p)]
 
     def port(self, part):
-        """Returns the name of a field's ports without _i or _o: status_busy for STATUS.BUSY, but
+        """Returns the port name of a field without _i or _o: status_busy for STATUS.BUSY, but
         page for PAGE.PAGE, the only field of its register."""
         alone = len(self.fields) <= 1 and part.name in ("", self.name)
         return self.lower if alone else f"{self.lower}_{part.name.lower()}"

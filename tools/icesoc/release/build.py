@@ -132,11 +132,11 @@ def copy_packages(release, folder):
         seconds = archive.time_of_package(file)
         if seconds != release.seconds:
             raise Stop(f"packages: {file}: expected files of {date(release.seconds)}, the time of "
-                       f"commit {release.commit[:12]}, got {date(seconds)}; build the package "
-                       "from that commit")
+                       f"commit {release.commit[:12]}, got {date(seconds)}; build the "
+                       "package from that commit")
         if (release.out / file.name).exists():
-            raise Stop(f"packages: {file}: another folder also has this package; give one folder "
-                       "for each release of Debian")
+            raise Stop(f"packages: {file}: another folder also has this package; give one "
+                       "folder for each release of Debian")
         shutil.copyfile(file, release.out / file.name)
 
 

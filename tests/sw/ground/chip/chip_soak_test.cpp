@@ -344,8 +344,8 @@ protected:
         std::printf("chip soak: %.0f s simulated; ground to UAV: %u calls, %u answered, %u "
                     "executed; UAV to "
                     "ground: %u sent, %u answered, %u reported, %u executed; %u reboots of the "
-                    "UAV, %u resets "
-                    "of modems, %u starts of the ground station; cores: %u calls, %u answered\n",
+                    "UAV, %u modem "
+                    "resets, %u starts of the ground station; cores: %u calls, %u answered\n",
                     static_cast<double>(world_.ns()) / 1e9, calls_.load(), answered_.load(),
                     up_.executed(), uavSent_, uavAnswered_.load(), uavReported_.load(),
                     down_.executed(), reboots_, modemResets_, groundStarts_, coreCalls_.load(),

@@ -14,8 +14,8 @@ from icesoc.util.errors import Stop
     Option("packages", WORDS, "folders with the Debian packages, built from this commit by "
                               "./icesoc package on each release of Debian (default: build the "
                               "packages for this machine's release)"),
-    Option("key", TEXT, "key that signs SHA256SUMS: a key file of minisign (NAME.sec), or the name "
-                        "of a gpg key", ""),
+    Option("key", TEXT, "key that signs SHA256SUMS: a key file of minisign (NAME.sec), or the "
+                        "name of a gpg key", ""),
     Option("out", FOLDER, "folder for the files, which is emptied first", "build/release")],
          brief="release --only source icec changes sbom --out build/brief/release/files", examples=[
              "release",

@@ -128,7 +128,7 @@ function showTimeline(state) {
 }
 
 const hex = (value, digits) => '0x' + value.toString(16).padStart(digits, '0');
-// Returns a table of a slot's registers with their byte addresses in the slot. Registers that have changed within two seconds are marked.
+// Returns a table of the registers in a slot with their byte addresses. Registers that have changed within two seconds are marked.
 const known = new Map(); // "slot.word" -> value of the register, and time of its last change
 function registersOf(slot) {
     const table = element('table');
@@ -155,7 +155,7 @@ function registersOf(slot) {
     return table;
 }
 
-// Shows the registers of all slots in one section, and those of each core also at its object.
+// Shows the registers of all slots in one section, and each core's also at its object.
 function showSlots(slots) {
     const used = slots.filter(s => s.words.length);
     $('slots').replaceChildren(...used.map(s => {

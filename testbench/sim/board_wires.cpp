@@ -166,7 +166,7 @@ void BoardWires::readWires(const std::string& text) {
             isMuxed_ = number == "1";
         else if (end == "modem")
             modem_ = number;
-        if (end == "oscillator" || end == "muxed" || end == "modem")
+        if (end == "board" || end == "oscillator" || end == "muxed" || end == "modem")
             continue;
         if (!(words >> function >> net >> ball >> bank >> volts))
             throw std::runtime_error("board.wires: expected pin, number, function, net, ball, bank "

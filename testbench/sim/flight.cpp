@@ -82,6 +82,7 @@ void loadCamera(SocModel& soc, const Frame& frame) {
 // Returns the first line of the recording.
 nlohmann::json headOf(const Flight::Options& o) {
     nlohmann::json head = {{"flight", o.flight}, {"clkHz", SocModel::clkHz}};
+    head["bridge"] = SOC_BRIDGE;
     for (const std::string& file :
          {o.pins, o.trace, o.flash, o.fpga_flash, o.cpu == "m3" ? o.firmware : ""})
         if (!file.empty())

@@ -183,6 +183,11 @@ Flight::Options recorded(const Flight::Options& now, const std::string& folder) 
             "this simulator has another clock than the recorded flight, which has " +
             head.at("clkHz").dump() + " Hz: make run REPLAY=" + folder +
             " CLK_HZ=" + head.at("clkHz").dump());
+    if (const std::string bridge = head.value("bridge", SOC_BRIDGE); bridge != SOC_BRIDGE)
+        throw std::runtime_error("this simulator has the bridge '" SOC_BRIDGE "', and the recorded "
+                                 "flight has '" +
+                                 bridge + "': make run REPLAY=" + folder +
+                                 " selects the simulator");
     json fields = head.at("flight"), view = now;
     for (const char* ofThisView : {"out", "gdb", "every_clock", "quiet", "from", "to"})
         fields[ofThisView] = view[ofThisView];

@@ -5,7 +5,7 @@
 //
 // The simulator is deterministic except for the bytes that the ground program sends on its serial
 // port, and their times. The file has JSON Lines, with one object in each line:
-//   {"flight": {flight.json}, "clkHz": n, "hashes": {file: hash}}   the first line
+//   {"flight": {flight.json}, "clkHz": n, "bridge": name, "hashes": {file: hash}}   the first line
 //   {"ns": time, "up": "hexadecimal"}        bytes from the program to its modem
 //   {"ns": time, "spoilt": n}                number of bytes with a wrong stop bit
 //   {"ns": time, "down": n}                  number of bytes that the modem gave to the program

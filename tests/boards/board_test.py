@@ -2,6 +2,8 @@
 """board_test: checks that all boards of the tree can be read, and that boards without unknown facts
 can be built. Their generated files must agree with the chip, with the facts about parts, and with
 the pages in docs/boards."""
+import argparse
+import json
 import re
 import subprocess
 import sys
@@ -13,6 +15,7 @@ from pathlib import Path
 from icesoc import TREE
 from icesoc.board import check, firmware, make, model, picture, signals, ucf, wiring
 from icesoc.cli import flight
+from icesoc.cli.build_folder import BuildFolder
 from icesoc.cli.commands.board import PAGES, documents
 from icesoc.regs.model import Wrong
 from icesoc.util.errors import Stop
@@ -87,6 +90,23 @@ class Boards(unittest.TestCase):
         self.assertEqual(flight.kit(""), "")
         with self.assertRaises(Stop):
             flight.kit("no/such/folder")
+
+    def test_a_folder_that_was_configured_for_the_vehicle_is_used(self):
+        with tempfile.TemporaryDirectory() as folder:
+            build = BuildFolder(folder, argparse.Namespace(jobs=1, built=True))
+            Path(folder, "CMakeCache.txt").write_text("BOARD:STRING=other\nBRIDGE:STRING=sync\n")
+            for board, bridge in ("", ""), ("other", ""), ("", "sync"), ("other", "sync"):
+                self.assertIs(build.for_vehicle(board, bridge), build)
+            Path(folder, "CMakeCache.txt").write_text("")
+            self.assertIs(build.for_vehicle("nucleo-qmtech", "async"), build)
+
+    def test_a_recording_names_board_and_bridge(self):
+        head = {"flight": {"board": "b"}, "clkHz": 2, "bridge": "sync"}
+        with tempfile.TemporaryDirectory() as folder:
+            for text, expected in ((json.dumps(head) + '\n{"ns": 0}\n', head), ("[1]\n", {}),
+                                   ('{"flight": 1}\n', {}), ("\xff\n", {}), ("", {})):
+                Path(folder, "flight.jsonl").write_text(text, encoding="latin-1")
+                self.assertEqual(flight.recorded(folder), expected)
 
     def test_the_build_learns_how_address_and_data_are_connected(self):
         for board, expected in ((KIT, "separate"), (MUXED, "multiplexed")):

@@ -1,29 +1,26 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # sync_bridge: source-folder build-folder work-folder
-# Builds simulator and firmware with the FSMC bridge that samples its pins, runs the tests of the
-# whole chip, and flies the mission with the host build and with the ARM binary of the firmware.
+# Flies the mission with the FSMC bridge that samples its pins, with the host build and with the ARM
+# binary of the firmware, and replays a flight. The commands build the simulator and the firmware
+# with this bridge in build/sync. Then runs the tests of the whole chip with this bridge.
 set -eu
 source=$1 build=$2 work=$3
-mkdir -p "$work/build"
-logged() { "$@" >"$work/log" 2>&1 || { tail -40 "$work/log" && exit 1; }; }
-# GHDL is downloaded only once.
-[ -e "$work/build/ghdl" ] || ln -s "$build/ghdl" "$work/build/ghdl"
-logged cmake -S "$source" -B "$work/build" -G Ninja -DBRIDGE=sync \
-    "-DCORES=$(sed -n 's/^CORES:[A-Z]*=//p' "$build/CMakeCache.txt")" \
-    "-DCORE_FOLDERS=$(sed -n 's/^CORE_FOLDERS:[A-Z]*=//p' "$build/CMakeCache.txt")" \
-    "-DROOMS=bus;slice;ip;sw;hdl;synth;testbench;tests"
-logged ninja -C "$work/build" icesoc-sim vision-reference firmware_uav regmaps \
-    test_sim_soc test_sim_quiet
-logged ctest --test-dir "$work/build" --output-on-failure --no-tests=error \
-    -R '^test_sim_(soc|quiet)[.]'
-# The ground's programs do not depend on the bridge.
-mkdir -p "$work/build/ground"
-cp "$build"/ground/*xbeeat* "$work/build/ground"
+mkdir -p "$work"
+cd "$source"
+logged() { "$@" >"$work/log" 2>&1 || { tail -60 "$work/log" && exit 1; }; }
+prints() { grep -Fq "$1" "$work/log" || { cat "$work/log" && echo "not printed: $1" && exit 1; }; }
 export XDG_CONFIG_HOME="$work/config" # keys for this test only
 for cpu in host m3; do
-    logged "$source/icesoc" run --built --build "$work/build" --bridge sync --cpu $cpu \
-        --size 96x64 --guard 20 --seed "${SEED:-1}" --out "$work/$cpu"
-    grep -q 'the result equals the C++ reference, bit by bit' "$work/log" ||
-        { cat "$work/log" && echo 'the result was not compared with the reference' && exit 1; }
+    logged ./icesoc run --built --build "$build" --bridge sync --cpu $cpu --size 96x64 --guard 20 \
+        --show no --seed "${SEED:-1}" --out "$work/$cpu"
+    prints 'the result equals the C++ reference, bit by bit'
 done
+# Replay uses the simulator with the recorded bridge; a simulator with another bridge refuses.
+logged ./icesoc replay "$work/host" --built --build "$build" --out "$work/replay"
+! "$build/testbench/sim/icesoc-sim" --replay "$work/host" --out "$work/refused" >"$work/log" 2>&1 ||
+    { echo 'a simulator with the other bridge replays the flight' && exit 1; }
+prints "this simulator has the bridge 'async', and the recorded flight has 'sync'"
+logged ninja -C build/sync test_sim_soc test_sim_quiet
+logged ctest --test-dir build/sync --output-on-failure --no-tests=error \
+    -R '^test_sim_(soc|quiet)[.]'

@@ -14,12 +14,13 @@ def at_pin(pin, function):
 
 
 def wires(board: Board):
-    """Returns the wires as text. The first lines contain the frequency of the oscillator in Hz,
-    whether address and data are multiplexed (1) or not (0), and, if known, the kind of modem. Then
-    each net has a line: the pin, the number and the name of its alternate function ("-" if it has
-    none), the net, the ball, its bank, and the supply of the bank in V."""
-    lines = [f"# Wires of {board.name}: pin, alternate function, its name, net, ball, bank, volts",
-             f"oscillator {board.facts['mcu']['hse_hz']}", f"muxed {int(board.muxed)}"]
+    """Returns the wires as text. The first lines are the board's name, the oscillator, whether
+    address and data are multiplexed (1) or not (0), and the kind of modem if it is known. Then each
+    net has a line: the pin, the number and the name of its alternate function ("-" if it has none),
+    the net, the ball, its bank, and the supply of the bank in V."""
+    lines = ["# Wires: pin, alternate function, its name, net, ball, bank, volts",
+             f"board {board.name}", f"oscillator {board.facts['mcu']['hse_hz']}",
+             f"muxed {int(board.muxed)}"]
     if board.modem:
         lines.append(f"modem {board.modem}")
     pins, balls = board.parts["mcu"], board.parts["fpga"]

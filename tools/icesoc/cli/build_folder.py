@@ -14,7 +14,7 @@ from icesoc.util.lock import lock
 from icesoc.util.ninja import run_ninja
 from icesoc.util.process import output, run, tool
 
-DEFAULT_BOARD = "nucleo-qmtech"
+DEFAULT_BOARD, DEFAULT_BRIDGE = "nucleo-qmtech", "async"
 ROOMS_OF_PROGRAMS = "bus;slice;sw;hdl;ip;testbench;tests"
 
 
@@ -141,18 +141,22 @@ class BuildFolder:
             variables["CORES"] = other.cached("CORES")
         self.set(**variables)
 
-    def for_board(self, name):
-        """Returns the build folder with the simulator and the firmware of a board. `name`: a folder
-        in boards/, or a file board.toml. If this folder is configured for the board, returns this
-        folder; otherwise configures and returns another folder with the same chip."""
-        path = Path(name)
-        if name == (self.cached("BOARD") or DEFAULT_BOARD):
+    def for_vehicle(self, board="", bridge=""):
+        """Returns the build folder with the simulator and the firmware of a board (the name of a
+        folder of boards/, or a file board.toml) and of a bridge (async or sync). An empty text
+        stands for the board or the bridge of this folder. It is this folder if it was configured
+        for both; otherwise it is another folder with the same cores."""
+        other_board = board not in ("", self.cached("BOARD") or DEFAULT_BOARD)
+        if not other_board and bridge in ("", self.cached("BRIDGE") or DEFAULT_BRIDGE):
             return self
-        is_file = path.suffix == ".toml"
-        other = BuildFolder(f"build/board_{path.absolute().parent.name if is_file else name}", self)
+        path, name, variables = Path(board), bridge, [f"-DBRIDGE={bridge or DEFAULT_BRIDGE}"]
+        if other_board:
+            is_file = path.suffix == ".toml"
+            name = f"board_{path.absolute().parent.name if is_file else board}"
+            variables.append(f"-DBOARD={path.absolute() if is_file else board}")
+        other = BuildFolder(f"build/{name}", self)
         other.built = False
-        other.configure(f"-DBOARD={path.absolute() if is_file else name}",
-                        f"-DROOMS={ROOMS_OF_PROGRAMS}")
+        other.configure(*variables, f"-DROOMS={ROOMS_OF_PROGRAMS}")
         other.follow(self, CLK_HZ=self.cached("CLK_HZ") or "100000000")
         return other
 

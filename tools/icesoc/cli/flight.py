@@ -247,8 +247,10 @@ def kit(folder, described=""):
         text = (Path(folder) / "board.wires").read_text() if folder else ""
     except OSError as error:
         raise Stop(f"--board: cannot read {folder}/board.wires: {error.strerror}", 2) from None
-    found = re.match(r"# Wires of ([^:]+):", text) if "\nmuxed 1\n" in text else None
-    return described or found[1] if found else ""
+    if "\nmuxed 1\n" not in text:
+        return ""
+    found = re.search(r"^board (.+)$", text, re.M)
+    return described or (found[1] if found else "")
 
 
 def check_chip(values, build):
@@ -308,6 +310,18 @@ def write(values, build):
     path = Path(values.out) / "flight.json"
     path.with_suffix(".new").write_text(json.dumps(flight, indent=1) + "\n")
     path.with_suffix(".new").replace(path)
+
+
+def recorded(folder):
+    """Returns the first line of the recording in a folder: the description of the flight, and facts
+    about its simulator (testbench/sim/recording.h). Returns an empty object if the line is
+    malformed; the simulator then explains the fault."""
+    try:
+        with open(Path(folder) / "flight.jsonl", "rb") as recording:
+            head = json.loads(recording.readline())
+        return head if isinstance(head["flight"], dict) else {}
+    except (ValueError, KeyError, TypeError, RecursionError):
+        return {}
 
 
 def last_span(out):

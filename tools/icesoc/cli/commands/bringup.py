@@ -56,7 +56,7 @@ def board_bringup(values):
     folder = Path(values.out or f"build/board/{board.name}")
     report = bringup.Report(board)
     report.data["date"] = datetime.datetime.now().strftime("%Y-%m-%d %H:%M")
-    build = BuildFolder(values.build, values).prepare().for_board(values.name)
+    build = BuildFolder(values.build, values).prepare().for_vehicle(values.name)
     report.data["modem"] = board.modem or "unknown"
     if values.simulated:
         build.ninja("icesoc-bringup", "firmware_bringup_flash", "firmware_uav")

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
 """flights: commands that fly the mission, repeat and debug a flight, send new firmware, make keys,
 and fly for hours."""
-import json
 import os
 import re
 import resource
@@ -71,14 +70,12 @@ def fly_mission(values):
         values.clk_hz = min(values.clk_hz, NETLIST_HZ)
         chip, build = build, netlists(values)
         build.follow(chip)
-    elif values.bridge == "sync" and build.cached("BRIDGE") != "sync":
-        chip, build = build, BuildFolder("build/sync", values).prepare("-DBRIDGE=sync")
-        build.follow(chip)
     if not build.built:
         build.set(CLK_HZ=str(values.clk_hz))
     build.ninja("mission", *(["firmware_minimal"] if values.app == "minimal" else []),
                 *(["gateway", "slice2c", "page_ice"] if values.live or opens(values) else []))
-    values.chip = with_board(build, board, *["firmware_minimal"] * (values.app == "minimal"))
+    values.chip = with_vehicle(build, board, values.bridge if "bridge" in values.given else "",
+                               *["firmware_minimal"] * (values.app == "minimal"))
     flight.take_key(values, build)
     flight.take_observers_key(values)
     busy = (f"another flight is in progress in {values.out}; give this flight a separate folder: "
@@ -89,15 +86,26 @@ def fly_mission(values):
         return fly(values, build, held)
 
 
-def with_board(build, board, *firmware):
-    """Builds the simulator and the firmware of a board, and returns their build folder. If the name
-    of the board is empty, returns `build`."""
-    if not board:
-        return build
-    say(f"building the simulator and the firmware of the board {board} ...")
-    chip = build.for_board(board)
-    chip.ninja("icesoc-sim", "firmware_uav", "firmware_loader", *firmware)
+def with_vehicle(build, board, bridge, *firmware):
+    """Returns the build folder that contains the simulator and the firmware of a board and a
+    bridge, after building them; an empty text stands for the board or the bridge of `build`."""
+    chip = build.for_vehicle(board, bridge)
+    if chip is not build:
+        kind = f"for the board {board}" if board else f"with the bridge '{bridge}'"
+        say(f"building the simulator and the firmware {kind} ...")
+        chip.ninja("icesoc-sim", "firmware_uav", "firmware_loader", *firmware)
     return chip
+
+
+def with_recorded(build, folder):
+    """Returns the build folder that contains the simulator and the firmware of a recorded flight,
+    after building them."""
+    head = flight.recorded(folder)
+    if not build.built and "clkHz" in head:
+        build.set(CLK_HZ=str(head["clkHz"]))
+    build.ninja("mission")
+    return with_vehicle(build, flight.kit(head.get("flight", {}).get("board", "")),
+                        head.get("bridge", ""))
 
 
 def simulator(values, held, options, ground):
@@ -255,14 +263,7 @@ def replay(values):
         raise Stop(f"FROM={getattr(values, 'from')} TO={values.to}: expected FROM before TO, in "
                    "seconds, such as FROM=1.5 TO=1.6", 2)
     build = BuildFolder(values.build, values).prepare()
-    with open(Path(values.replay) / "flight.jsonl") as recorded:
-        head = recorded.readline()
-    hz = re.search(r'"clkHz": *(\d+)', head)
-    folder = re.search(r'"board": *("[^"]*")', head)
-    if hz and not build.built:
-        build.set(CLK_HZ=hz[1])
-    build.ninja("mission")
-    chip = with_board(build, flight.kit(json.loads(folder[1])) if folder else "")
+    chip = with_recorded(build, values.replay)
     words = ["--replay", values.replay, "--out", values.out]
     if not span:
         return run([chip / "testbench/sim/icesoc-sim", *words], check=False)
@@ -270,7 +271,7 @@ def replay(values):
     trace = BuildFolder("build/trace", values)
     trace.configure("-DTRACE=ON")
     trace.follow(build, CLK_HZ=build.cached("CLK_HZ"), BOARD=chip.cached("BOARD"),
-                 BRIDGE=build.cached("BRIDGE") or "async")
+                 BRIDGE=chip.cached("BRIDGE"))
     trace.ninja("icesoc-sim")
     Path(values.out).mkdir(parents=True, exist_ok=True)
     wave = Path(values.out) / "wave.fst"
@@ -298,7 +299,10 @@ def gdb(values):
     docs/firmware.md shows a session.
     """
     build = configured(values, tests=True)
-    build.ninja("mission")
+    if values.replay:
+        build = with_recorded(build, values.replay)
+    else:
+        build.ninja("mission")
     out = Path(values.out or ("build/replay" if values.replay else "build/run"))
     out.mkdir(parents=True, exist_ok=True)
     flown = ["--replay", values.replay] if values.replay else [

@@ -2,11 +2,12 @@
 # SPDX-License-Identifier: MIT
 """lists: tests the list of commands, the help and the manual page, and the output to files and
 terminals."""
-import contextlib, io, re, shlex, shutil, subprocess, sys, tempfile, unittest
+import contextlib, io, json, re, shlex, shutil, subprocess, sys, tempfile, unittest
 from pathlib import Path
 
 from doors import TREE, ask
 from icesoc.cli import command, flight
+from icesoc.cli.commands import figures
 from icesoc.cli.commands.tree import manual
 from icesoc.util.errors import Stop
 from icesoc.util.ninja import run_ninja
@@ -78,6 +79,19 @@ class Lists(unittest.TestCase):
                                 "FROM=0.000 TO=3.000"), ('{"ns":0,"digest":1}\n{"ns":30', None)):
                 Path(work, "flight.jsonl").write_text(text)
                 self.assertEqual(flight.last_span(work), span)
+
+    def test_pictures_need_a_report_of_all_designs(self):
+        with tempfile.TemporaryDirectory() as work:
+            report = Path(work, "report.json")
+            with self.assertRaisesRegex(Stop, "report.json not found; run ./icesoc synth, or add"):
+                figures.whole_report(report)
+            whole = {"entries": [], "states": {"fir": "measured now", "soc": "measured now"}}
+            report.write_text(json.dumps(whole))
+            self.assertEqual(figures.whole_report(report), whole)
+            report.write_text(json.dumps({"entries": [], "states": {
+                "fir": "measured now", **dict.fromkeys(("a", "b", "c", "soc"), "changed since")}}))
+            with self.assertRaisesRegex(Stop, "those of a, b, c and 1 more are missing: run "):
+                figures.whole_report(report)
 
     def test_a_long_subject_is_refused(self):
         with tempfile.TemporaryDirectory() as work:

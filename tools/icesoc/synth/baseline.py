@@ -7,6 +7,7 @@ import subprocess
 from icesoc.synth import timing
 from icesoc.synth.owners import Cost
 from icesoc.synth.sources import read_json
+from icesoc.util import measured
 from icesoc.util.errors import Stop, reason_of
 from icesoc.util.files import write
 
@@ -15,7 +16,7 @@ NAMED_CHANGES = 6
 
 MEASURED, ACCEPTED, CHANGED, NEVER = STATES = (
     # the figures of the current sources are known, from this run or from the cache
-    "measured now",
+    measured.NOW,
     # not measured in this build folder, but the accepted figures belong to the current sources
     "as accepted",
     "changed since",        # not measured with the current sources, only with other ones

@@ -4,12 +4,15 @@
 
 A file is a list of entries, or an object, which usually has this list in "entries". An entry has
 name, value and unit. It may also have limit and share (value / limit), gross (value / a limit that
-includes overhead), or peer and ratio (value / the figure of another system).
+includes overhead), or peer and ratio (value / the figure of another system). The files of `make
+synth` also have the state of each design in "states", such as NOW.
 """
 import json
 import pathlib
 
 from icesoc.util.errors import Stop
+
+NOW = "measured now"  # state of a design with figures of the current sources
 
 
 def read(path):

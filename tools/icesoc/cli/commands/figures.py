@@ -12,6 +12,7 @@ from icesoc.mutants import run as mutants
 from icesoc.site import figures
 from icesoc.util import measured
 from icesoc.util.console import say
+from icesoc.util.errors import Stop
 from icesoc.util.process import run
 
 STEPS = ["bench", "synth", "regress", "pictures", "pages"]
@@ -19,6 +20,7 @@ STEPS = ["bench", "synth", "regress", "pictures", "pages"]
 # tests of this regression.
 FAULT, FOUND_BY = "fsmc/lanes_ignored", r"fsmc_(post|memory)$|^test_fsmc_bridge"
 TREE = Path("build/figures/tree")
+REPORT = Path("build/synth/report.json")
 
 
 @choices.expecting("a step")
@@ -41,11 +43,26 @@ def regress_with_fault():
             mutants.restore(TREE / file)
 
 
+def whole_report(report=REPORT):
+    """Returns a report of the synthesis. Raises Stop if it is missing, or if it lacks figures of
+    some designs for the current sources, as the report of a single design may."""
+    remedy = "run ./icesoc synth, or add the step synth"
+    if not Path(report).exists():
+        raise Stop(f"{report} not found; {remedy}")
+    content = measured.read(report)
+    states = content.get("states", {})
+    if missing := [name for name, state in states.items() if state != measured.NOW]:
+        listed = ", ".join(missing[:3]) + (f" and {len(missing) - 3} more" if missing[3:] else "")
+        raise Stop(f"{report}: expected figures of all designs, measured with the current sources; "
+                   f"those of {listed} are missing: {remedy}")
+    return content
+
+
 def figures_of_synth(report):
     """Returns {name: figure} for the LUT sites and slices of the designs of Table I, with the range
     of each."""
     found = {}
-    entries = {entry["name"]: entry for entry in measured.read(report)["entries"]}
+    entries = {entry["name"]: entry for entry in report["entries"]}
     for name, design in ("table1", "table1"), ("flown", "table1_flown"):
         for kind, low, high in ("sites", "low", "high"), ("slices", "less", "more"):
             if entry := entries.get(f"{design} {kind}"):
@@ -69,6 +86,8 @@ def build_figures(values):
     of their pages and of two flights, and writes the figures into the documentation. `make test
     NAME=tree.figures` compares pages and pictures with the measured figures.
     """
+    if "pictures" in values.steps and "synth" not in values.steps:
+        whole_report()
     for step in STEPS:
         if step not in values.steps:
             continue
@@ -85,8 +104,13 @@ def build_figures(values):
             if (TREE / "build/regress/report.html").exists():
                 run(["./icesoc", "build", "pictures", "regression", "--from", TREE / "build"])
         else:
-            report = Path("build/synth/report.json")
-            for page in figures.correct(".", figures_of_synth(report) if report.exists() else {}):
+            try:
+                synthesised = figures_of_synth(whole_report())
+            except Stop as error:
+                say(f"the figures that come from a report of the synthesis stay as they are: "
+                    f"{error}")
+                synthesised = {}
+            for page in figures.correct(".", synthesised):
                 say(f"{page}: figures updated")
             wrong = list(figures.differences("."))
             print("\n".join(wrong))

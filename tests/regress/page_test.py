@@ -23,7 +23,7 @@ $var reg 8 " level [7:0] $end $var reg 8 & mask [7:0] $end $upscope $end $upscop
 $scope module program $end $var string 1 p.task task $end $upscope $end $enddefinitions $end
 #0 0! b0 " b1010 & sUAV_radioTask p.task #5 1! #10 0! b10100111 " #15 1!
 """
-FIFO = {"file": "hdl/fifo/fifo.v", "percent": 97, "lines": 200, "gate": 95, "toggles": 96,
+FIFO = {"name": "hdl/fifo/fifo.v", "value": 97, "lines": 200, "limit": 95, "toggles": 96,
         "toggle_points": 9, "toggle_gate": 95, "why": "", "missed": ["12: level_o[3]", "40"]}
 
 # Design for the coverage test: a counter with two bits that counts to 2.
@@ -78,7 +78,7 @@ class Cases(Project):
     echo 'broken: trace: ${CMAKE_SOURCE_DIR}/t.vcd'; exit 1")
 """)
         write("build/coverage/summary.json",
-              json.dumps({"total": 97, "toggles": 95, "files": [FIFO]}))
+              json.dumps({"total": 97, "toggles": 95, "entries": [FIFO]}))
         self.regress("", 1)
         page = Path(WRITTEN).read_text()
         self.lacks('src="http|href="http', WRITTEN)  # offline

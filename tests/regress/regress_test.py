@@ -486,12 +486,12 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
               "$upscope $end $enddefinitions $end\n" + "".join(
                   f"#{1000000 + t}\n" + "".join(f"b1{t % 2}10101010101010 s{s}\n"
                                                 for s in range(100)) for t in range(300)))
-        some = {"percent": 97, "lines": 200, "gate": 95, "toggles": 96, "toggle_points": 900,
+        some = {"value": 97, "lines": 200, "limit": 95, "toggles": 96, "toggle_points": 900,
                 "toggle_gate": 95, "why": "",
                 "missed": [f"{m}: some_signal_of_it[{m}]" for m in range(500)]}
         write("build/coverage/summary.json", json.dumps(
             {"total": 97.1, "toggles": 95.2,
-             "files": [{"file": f"hdl/block/some_module_{f}.v", **some} for f in range(600)]}))
+             "entries": [{"name": f"hdl/block/some_module_{f}.v", **some} for f in range(600)]}))
         Path("build/mutants").mkdir()
         results.write("build/mutants/planted.xml", [
             results.Mutant(f"block/some_seeded_bug_{i}", "caught", "test_block.Case", 7)

@@ -76,8 +76,8 @@ def blocks_of(data, tests, history, source):
             status == "passed", status == "failed", 0)
     for name in left:
         add(block_of[name], "proofs" if name.startswith("formal.") else "tests", 0, 0, 1)
-    for file in data.get("coverage", {}).get("files", []):
-        add(blocks.of_file(file["file"]), "lines", file["percent"] * file["lines"] / 100,
+    for file in data.get("coverage", {}).get("entries", []):
+        add(blocks.of_file(file["name"]), "lines", file["value"] * file["lines"] / 100,
             file["lines"], below_gate(file))
     for _, result, _, _, place in data["mutants"]:
         if place:

@@ -3,7 +3,9 @@
 the RTL (lines, branches, toggles, covers), GHDL lines of VHDL, gcov lines of C and C++.
 
 Usage, in the tree: coverage.py LIMITS.toml FOLDER
-FOLDER contains rtl.dat, host.info and vhdl.info, each if it exists; summary.json is written there.
+FOLDER contains rtl.dat, host.info and vhdl.info, each if it exists. Writes the measurements
+(icesoc.util.measured) into FOLDER/summary.json, with an entry for the lines of each file, which
+also has the other counts of the file.
 Exit status 1: a file is below its gate.
 """
 import collections
@@ -127,8 +129,8 @@ def report(files, gates, out):
         for kind, share in file.shares.items():
             total[kind].total += share.total
             total[kind].covered += share.covered
-        row = {"file": name, "percent": lines.percent, "lines": lines.total,
-               "gate": gate.get("lines", 0), "toggles": toggles.percent,
+        row = {"name": name, "value": lines.percent, "unit": "% of lines, at least",
+               "limit": gate.get("lines", 0), "lines": lines.total, "toggles": toggles.percent,
                "toggle_points": toggles.total, "toggle_gate": gate.get("toggles", 0),
                "points": file.counts, "point_percent": points.percent,
                "point_gate": gate.get("points", 100), "why": gate.get("why", ""),
@@ -141,14 +143,14 @@ def report(files, gates, out):
               f"{row['why'] and '  (' + row['why'] + ')'}")
         if below_gate(row):
             below.append(
-                f"below its gate: {name}: lines {lines.percent:.1f} (gate {row['gate']:.0f}), "
+                f"below its gate: {name}: lines {lines.percent:.1f} (gate {row['limit']:.0f}), "
                 f"toggles {toggles.percent:.1f} (gate {row['toggle_gate']:.0f}), points "
                 f"{points.percent:.1f} (gate {row['point_gate']:.0f}); never: "
                 f"{'; '.join(file.missed[:8])}")
     lines, toggles, points = (total[kind] for kind in ("lines", "toggles", "points"))
     write(out, json.dumps({"total": lines.percent, "toggles": toggles.percent,
                            "points": points.covered, "points_total": points.total,
-                           "files": rows}, indent=1, sort_keys=True) + "\n")
+                           "entries": rows}, indent=1, sort_keys=True) + "\n")
     print(f"\n{lines.percent:.1f} % of {lines.total} lines, {toggles.percent:.1f} % of "
           f"{toggles.total} toggle points, {points.covered} of {points.total} cover points; {out}")
     return below

@@ -55,14 +55,14 @@ def of_mutants(rows, drawn, source):
 
 def below_gate(f):
     """Returns whether the coverage of a file (lines, cover points or toggles) is below its gate."""
-    return f["percent"] < f["gate"] or f.get("point_percent", 100) < f.get("point_gate", 0) or \
+    return f["value"] < f["limit"] or f.get("point_percent", 100) < f.get("point_gate", 0) or \
         bool(f.get("toggle_points", 0)) and f.get("toggles", 100) < f.get("toggle_gate", 0)
 
 
 def of_coverage(coverage):
     if not coverage:
         return missing("coverage", "make coverage")
-    bad = [f["file"] for f in coverage["files"] if below_gate(f)]
+    bad = [f["name"] for f in coverage["entries"] if below_gate(f)]
     return judge("coverage", f"{coverage['total']:.1f} % of lines, "
                  f"{coverage.get('toggles', 0):.1f} % of toggles, "
                  f"{coverage.get('points', 0)} of {coverage.get('points_total', 0)} cover points",

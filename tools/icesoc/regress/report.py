@@ -22,10 +22,12 @@ MEASURED = {"coverage": "coverage/summary.json", "utilisation": "synth/report.js
 
 
 def read(path):
+    """Returns measurements; None if there are none, or if an earlier version wrote the file."""
     try:
-        return measured.read(path)
+        found = measured.read(path)
     except Stop:
         return None
+    return found if "entries" in found else None
 
 
 def proofs_of(results):
@@ -43,8 +45,8 @@ def measurements(build):
     """Returns the results that other commands have stored in build/, with the state of the tree at
     the time of each measurement."""
     data = {name: found for name, path in MEASURED.items() if (found := read(build / path))}
-    # the page lists at most 40 uncovered places of a file; the coverage summary has all of them
-    for file in data.get("coverage", {}).get("files", []):
+    # the page lists at most 40 uncovered places of a file; coverage/summary.json has all of them
+    for file in data.get("coverage", {}).get("entries", []):
         if (more := len(file["missed"]) - 40) > 0:
             file["missed"][40:] = [f"and {more} more"]
     planted = results.read(build / "mutants/planted.xml")[1]

@@ -115,19 +115,19 @@ function(icesoc_test name)
   gtest_discover_tests(${name} TEST_PREFIX "${name}." EXTRA_ARGS ${A_ARGS}
                        DISCOVERY_TIMEOUT 60)
   # CTest reads this file after it has discovered the cases. The file sets the labels, because
-  # gtest_discover_tests keeps only the first of several labels.
+  # gtest_discover_tests keeps only the first of several labels. REQUIRED_FILES is the first source
+  # file, whose folder is the folder of the test. For a program that is not built, CTest adds a test
+  # NAME_NOT_BUILT.
   set(labels ${CMAKE_CURRENT_BINARY_DIR}/${name}_labels.cmake)
   list(GET A_SOURCES 0 first)
   cmake_path(ABSOLUTE_PATH first)
-  cmake_path(GET first PARENT_PATH folder)
-  cmake_path(RELATIVE_PATH folder BASE_DIRECTORY ${CMAKE_SOURCE_DIR})
   file(WRITE ${labels}
-    "# folder: ${folder}\n"
-    "foreach(t IN LISTS ${name}_TESTS)\n"
-    "  set_tests_properties(\${t} PROPERTIES LABELS \"${A_LABELS}\")\n")
+    "foreach(t IN LISTS ${name}_TESTS ITEMS ${name}_NOT_BUILT)\n"
+    "  set_tests_properties(\${t} PROPERTIES LABELS \"${A_LABELS}\"\n"
+    "    REQUIRED_FILES \"${first}\")\n")
   if(A_SANITIZED)
     icesoc_sanitized(${name})
-    file(APPEND ${labels} "  if(t MATCHES \"${A_SANITIZED}\")\n"
+    file(APPEND ${labels} "  if(t MATCHES \"${A_SANITIZED}|_NOT_BUILT$\")\n"
       "    set_tests_properties(\${t} PROPERTIES LABELS \"${A_LABELS};sanitized\")\n  endif()\n")
   endif()
   file(APPEND ${labels} "endforeach()\n")

@@ -147,10 +147,11 @@ class Cases(Script):
         self.has(f"^Next: make -C {mine} test")
         (mine / "build/main").mkdir(parents=True)
         for path in BUILD.iterdir():
-            if path.name != "cores.known" and not path.name.startswith("junit"):
+            if path.name != "CMakeCache.txt" and not path.name.startswith("junit"):
                 (mine / "build/main" / path.name).symlink_to(path)
-        known = (BUILD / "cores.known").read_text()
-        write(mine / "build/main/cores.known", f"{known}sample_verilog\n")
+        cache = (BUILD / "CMakeCache.txt").read_text()
+        write(mine / "build/main/CMakeCache.txt",
+              cache.replace("KNOWN_CORES:INTERNAL=", "KNOWN_CORES:INTERNAL=sample_verilog;"))
         before = entries(icesoc)
         self.carried_out(mine, ICESOC_TREE=str(icesoc), ICESOC=str(icesoc), CORES="fir")
         self.assertEqual(entries(icesoc), before)  # the tree itself must be unchanged

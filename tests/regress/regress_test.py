@@ -46,8 +46,7 @@ add_test(NAME test_built.Fir.Works COMMAND test_built)
 add_test(NAME test_built.Order.ComesFirst COMMAND test_built)
 foreach(n soon radio tame)
   add_test(NAME test_${n}_NOT_BUILT COMMAND false)
-  set(labels ${CMAKE_CURRENT_BINARY_DIR}/test_${n}_labels.cmake)
-  file(WRITE ${labels} "PROPERTIES LABELS \\"${n};x\\"")
+  set_tests_properties(test_${n}_NOT_BUILT PROPERTIES LABELS "${n};x")
 endforeach()
 """
 HANG = """#include <unistd.h>

@@ -167,10 +167,10 @@ class Timing(unittest.TestCase):
 
 class Reports(unittest.TestCase):
     """Tests of the published reports, and of the statements about them."""
-    FILE = pathlib.Path(__file__).resolve().parents[2] / "synth/reports.json"
+    TREE = pathlib.Path(__file__).resolve().parents[2]
 
     def setUp(self):
-        self.reports = reports.read(self.FILE)
+        self.reports = reports.read(self.TREE)
         self.designs = [r for r in self.reports if "netlist" in r]
 
     def stated(self):
@@ -222,7 +222,7 @@ class Reports(unittest.TestCase):
             self.assertTrue(0.5 < (n["lut"] + n["through"]) / r["map"]["sites"] < 2, r["design"])
 
     def test_a_report_that_cannot_be_read_is_refused(self):
-        whole = json.loads(self.FILE.read_text())
+        whole = sources.read_designs(self.TREE)
         for change, why in (
                 (lambda r: r.pop("device"), "no device"),
                 (lambda r: r["map"].pop("slices"), "map has no slices"),
@@ -234,12 +234,13 @@ class Reports(unittest.TestCase):
             broken = copy.deepcopy(whole)
             change(broken["reports"][0])
             with tempfile.TemporaryDirectory() as folder:
-                file = pathlib.Path(folder) / "reports.json"
+                file = pathlib.Path(folder, sources.DESIGNS)
+                file.parent.mkdir()
                 file.write_text(json.dumps(broken))
                 with self.assertRaisesRegex(Stop, f"report 1 cannot be read: .*{why}"):
-                    reports.read(file)
+                    reports.read(folder)
                 file.write_text("{}")
-                self.assertRaisesRegex(Stop, "expected a list of reports", reports.read, file)
+                self.assertRaisesRegex(Stop, "expected a list of reports", reports.read, folder)
 
 
 class Baseline(unittest.TestCase):

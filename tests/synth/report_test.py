@@ -77,15 +77,19 @@ class Cases(Script):
         if CASE != "counts":
             shutil.copytree(KEPT, "out/cache")
 
+    files = ""  # Verilog files of cores
+
     def run_program(self, *options, status=0):
-        self.ask(PROGRAM, "--source", "project", "--generated", "gen", "--output", "out", *options,
-                 status=status)
+        self.ask(PROGRAM, "--source", "project", "--generated", "gen", "--output", "out",
+                 "--files", self.files, *options, status=status)
 
     def users_tree(self):
         """Turns the project into a tree in which commands of make can run."""
         for folder in "build/main/synth", "build/synth":
             Path("project", folder).mkdir(parents=True)
-        Path("project/build/main/synth/utilisation").symlink_to(PROGRAM)
+        tool = Path("project/build/main/synth/utilisation")
+        write(tool, f"#!/bin/sh\nexec '{PROGRAM}' --files '' \"$@\"\n")
+        tool.chmod(0o755)
         Path("gen").rename("project/build/main/gen")
         Path("out/cache").rename("project/build/synth/cache")
 
@@ -99,8 +103,8 @@ class Cases(Script):
         write("far/typed_sizes.sv", "package typed_sizes; typedef logic [2:0] t; endpackage\n")
         write("far/typed.sv", "module typed(input logic clk_i, input typed_sizes::t d_i, output "
               "typed_sizes::t q_o); always_ff @(posedge clk_i) q_o <= d_i; endmodule\n")
-        write("gen/cores.files", "".join(f"{Path(file).resolve()}\n" for file in (
-            BLOCKS / "store.v", "far/typed_sizes.sv", "far/typed.sv")))
+        self.files = ";".join(str(Path(file).resolve()) for file in (
+            BLOCKS / "store.v", "far/typed_sizes.sv", "far/typed.sv"))
         write("gen/clocks.v", """module clocks (input clk_i, output pll_o, output reg q_o);
             wire clk;
             PLL_BASE u_pll (.CLKIN(clk_i), .CLKOUT0(pll_o)); // in Yosys' second library
@@ -204,7 +208,7 @@ class Cases(Script):
     def test_broken(self):
         write(BLOCKS / "broken.v", "module broken(input wire a_i); assign b = ; endmodule\n")
         write("gen/typed.sv", "module typed(input logic a_i); assign b = ; endmodule\n")
-        write("gen/cores.files", "gen/typed.sv\n")
+        self.files = "gen/typed.sv"
         self.run_program(status=None)
         self.has("broken.v:1: ERROR: syntax error", "^wide ", "^broken .*failed",
                  "typed.sv:1: ERROR: syntax error.*\n.*needs what sv2v makes of it")
@@ -220,7 +224,7 @@ class Cases(Script):
         write("slow", SLOW)
         shutil.rmtree("out")
         words = (PROGRAM, "--source", "project", "--generated", "gen", "--output", "out",
-                 "--design", "wide", "--yosys", Path("slow").resolve())
+                 "--files", "", "--design", "wide", "--yosys", Path("slow").resolve())
         with open("first", "w") as first, open("second", "w") as second:
             begun = subprocess.Popen(words, stdout=first, stderr=first)
             # waits until the first run has locked the folder
@@ -293,14 +297,14 @@ class Cases(Script):
         with contextlib.chdir(here):
             repository()
             commit("The first one")
-        self.ask(PROGRAM, cwd=here)
+        self.ask(PROGRAM, "--files", "", cwd=here)
         self.made("synth", "BASE=HEAD..")
         self.has("^No figure of any design differs", "^no breaking change")
         designs = here / "synth/designs.json"
         edit(designs, '"WIDTH": 16', '"WIDTH": 17')
         edit(designs, '"name": "wide"', '"name": "wider"')
         grow(here / "hdl/blocks")
-        self.ask(PROGRAM, cwd=here)
+        self.ask(PROGRAM, "--files", "", cwd=here)
         self.made("synth", "BASE=HEAD..")
         grown = r"^\| whole \| .* \| \d+ -> \d+ \(\+12\) \|"
         # If the measured files were not committed, the state of a measurement is unknown.
@@ -343,7 +347,7 @@ class Cases(Script):
         self.lacks("^wide ")
         self.made("synth", "FAMILY=none", status=None)
         self.has("'none'.*choose from")
-        write("project/build/main/cores.known", "store\n")
+        write("project/build/main/CMakeCache.txt", "KNOWN_CORES:INTERNAL=store\n")
         self.made("ip-synth", "IP=missing", status=None)
         self.has("expected the name of a core, got 'missing'; known: store")
 

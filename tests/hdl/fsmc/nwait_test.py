@@ -92,7 +92,7 @@ def main():
     o = utilisation.options_of(["--source", str(SOURCE), "--generated", str(generated),
                                 "--output", str(output)])
     library = utilisation.rtl_of(o)
-    plan = sources.read_plan(SOURCE / "synth/designs.json", library, SOURCE)
+    plan = sources.read_plan(library, SOURCE)
     design = next(design for design in plan.designs if design.name == "fsmc_bridge")
     run = runner.mapped(design, "xc6s", library,
                         runner.Options(SOURCE / "synth/yosys", output / "cache"))

@@ -8,6 +8,7 @@ import shutil
 from pathlib import Path
 
 from icesoc.cli import keys
+from icesoc.util import cmake
 from icesoc.util.console import warn
 from icesoc.util.errors import Stop
 from icesoc.util.lock import lock
@@ -86,11 +87,11 @@ class BuildFolder:
 
     def cached(self, name):
         """Returns the value of a variable in CMake's cache; empty if it is not set."""
-        try:
-            found = re.search(rf"^{name}:\w+=(.*)$", (self / "CMakeCache.txt").read_text(), re.M)
-        except OSError:
-            return ""
-        return found[1] if found else ""
+        return cmake.cached(self.folder, name)
+
+    def known_cores(self):
+        """Returns the names of all cores of the last configuration."""
+        return cmake.cached_list(self.folder, "KNOWN_CORES")
 
     def set(self, **variables):
         """Sets variables of CMake; if CMake refuses a value, prints the reason and restores the old

@@ -6,7 +6,6 @@ Each function gets the values of a command's options, or None during completion.
 """
 import argparse
 import functools
-import json
 import os
 import re
 from pathlib import Path
@@ -57,9 +56,7 @@ def cores(values=None):
     from icesoc.cli.build_folder import BuildFolder  # the installed icesoc-call does not contain
                                                      # this module
     build = BuildFolder(values.build, values)
-    known = build / "cores.known"  # written by CMake
-    found |= set(known.read_text().split()) if known.exists() else set()
-    return sorted(found | {folder.name for folder in build.other_cores()})
+    return sorted({*found, *build.known_cores(), *(folder.name for folder in build.other_cores())})
 
 
 def flown(values=None):
@@ -71,8 +68,8 @@ def flown(values=None):
 def designs(values=None):
     """Returns the names that can be synthesised: designs of synth/designs.json, modules, entities,
     and modules that the build generates."""
-    listed = Path("synth/designs.json")
-    found = json.loads(listed.read_text())["designs"] if listed.is_file() else []
+    from icesoc.synth.sources import DESIGNS, read_designs  # not part of the installed icesoc-call
+    found = read_designs()["designs"] if Path(DESIGNS).is_file() else []
     names = {name for text in texts(HARDWARE, ".v", ".vhd") for name in MODULE.findall(text)}
     names = {name for name in names if not name.endswith(("_rules", "_proof", "_tb"))}
     names |= {path.name.replace(".regs.json", "_regs") for path in files(HARDWARE, ".regs.json")}

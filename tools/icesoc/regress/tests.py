@@ -11,6 +11,7 @@ import pathlib
 import re
 import tomllib
 
+from icesoc.util.cmake import cached
 from icesoc.util.errors import Stop
 from icesoc.util.files import digest, write
 from icesoc.util.process import collect
@@ -133,7 +134,7 @@ def list_tests(build):
         raise Stop(f"ctest cannot list the tests of {build}; run `make build` first\n{text[:2000]}")
     if "{" not in text:
         raise Stop(f"ctest lists no tests in {build}; run `make build` first")
-    below = f"{build.resolve()}/tests/"
+    below, source = f"{build.resolve()}/tests/", cached(build, "CMAKE_HOME_DIRECTORY")
     tests = []
     for number, entry in enumerate(json.loads(text[text.index("{"):])["tests"], 1):
         has = {each["name"]: each["value"] for each in entry.get("properties", [])}
@@ -146,13 +147,8 @@ def list_tests(build):
         for word in has.get("ENVIRONMENT", []):
             if word.startswith("NEEDS="):
                 test.targets = word[6:].split()
-        labels = pathlib.Path(folder, f"{test.program}_labels.cmake")
-        if (test.unbuilt or test.is_program(build)) and labels.exists():  # of icesoc_test()
-            text = labels.read_text()
-            if test.unbuilt:
-                test.labels = ";".join(re.findall('LABELS "([^"]*)"', text)).split(";")
-            if place := re.search("^# folder: (.*)", text):
-                test.path = place[1].removeprefix("tests/")
+        if files := has.get("REQUIRED_FILES"):  # the first source file, of icesoc_test()
+            test.path = os.path.relpath(os.path.dirname(files[0]), source).removeprefix("tests/")
         tests.append(test)
     return tests
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""reports: compares the estimates with published reports of XST, map and TRCE (synth/reports.json),
-which shows how accurate the estimates are (docs/utilisation.md).
+"""reports: compares the estimates with published reports of XST, map and TRCE ("reports" in
+synth/designs.json), which shows how accurate the estimates are (docs/utilisation.md).
 
 Every report has figures of map, which calibrate the estimate of slices. If Yosys can read the
-sources of the design, the entry in synth/reports.json also has a "netlist": the counts of cells,
+sources of the design, the report also has a "netlist": the counts of cells,
 the steps of the longest path of the reported clock [type, fan-out, delay of the cell in ns, delay
 of its net in ns], and the end of that path.
 """
@@ -14,7 +14,7 @@ from icesoc.synth import slices
 from icesoc.synth import timing
 from icesoc.synth.report import Table
 from icesoc.synth.slices import Range
-from icesoc.synth.sources import read_json
+from icesoc.synth.sources import DESIGNS, read_designs
 from icesoc.util.errors import Stop
 
 # "one", "two": numbers of LUT sites with one function and with two functions
@@ -39,8 +39,9 @@ def fault_of(report):
     return ""
 
 
-def read(file):
-    found = read_json(file)
+def read(root):
+    """Returns the reports in a tree's synth/designs.json."""
+    file, found = DESIGNS, read_designs(root)
     if not isinstance(found, dict) or not isinstance(found.get("reports"), list):
         raise Stop(f"{file}: expected a list of reports")
     for number, report in enumerate(found["reports"]):

@@ -13,6 +13,7 @@ from icesoc.util.files import digest
 # A comment, a string, a word or directive, or the punctuation that marks instances.
 TOKEN = re.compile(r'//[^\n]*|/\*.*?(?:\*/|$)|"([^"]*)"?|(`?[\w$]+|`)|([()#;]|::)', re.S)
 
+DESIGNS = "synth/designs.json"  # only read_designs() reads this file
 PROPERTIES = {"FORMAL", "RULES", "COVER_POINTS"}  # code under these macros is not hardware
 
 
@@ -216,15 +217,21 @@ def read_json(file):
                    ) from None
 
 
-def read_plan(file, library, root):
-    """Returns the plan: the designs in the file, and a design for every other module that has a
-    file of the same name. `*_rules` and `*_proof` are left out, because they are properties, not
-    hardware."""
-    j = read_json(file)
+def read_designs(root="."):
+    """Returns the content of synth/designs.json: the designs, the chip, the paper's figures, and
+    published reports (reports.py)."""
+    return read_json(pathlib.Path(root, DESIGNS))
+
+
+def read_plan(library, root):
+    """Returns the plan: the designs in synth/designs.json, and a design for every other module that
+    has a file of the same name. `*_rules` and `*_proof` are left out, because they are properties,
+    not hardware."""
+    j = read_designs(root)
     designs = [Design(**design) for design in j["designs"]]
     for design in designs:
         if design.top not in library.modules:
-            raise Stop(f"{file}: unknown module {design.top}")
+            raise Stop(f"{pathlib.Path(root, DESIGNS)}: unknown module {design.top}")
     tops = {design.top for design in designs}
     for name, module in sorted(library.modules.items()):
         is_hardware = not name.endswith(("_rules", "_proof")) and not module.is_package

@@ -38,9 +38,8 @@ def rtl_of(o):
     rooms = sorted(folder for room in ("hdl", "ip") for folder in (o.source / room).iterdir()
                    if folder.is_dir())
     folders = [o.source / "synth", o.source / "hdl", o.source / "bus", *rooms, o.generated]
-    # The build lists the files of all cores. Their include files are in the same folders.
-    list = o.generated / "cores.files"
-    files = [pathlib.Path(line) for line in list.read_text().splitlines()] if list.exists() else []
+    # The build passes the files of all cores. Their include files are in the same folders.
+    files = [pathlib.Path(name) for name in o.files.split(";") if name]
     files = [sources.relative_to(file, pathlib.Path()) for file in files if file.exists()]
     verilog = [file for file in files if re.fullmatch(r"\.s?v", file.suffix, re.I)]
     parents = [file.parent for file in files]
@@ -142,7 +141,7 @@ def equivalent(plan, library, options, o):
 
 def run(o, libraries):
     library = rtl_of(o)
-    plan = sources.read_plan(o.source / "synth/designs.json", library, o.source)
+    plan = sources.read_plan(library, o.source)
     for name in o.design + [name for name in (o.edif, o.netlist) if name]:
         names = [design.name for design in plan.designs]
         if name not in names:
@@ -190,6 +189,8 @@ def options_of(words):
     parser.add_argument("--source", type=folder, default=".", help="the project's folder")
     parser.add_argument("--generated", type=folder, default="build/main/gen",
                         help="folder of generated Verilog (%(default)s)")
+    parser.add_argument("--files", default="", metavar="FILE;...",
+                        help="Verilog files of all cores, separated by semicolons")
     parser.add_argument("--output", type=folder, default="build/synth",
                         help="folder of the reports (%(default)s)")
     parser.add_argument("--design", action="append", default=[],
@@ -234,7 +235,7 @@ def main(words):
     o = options_of(words)
     try:
         if o.reports:
-            print(reports.text(reports.read(o.source / "synth/reports.json")), end="")
+            print(reports.text(reports.read(o.source)), end="")
             return 0
         if o.compare:
             before, after = map(measured.read, (o.compare, o.output / "report.json"))

@@ -2,7 +2,6 @@
 """check: commands that run proofs, sanitizers, seeded bugs, faults, hours of radio, and
 measurements."""
 import dataclasses
-import json
 import re
 import shutil
 import sys
@@ -14,6 +13,7 @@ from icesoc.cli.command import GROUPS, command
 from icesoc.cli.options import (BLOCK, BUILD, COUNT, FAMILY, FRESH, JOBS, MINUTES, NAME, PATH, SEED,
                                 TESTS, WORDS, Option)
 from icesoc.regress.tests import list_tests
+from icesoc.synth.sources import read_designs
 from icesoc.util.console import say, warn
 from icesoc.util.errors import Stop
 from icesoc.util.lock import lock
@@ -81,7 +81,7 @@ def netlist(values):
     Yosys and abc prove the netlists of small designs. For a large design, the tests of the block
     run on its netlist. Exit status 1: a netlist differs.
     """
-    simulated = json.loads(Path("synth/designs.json").read_text())["simulated"]
+    simulated = read_designs()["simulated"]
     build = netlists(values, "-DCLK_HZ=2000000", tests=True)
     build.ninja("synth_inputs")
     program = [build / "synth/utilisation", "--generated", build / "gen", "--jobs", values.jobs,

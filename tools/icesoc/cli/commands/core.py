@@ -193,7 +193,7 @@ def known(values):
     if not values.built:
         # CMake may not have found folders that were created after its last run
         build.ninja("build.ninja")
-    cores = (build / "cores.known").read_text().split()
+    cores = build.known_cores()
     if values.ip not in cores:
         raise Stop(f"unknown core '{values.ip}': expected one of {' '.join(cores)}", 2)
     return build

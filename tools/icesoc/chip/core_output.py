@@ -2,7 +2,7 @@
 """core_output: generates the files about the cores of the chip: address map, instances in soc.v,
 and the firmware's table.
 
-The chip is a coremap.Chip, a slot a coremap.Slot.
+The chip is a model.Chip, a slot a model.Slot.
 """
 import copy
 import functools

@@ -2,7 +2,7 @@
 """core_exchange: writes the registers of the chip in formats of other tools: CMSIS-SVD 1.3,
 SystemRDL 2.0 and IP-XACT (IEEE 1685-2014).
 
-A slot is a coremap.Slot.
+A slot is a chip.model.Slot.
 """
 import xml.etree.ElementTree as ET
 

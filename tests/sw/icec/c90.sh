@@ -4,11 +4,12 @@
 # Checks that gcc, clang and the Cortex-M3's gcc compile IceC and its portable transports as C90
 # without warnings, for the full and the minimal run time.
 set -eu
-sw=$1/sw
+sw=$(realpath "$1/sw")
 warnings='-std=c90 -pedantic -Wall -Wextra -Wconversion -Wno-sign-conversion -Wstrict-prototypes
 -Wmissing-prototypes -Wdeclaration-after-statement -Werror -fsyntax-only'
 full=$(echo "$sw"/icec/*.c "$sw"/icec/values/*.c "$sw"/icec/extra/*.c)
-minimal=$(sed "s,^,$sw/," "$sw/minimal/sources.txt")
+minimal=@minimal/sources.txt # paths relative to $sw
+cd "$sw"
 check() { # check SOURCES FLAGS: compiles the sources; the first of FLAGS is the compiler
     sources=$1
     shift

@@ -37,7 +37,10 @@ constexpr U32 coreMemory = 0x01000000;
 class CoreError : public std::runtime_error {
 public:
     explicit CoreError(Ice_Status status)
-        : std::runtime_error("the call's status is " + std::to_string(status)), status_(status) {}
+        : std::runtime_error(status == ICE_TIMEOUT
+                                 ? std::string("the core did not finish the call in time")
+                                 : std::string("the call failed: ") + Ice_Status_text(status)),
+          status_(status) {}
     Ice_Status status() const { return status_; }
 
 private:

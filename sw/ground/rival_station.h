@@ -80,7 +80,8 @@ private:
     bool isLost_ = false;     // the session ended while the vehicle was sending to another station
     bool hearsOther_ = false; // the last frame that was heard belonged to another station's session
     U32 heardAt_ = 0, yieldedAt_ = 0;
-    U8 head_[LINK_HEADER]; // header of the packet that is arriving, while this station has yielded
+    // header of the packet that is arriving; used only while this station has yielded
+    U8 head_[LINK_HEADER];
     U32 headSize_ = 0;
 };
 

@@ -67,9 +67,10 @@
  * minimal layer uses times with few 1 bits, so that each time fits into an instruction. */
 #define LINK_DEAD_AFTER (LINK_IS_FULL ? 9000000U : 0x890000U)
 
-/* With a key: time without an answered PING after which PINGs are sent, their interval, and the
- * time after which the peer counts as lost. Other frames do not prove that the peer is there,
- * because an attacker may have recorded them. */
+/* Three times that apply with a key, us. If no PING has been answered for LINK_PROOF_AFTER, PINGs
+ * are sent at the interval LINK_PROOF_EVERY. If none has been answered for LINK_PROOF_LAST, the
+ * peer counts as lost. Other frames do not prove that the peer is there, because an attacker may
+ * have recorded them. */
 #define LINK_PROOF_AFTER 5000000U
 #define LINK_PROOF_EVERY 1000000U
 #define LINK_PROOF_LAST 27000000U

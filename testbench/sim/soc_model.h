@@ -165,7 +165,7 @@ private:
     XBee modem_;
     Cable* cable_ = nullptr;
     std::function<uint64_t()> drive_;
-    uint64_t driveAt_ = 0; // clock before which the driver of the pins must be called next
+    uint64_t driveAt_ = 0; // number of the clock by which drive_ must be called again
     std::function<void(uint32_t)> corePinsChanged_;
     uint32_t corePins_ = 0;
     std::function<uint64_t(uint64_t)> others_;

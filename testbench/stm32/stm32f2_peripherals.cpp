@@ -390,7 +390,8 @@ bool Stm32F2::drivesLow(uint32_t port, unsigned pin) const {
 void Stm32F2::updateFpgaPins() {
     const bool isSelectLow = drivesLow(0, 4);
     if (fpga.isReading() && isSelectLow)
-        throw Error("the FPGA reads its flash while the processor drives that bus (port A, 4..7)");
+        throw Error("the FPGA reads its flash while the processor drives the bus of the flash "
+                    "(port A, 4..7)");
     fpga.drive(isSelectLow, drivesLow(2, 0));
     followFpga();
 }

@@ -24,7 +24,7 @@ RUDE = {
                r"\(in build/main/tests/room\)$"),
     "Writes": ("echo >../../../../written", "^Changed while the tests ran, .*: written$")}
 IDEMPOTENT = "! error: unexpected operation mode. expected Normal, received Idempotent"
-# Reasons, each with the log of a tool that contains it; {} in the log is replaced by the reason.
+# reason -> log of a tool in which the reason occurs; {} in the log is replaced by the reason.
 REASONS = {
     "busy is true, not false":
         "g.cpp:4: Failure\nValue of: busy\n  Actual: true\nExpected: false\ng.cpp:7: Failure",

@@ -113,7 +113,7 @@ class Cases(Script):
         for key in self.out / "b.key", "":
             self.simulate(PING, DEVICE + "-g {guard} -t 3000", "1", f"--XBeeAT.KeyFile={key}",
                           "--Ice.RetryIntervals=-1", options=("--key", "a.key"), status=None)
-            self.has("Timeout")
+            self.has("timeout while establishing a connection")
         for name, said in ("others", "chmod 600"), ("no", "openssl rand"):
             self.fails(said, PING, "hwengine1:xbee-at -d /dev/null", "1",
                        f"--XBeeAT.KeyFile={self.out}/{name}.key")

@@ -247,7 +247,7 @@ module faced (input logic reset, bus_if.slave s); endmodule' >faced.sv
 refused "faced has the port 's', a SystemVerilog interface (bus_if.slave)" faced apb faced.sv
 refused 'bus_if s (...);' faced apb faced.sv
 # VHDL files in several libraries.
-refused 'LIBRARY: util=none.vhd: expected a library.s name and a file of FILES' lamps own \
+refused 'LIBRARY: util=none.vhd: expected a library and a file of FILES' lamps own \
     LIBRARY=util=none.vhd lamps.vhd
 if [ -x "$ghdl" ]; then # the build downloads GHDL 5
     cp "$here/lamps_types.vhd" .

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """results: reads and writes results of mutants as JUnit: planted.xml for seeded bugs, drawn.xml for
-mutants that Yosys has drawn.
+random mutants that Yosys has generated.
 
 A mutant is a test case that passes if a test or proof catches the mutant. A case is skipped if the
 mutant behaves like the module, so that it is not a bug. Attributes of a case: name, classname (the

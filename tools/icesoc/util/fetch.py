@@ -398,7 +398,8 @@ def main():
             thing(options.folder.absolute())
         except Unreachable as error:
             fail(f"{error}\nfetch: cannot get {options.thing}: is there a network? " +
-                 OPTIONAL.get(thing, "Then run make again"), 77 if thing in OPTIONAL else 1)
+                 OPTIONAL.get(thing, "Check the network, then run make again"),
+                 77 if thing in OPTIONAL else 1)
 
 
 if __name__ == "__main__":

@@ -291,7 +291,7 @@ protected:
     void endure() {
         Random random(testSeed());
         const uint64_t end = world_.ns() + static_cast<uint64_t>(wanted() * 1e9);
-        misfortune(random, 4); // draws the radio conditions
+        misfortune(random, 4); // chooses random radio conditions
         auto said = std::chrono::steady_clock::now();
         for (unsigned events = 0; world_.ns() < end; ++events) {
             misfortune(random,

@@ -26,7 +26,7 @@ typedef struct EchoUav_Port {
 
 #define ECHO_UAV_LONGEST 4000 /* largest number of bytes in a message to the ground */
 
-/* Sets the functions of the test. Call it before the first boot. */
+/* Sets the functions of the test that the firmware calls. Call it before the first boot. */
 void EchoUav_setPort(const EchoUav_Port* port, void* context);
 
 /* Functions for booting the firmware, like UAV_start and related functions (uav.h). */

@@ -337,8 +337,8 @@ def gdb(values):
                                   "a missing authority.pem is created"),
     Option("signing", SWITCH, "make a private key for signing updates, and its public half "
                               "(spare.pub for spare.key); an existing key is kept"),
-    Option("list", COUNT, "make a list of the signing keys, with number N: the number of the "
-                          "previous list plus 1"),
+    Option("list", COUNT, "make list number N of the signing keys; N must be the number of "
+                          "the previous list plus 1"),
     Option("by", FILE, "private key that signs the list; it must be in the previous list"),
     Option("first", FILE, "first public key of the list"),
     Option("second", FILE, "second public key of the list"), BUILD, JOBS], make="key",

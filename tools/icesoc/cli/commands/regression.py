@@ -136,8 +136,8 @@ def last_good(test):
     good = [each["commit"] for each in History().runs if "dirty" not in each["commit"]
             and {end[1] for end in each["ends"] if end[0] == test} == {"p"}]
     if not good:
-        raise Stop(f"{test} passed in no recorded run of a commit; give a commit at which it "
-                   "passes by GOOD= (--good)", 2)
+        raise Stop(f"no recorded run has a commit at which {test} passed; name one with GOOD= "
+                   "(--good)", 2)
     return good[-1]
 
 

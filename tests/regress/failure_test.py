@@ -63,6 +63,9 @@ REASONS = {
     "KeyError: 'k'":
         'ERROR: test_c (__main__.T.test_c)\n---\nTraceback (most recent call last):\n  a["k"]\n'
         "{}\n\nFAIL: test_a (__main__.T.test_a)\nAssertionError: 1 != 2\nFAILED (failures=3)",
+    "AssertionError: 'no wind' is not in the output: it rains":
+        f"F\nFAIL: test_b (__main__.T.test_b)\nA wrong key causes an error.\n{'-' * 70}\n"
+        "Traceback (most recent call last):\n  File \"b.py\", line 2, in test_b\n{}\n",
     "s.ice:1:40: error: 'Strin' is not a type that is known here":
         "{}\nmodule M { interface I { void f(int a, Strin b); } }",
     "Ice.ConnectionRefusedException: Ice.ConnectionRefusedException: Connection refused":

@@ -81,6 +81,8 @@ def reason_of(log):
     exception ends in a colon, the next line is included. From a diff, the first removed line and
     the line that replaces it are included."""
     last, of_file, of_value, failure = "", "", "", None
+    # the description of a failed test, which Python's unittest prints, is not a reason
+    log = re.sub(r"(?m)^((?:ERROR|FAIL): test_.*\n)(?:.*\n)*?-{70}$", r"\1", log)
     log = CONDITION.sub(r"\1 is \2, not \3", EQUALITY.sub(comparison, log))
     log = re.sub(r"((?:Error|Exception)\b.*:)\n+ *(?=\S)", r"\1 ", log)
     log = re.sub(r"(?m)^@@ .*\n(?: .*\n)*(-.*)\n([+].*)", r"differs: \1 \2", log)

@@ -470,7 +470,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
             ("test_a.One", 0, "^since [0-9a-f]* breaks it [(]a, "),
             (f"test_a.One --good {first}", 0, "^since [0-9a-f]* breaks it [(]a, "),
             (f"test_a.Two --good {first}", 2, "passes at"),
-            ("test_b.Bad", 2, "passes by GOOD="),
+            ("test_b.Bad", 2, "name one with GOOD="),
             ("test_a.One --good nonsense", 2, "unknown commit GOOD=nonsense")):
             self.ask("env", "ICESOC_TREE=.", TREE / "icesoc", "bisect", "--built", *words.split(),
                      status=status)

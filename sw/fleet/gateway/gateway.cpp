@@ -17,10 +17,14 @@
 #include <IceSSL/OpenSSL.h>
 #include <IceStorm/IceStorm.h>
 #include <algorithm>
+#include <chrono>
 #include <csignal>
+#include <future>
 #include <iostream>
 #include <list>
 #include <openssl/ssl.h>
+#include <thread>
+#include <unistd.h>
 
 namespace {
 
@@ -276,6 +280,24 @@ sigset_t endings() {
     return signals;
 }
 
+// Ends Ice. Ice first waits until each request that it has read has a reply, but it never replies
+// to a message with an absurd length, because it cannot allocate the memory. If Ice has not ended
+// after `longestEnd`, this function ends the process.
+void destroy(const std::shared_ptr<Ice::Communicator>& ic) {
+    constexpr std::chrono::seconds longestEnd{20};
+    std::promise<void> ended;
+    std::thread thread([&] {
+        ic->destroy();
+        ended.set_value();
+    });
+    if (ended.get_future().wait_for(longestEnd) == std::future_status::timeout) {
+        std::cerr << "gateway: the connection of a client did not end within " << longestEnd.count()
+                  << " s" << std::endl;
+        _exit(0);
+    }
+    thread.join();
+}
+
 // Passes requests until a signal stops the gateway.
 void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
     refuseResumption(ic);
@@ -315,7 +337,8 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
     ask(&Registration::leave);
     for (Vehicle& vehicle : vehicles)
         vehicle.forwarder.stop();
-    ic->destroy(); // Ice is destroyed here, while the objects that its callbacks use still exist
+    pages.stop();
+    destroy(ic); // here, while the objects that Ice's callbacks use still exist
 }
 
 } // namespace

@@ -80,9 +80,14 @@ Pages::Pages(const Options& o) : o_(o), secret_(drawSecret()) {
 }
 
 Pages::~Pages() {
+    stop();
+}
+
+void Pages::stop() {
     if (server_ > 0) {
         kill(server_, SIGTERM);
         waitpid(server_, nullptr, 0);
+        server_ = -1;
     }
 }
 

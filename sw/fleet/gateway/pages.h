@@ -40,6 +40,9 @@ public:
     // Throws if the server of the page has ended.
     void check();
 
+    // Ends the server of the page. The destructor does so as well.
+    void stop();
+
 private:
     const Options& o_;
     std::string host_, port_, secret_, protocol_;

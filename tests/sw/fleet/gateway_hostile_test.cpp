@@ -32,6 +32,7 @@ struct Parts {
     unsigned id = 1; // 0 for a one-way request
     std::string object = "echo", operation = "ice_ping", context = "";
     size_t encapsulation = 6;
+    size_t facets = 0; // number of facets that the message claims to contain; it contains none
 };
 
 Message request(const Parts& parts) {
@@ -39,7 +40,9 @@ Message request(const Parts& parts) {
     append(body, parts.id);
     append(body, parts.object);
     append(body, std::string());
-    append(body, std::string()); // no facet
+    if (parts.facets)
+        append(body, 255, 1);
+    append(body, parts.facets, parts.facets ? 4 : 1);
     append(body, parts.operation);
     append(body, 0, 1); // mode: normal
     append(body, !parts.context.empty(), 1);
@@ -141,6 +144,17 @@ TEST_F(HostileClients, AClientThatLeavesItsCallLetsTheGatewayEnd) {
     startWithoutVehicle("2");
     RawClient(port_).write(request({}));
     // The gateway handles this call after the call of the client that has left.
+    expectRefusal([&] { echo_->ice_ping(); }, "waited 2 s for the radio");
+    EXPECT_EQ(stopOrKill(), 0) << "the gateway did not end";
+}
+
+// Ice has no memory for the facets that this message claims to contain, and never replies to it.
+TEST_F(HostileClients, AMessageWithoutAReplyLetsTheGatewayEnd) {
+    startWithoutVehicle("2");
+    Parts senseless;
+    senseless.facets = 0x7FFFFFFF;
+    RawClient client(port_);
+    client.write(request(senseless));
     expectRefusal([&] { echo_->ice_ping(); }, "waited 2 s for the radio");
     EXPECT_EQ(stopOrKill(), 0) << "the gateway did not end";
 }

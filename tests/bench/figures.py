@@ -45,7 +45,8 @@ page of each subject explains its figures and how they are measured.
 
 `a of b, c %` means: `a` was measured, the limit is `b`, and `a` is `c` percent of `b`. Goodput and
 its limit count the bytes that programs exchange. If `(d %)` follows, `a` is `d` percent of all
-bytes that the modems could transfer, including the overhead of frames. """
+bytes that the modems could transfer, including the overhead of frames.
+"""
 
 
 def figure(name, value, unit, limit=None, peer=None, ratio=None):

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // picture: decodes pictures with stb_image, and handles two properties that stb_image ignores: the
-// orientation in a JPEG file (EXIF 2.3, tag 0x0112), and the largest sample value of a PNM file
-// (netpbm's formats).
+// orientation in a JPEG or PNG file (EXIF 2.3, tag 0x0112), and the largest sample value of a PNM
+// file (netpbm's formats).
 
 #include "picture.h"
 
@@ -45,7 +45,8 @@ struct Reader {
 // Returns the orientation in an EXIF block, which begins at `at` with a TIFF header; returns 1
 // (upright) if the block contains no orientation.
 int orientationAt(const Bytes& file, size_t at) {
-    constexpr size_t tag = 0x0112, shortNumber = 3, entryBytes = 12;
+    constexpr size_t tag = 0x0112, entryBytes = 12;
+    constexpr size_t shortNumber = 3, longNumber = 4; // types of an entry: 16 bits, 32 bits
     Reader in{file, file.size() > at && file[at] == 'I'};
     if (in.number(at + 2, 2) != 42)
         return 1;
@@ -55,19 +56,33 @@ int orientationAt(const Bytes& file, size_t at) {
         const size_t entry = directory + 2 + i * entryBytes;
         if (entry >= file.size())
             break;
-        if (in.number(entry, 2) != tag || in.number(entry + 2, 2) != shortNumber)
+        const size_t type = in.number(entry + 2, 2);
+        if (in.number(entry, 2) != tag || (type != shortNumber && type != longNumber))
             continue;
-        const size_t value = in.number(entry + 8, 2);
+        const size_t value = in.number(entry + 8, type == shortNumber ? 2 : 4);
         return value >= 1 && value <= 8 ? static_cast<int>(value) : 1;
     }
     return 1;
 }
 
-// Returns the EXIF orientation of a JPEG file, 1 to 8; returns 1 for other files.
+// Returns the orientation in the chunk eXIf of a PNG file (PNG, third edition).
+int orientationOfPng(const Bytes& file) {
+    constexpr size_t signatureBytes = 8, exif = 0x65584966;
+    constexpr size_t otherBytes = 12; // size, type and checksum of a chunk
+    const Reader in{file};
+    for (size_t at = signatureBytes; at < file.size(); at += otherBytes + in.number(at, 4))
+        if (in.number(at + 4, 4) == exif)
+            return orientationAt(file, at + 8);
+    return 1;
+}
+
+// Returns the EXIF orientation of a JPEG or PNG file, 1 to 8; returns 1 for other files.
 int orientationOf(const Bytes& file) {
     static const char name[] = "Exif\0"; // name of the EXIF block: "Exif" and two zero bytes
     constexpr size_t imageData = 0xFFDA, application1 = 0xFFE1;
     const Reader in{file};
+    if (in.number(0, 2) == 0x8950)
+        return orientationOfPng(file);
     if (in.number(0, 2) != 0xFFD8)
         return 1;
     for (size_t at = 2; at + 4 <= file.size(); at += 2 + in.number(at + 2, 2)) {
@@ -98,7 +113,7 @@ PnmHeader pnmHeader(const Bytes& file) {
     size_t at = 2;
     const auto next = [&] { // reads the next number; a comment extends to the end of its line
         for (bool isComment = false; at < file.size(); ++at) {
-            isComment = file[at] == '#' || (isComment && file[at] != '\n');
+            isComment = file[at] == '#' || (isComment && file[at] != '\n' && file[at] != '\r');
             if (!isComment && !std::isspace(file[at]))
                 break;
         }
@@ -162,6 +177,9 @@ std::string typeOf(const Bytes& file) {
 // Returns the message for a file that stb_image rejects.
 std::string rejected(const std::string& path, const Bytes& file, const char* reason) {
     const std::string type = typeOf(file);
+    if (file.size() >= 2 && file[0] == 'P' && file[1] >= '1' && file[1] <= '4')
+        return "'" + path + "': expected a binary PGM or PPM file (P5 or P6), got P" +
+               char(file[1]) + ": save it again as PNG";
     if (type.empty())
         return "'" + path + "': expected a PNG, JPEG or PGM file";
     // stb_image reports why the last format that it tried failed; this format is PNG.

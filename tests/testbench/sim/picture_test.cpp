@@ -56,31 +56,37 @@ protected:
         return "accepted";
     }
 
-    // Returns a file with an EXIF block that contains an orientation, in either byte order.
-    static Bytes oriented(int orientation, bool isLittle) {
+    // Returns an EXIF block that contains an orientation, in either byte order, as a number of 16
+    // or 32 bits.
+    static Bytes exif(int orientation, bool isLittle, int bits = 16) {
         const auto number = [&](size_t value, int bytes) {
             Bytes text;
             for (int i = 0; i < bytes; ++i)
                 text.push_back(uint8_t(value >> 8 * (isLittle ? i : bytes - 1 - i)));
             return text;
         };
-        Bytes file = {0xFF, 0xD8, 0xFF, 0xE1, 0, 46, 'E', 'x', 'i', 'f', 0, 0};
+        Bytes block = isLittle ? Bytes{'I', 'I'} : Bytes{'M', 'M'};
         const auto add = [&](const Bytes& more) {
-            file.insert(file.end(), more.begin(), more.end());
+            block.insert(block.end(), more.begin(), more.end());
         };
-        add(isLittle ? Bytes{'I', 'I'} : Bytes{'M', 'M'});
         add(number(42, 2));
         add(number(8, 4));
         add(number(2, 2)); // two entries
         for (const auto& [tag, value] : {std::pair{0x0103, 6}, {0x0112, orientation}}) {
             add(number(size_t(tag), 2));
-            add(number(3, 2)); // an entry that contains a 16-bit number
+            add(number(bits == 16 ? 3 : 4, 2)); // type of the entry: 16-bit or 32-bit number
             add(number(1, 4));
-            add(number(size_t(value), 2));
-            add({0, 0});
+            add(number(size_t(value), bits / 8));
+            add(Bytes(size_t(4 - bits / 8)));
         }
         add(number(0, 4));
-        add(quarters);
+        return block;
+    }
+    // Returns a JPEG file with such a block.
+    static Bytes oriented(int orientation, bool isLittle, int bits = 16) {
+        Bytes file = {0xFF, 0xD8, 0xFF, 0xE1, 0, 46, 'E', 'x', 'i', 'f', 0, 0};
+        for (const Bytes& part : {exif(orientation, isLittle, bits), quarters})
+            file.insert(file.end(), part.begin(), part.end());
         return file;
     }
 
@@ -116,6 +122,39 @@ TEST_F(Pictures, AnOrientationThatIsDamagedIsIgnored) {
     EXPECT_EQ(read(cut).width, 32);
 }
 
+// Some programs write the orientation as a number of 32 bits.
+TEST_F(Pictures, AnOrientationOf32BitsCounts) {
+    for (const bool isLittle : {false, true})
+        EXPECT_EQ(read(oriented(6, isLittle, 32)).width, 16) << isLittle;
+}
+
+// PNG, third edition: the chunk eXIf contains an EXIF block.
+TEST_F(Pictures, AnOrientationInAPngFileCounts) {
+    // The checksums of the chunks are 0; stb_image ignores them.
+    const Bytes begin = {0x89, 'P', 'N', 'G', 0x0D, 0x0A, 0x1A, 0x0A, 0, 0, 0,
+                         13,   'I', 'H', 'D', 'R',  0,    0,    0,    3, 0, 0,
+                         0,    1,   8,   0,   0,    0,    0,    0,    0, 0, 0};
+    const Bytes end = {0,    0,    0, 12, 'I', 'D',  'A', 'T',  0x78, 0xDA, 0x63, 0x10,
+                       0x50, 0x70, 0, 0,  0,   0xB4, 0,   0x71, 0,    0,    0,    0,
+                       0,    0,    0, 0,  'I', 'E',  'N', 'D',  0,    0,    0,    0};
+    Bytes file = begin;
+    const auto add = [&](const Bytes& more) { file.insert(file.end(), more.begin(), more.end()); };
+    const Bytes block = exif(6, false);
+    add({0, 0, 0, uint8_t(block.size()), 'e', 'X', 'I', 'f'});
+    add(block);
+    add({0, 0, 0, 0});
+    add(end);
+    const Picture picture = read(file);
+    EXPECT_EQ(picture.width, 1);
+    EXPECT_EQ(picture.height, 3);
+    EXPECT_EQ(picture.grey, (Bytes{16, 32, 64}));
+}
+
+// netpbm's readers end a comment at a carriage return as well.
+TEST_F(Pictures, LinesOfAPnmHeaderMayEndWithACarriageReturn) {
+    EXPECT_EQ(read(std::string("P5\r# text\r2 1\r255\r\x0A\xFF")).grey, (Bytes{10, 255}));
+}
+
 TEST_F(Pictures, TheMaximumOfAPnmFileIsWhite) {
     EXPECT_EQ(read(std::string("P5\n# maxval\n3 1\n100\n\0\x32\x64", 24)).grey,
               (Bytes{0, 128, 255}));
@@ -136,6 +175,10 @@ TEST_F(Pictures, OtherFormatsAndFoldersAreRejectedWithTheirNames) {
         targa("\0\0\2\0\0\0\0\0\0\0\0\0\2\0\2\0\x18\0\0\0\0\0\0\0\0\0\0\0\0\0", 30);
     for (const std::string& file : {gif, targa, std::string("any text")})
         EXPECT_EQ(reasonFor(file), "'" + path_ + "': expected a PNG, JPEG or PGM file");
+    for (const std::string kind : {"P1", "P2", "P3", "P4"})
+        EXPECT_EQ(reasonFor(kind + " 1 1 255\n1\n"),
+                  "'" + path_ + "': expected a binary PGM or PPM file (P5 or P6), got " + kind +
+                      ": save it again as PNG");
     EXPECT_NE(reasonFor("\xFF\xD8\xFF\xE1").find("the JPEG file is damaged"), std::string::npos);
     EXPECT_NE(reasonFor("P5 1 1 0\n1").find("1 to 65535, got 0"), std::string::npos);
     try {

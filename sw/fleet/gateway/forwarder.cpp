@@ -273,17 +273,32 @@ void Forwarder::answered(const Object& object, bool isKnown, bool isMaintenance,
 
 // Records the client as an owner of all objects that a request passes to the vehicle as proxies.
 // Skips the operations that every object has, such as ice_ping, because they pass no proxies.
-void Forwarder::recordProxies(const Request& request) {
-    if (!request.client || request.current.operation.compare(0, 4, "ice_") == 0)
-        return;
-    const auto passed = passedProxies(request.parameters);
-    std::lock_guard<std::mutex> lock(mutex_);
-    addressees_.record(*request.client, passed);
+// Returns false, after failing the request, if one of the objects belongs to a client of another
+// subject.
+bool Forwarder::recordProxies(const std::shared_ptr<Request>& request) {
+    if (!request->client || request->current.operation.compare(0, 4, "ice_") == 0)
+        return true;
+    const auto passed = passedProxies(request->parameters);
+    std::optional<Ice::Identity> others;
+    {
+        std::lock_guard<std::mutex> lock(mutex_);
+        others = addressees_.record(*request->client, passed);
+    }
+    if (!others)
+        return true;
+    if (request->isOneway())
+        request->current.con->close(Ice::ConnectionClose::Forcefully);
+    finish(request, false, [&] {
+        fail({request}, unknown("a proxy of '" + Ice::identityToString(*others) +
+                                "' belongs to another client: use a UUID as the identity"));
+    });
+    return false;
 }
 
 // Sends a request on its lane. Only the thread that executes send() calls this function.
 void Forwarder::sendOne(const std::shared_ptr<Request>& request) {
-    recordProxies(*request);
+    if (!recordProxies(request))
+        return;
     const auto failed = [this, request](std::exception_ptr why) {
         finish(request, false, [&] { fail({request}, explained(why)); });
     };

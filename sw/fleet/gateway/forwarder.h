@@ -77,7 +77,7 @@ private:
     void send();
     void ask(const Connection& connection, const Object& object);
     void answered(const Object& object, bool isKnown, bool isMaintenance, std::exception_ptr why);
-    void recordProxies(const Request& request);
+    bool recordProxies(const std::shared_ptr<Request>& request);
     void sendOne(const std::shared_ptr<Request>& request);
     void confirm(int lane, const Ice::Current& of);
     void finish(const std::shared_ptr<Request>& request, bool hasArrived,

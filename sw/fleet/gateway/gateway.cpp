@@ -8,6 +8,7 @@
 // shares the radio.
 
 #include "gateway_options.h"
+#include "log.h"
 #include "pages.h"
 #include "reason.h"
 #include "registration.h"
@@ -369,6 +370,7 @@ int main(int argc, char** argv) {
         if (o.device.empty())
             throw CLI::RequiredError("--device");
         setProperties(data.properties, o);
+        installLog();
         Ice::CommunicatorHolder ic(data);
         serve(ic.communicator(), o);
     } catch (const CLI::ParseError& e) {

@@ -9,6 +9,16 @@
 
 namespace gateway {
 
+std::string nameInWords(const std::string& id) {
+    std::string words;
+    for (const char c : id.substr(id.rfind(':') + 1))
+        if (std::isupper(c))
+            words += (words.empty() ? "" : " ") + std::string(1, char(std::tolower(c)));
+        else
+            words += c;
+    return words.substr(0, words.rfind(" exception"));
+}
+
 std::string reasonOf(const Ice::Exception& e) {
     if (const auto* file = dynamic_cast<const Ice::FileException*>(&e))
         return file->path + ": " + std::generic_category().message(file->error);
@@ -35,15 +45,7 @@ std::string reasonOf(const Ice::Exception& e) {
         return proxy->str;
     if (const auto* endpoint = dynamic_cast<const Ice::NoEndpointException*>(&e))
         return "expected a proxy with endpoints, got '" + endpoint->proxy + "'";
-    // Other exceptions have no text. Their reason is the name of the exception, split into words.
-    const std::string id = e.ice_id();
-    std::string words;
-    for (const char c : id.substr(id.rfind(':') + 1))
-        if (std::isupper(c))
-            words += (words.empty() ? "" : " ") + std::string(1, char(std::tolower(c)));
-        else
-            words += c;
-    return words.substr(0, words.rfind(" exception"));
+    return nameInWords(e.ice_id()); // other exceptions have no text
 }
 
 std::exception_ptr inWords(std::exception_ptr why) {

@@ -11,6 +11,10 @@
 
 namespace gateway {
 
+// Returns the name of an exception class, split into words: "::Ice::BadMagicException" becomes "bad
+// magic".
+std::string nameInWords(const std::string& id);
+
 // Returns the reason why Ice failed, in words.
 std::string reasonOf(const Ice::Exception& e);
 

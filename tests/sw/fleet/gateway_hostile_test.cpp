@@ -207,4 +207,19 @@ TEST_F(HostileClients, ErrorsAreWords) {
     expectWords(said());
 }
 
+// Ice logs its warnings with the position in its source code and the name of the exception.
+TEST_F(HostileClients, IcesOwnWarningsAreWords) {
+    world_.rig.with([&] { world_.rig.uav.modem->power(false, world_.rig.ns()); });
+    start({"--wait", "2", "--Ice.Warn.Connections=1"});
+    const Message http{'G', 'E', 'T', ' ', '/', ' ', 'H', 'T', 'T', 'P', '/', '1', '.', '1'};
+    RawClient client(port_);
+    client.write(http);
+    EXPECT_TRUE(client.receive().empty());
+    EXPECT_EQ(stopOrKill(), 0);
+    EXPECT_TRUE(
+        hasPrinted("warning: connection exception:\n   bad magic:\n   unknown magic number"))
+        << said();
+    expectWords(said());
+}
+
 } // namespace

@@ -68,24 +68,43 @@ TEST_F(Gateway, MaintenanceIsReachedAtItsOwnDoor) {
 
 // ---- calls made by the vehicle ----
 
+// A program with the object "listener", which the vehicle can call on the program's connection.
+struct Program {
+    Program(const std::string& at, int answer)
+        : ic(program({{"Ice.Default.InvocationTimeout", "1800000"}, {"Ice.RetryIntervals", "-1"}})),
+          heard(std::make_shared<Heard>(answer)) {
+        adapter = ic->createObjectAdapter("");
+        adapter->add(heard, Ice::stringToIdentity("listener"));
+        adapter->activate();
+        echo = Ice::uncheckedCast<RadioTest::UavPrx>(ic->stringToProxy("echo:" + at));
+        echo->ice_getConnection()->setAdapter(adapter);
+    }
+    Ice::CommunicatorHolder ic;
+    std::shared_ptr<Heard> heard;
+    std::shared_ptr<Ice::ObjectAdapter> adapter;
+    std::shared_ptr<RadioTest::UavPrx> echo;
+};
+
+// Passes a proxy of the program's object to an operation, as a program does to let the vehicle call
+// this object later. Returns the reason why the gateway has refused the call; the vehicle rejects
+// the call, because the operation has no such parameter.
+std::string passListener(const Program& program, const std::string& operation) {
+    Ice::OutputStream out(program.ic.communicator());
+    out.startEncapsulation();
+    out.write(0);
+    out.write(std::shared_ptr<Ice::ObjectPrx>(
+        program.adapter->createProxy(Ice::stringToIdentity("listener"))));
+    out.endEncapsulation();
+    std::vector<Ice::Byte> in, result;
+    out.finished(in);
+    return whyFails(
+        [&] { program.echo->ice_invoke(operation, Ice::OperationMode::Normal, in, result); });
+}
+
 // Both programs have an object with the same name. The vehicle calls this name while it serves a
 // call of one of the programs; the call must reach this program.
 TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
     start();
-    struct Program {
-        Program(const std::string& at, int answer)
-            : ic(plain()), heard(std::make_shared<Heard>(answer)) {
-            adapter = ic->createObjectAdapter("");
-            adapter->add(heard, Ice::stringToIdentity("listener"));
-            adapter->activate();
-            echo = Ice::uncheckedCast<RadioTest::UavPrx>(ic->stringToProxy("echo:" + at));
-            echo->ice_getConnection()->setAdapter(adapter);
-        }
-        Ice::CommunicatorHolder ic;
-        std::shared_ptr<Heard> heard;
-        std::shared_ptr<Ice::ObjectAdapter> adapter;
-        std::shared_ptr<RadioTest::UavPrx> echo;
-    };
     Program one(endpoint(), 1), two(endpoint(), 10), idle(endpoint(), 100);
     one.echo->ice_ping();
     two.echo->ice_ping();
@@ -96,35 +115,54 @@ TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
     EXPECT_EQ(one.heard->calls, 6);
     EXPECT_EQ(two.heard->calls, 6);
     EXPECT_EQ(idle.heard->calls, 0);
-    // Passes a proxy of the program's object to an operation, as a program does to let the vehicle
-    // call this object later.
-    const auto passes = [](const Program& program, const std::string& operation) {
-        Ice::OutputStream out(program.ic.communicator());
-        out.startEncapsulation();
-        out.write(0);
-        out.write(std::shared_ptr<Ice::ObjectPrx>(
-            program.adapter->createProxy(Ice::stringToIdentity("listener"))));
-        out.endEncapsulation();
-        std::vector<Ice::Byte> in, result;
-        out.finished(in);
-        try {
-            program.echo->ice_invoke(operation, Ice::OperationMode::Normal, in, result);
-            // the vehicle may reject the call, because the operation has no such parameter
-        } catch (const Ice::LocalException&) {
-        }
-    };
     // every client may call ice_ping, so its parameters do not count as passed objects
-    passes(idle, "ice_ping");
+    passListener(idle, "ice_ping");
     EXPECT_EQ(two.echo->callBack(1), 10);
-    passes(one, "fetch");
+    passListener(one, "fetch");
     EXPECT_EQ(two.echo->callBack(1), 1) << "only one client has passed this object";
-    passes(two, "fetch");
+    passListener(two, "fetch");
     EXPECT_THROW(two.echo->callBack(1), Ice::Exception)
         << "two clients have passed this object, so the call must fail";
     for (const Program* program : {&one, &two})
         program->ic->destroy();
     EXPECT_THROW(idle.echo->callBack(1), Ice::Exception) << "the owners of the object have left";
     EXPECT_EQ(idle.heard->calls, 0);
+}
+
+// Without certificates, the host is the subject of a client. Another subject that knows the
+// identity of a client's object cannot receive or block the vehicle's calls while the client is
+// connected.
+TEST_F(Gateway, AClientOfAnotherSubjectCannotPassTheSameObject) {
+    start();
+    Program owner(endpoint(), 1), caller(endpoint(), 100);
+    Program other(endpoint() + " --sourceAddress 127.0.0.2", 10);
+    passListener(owner, "fetch");
+    const std::string why = passListener(other, "fetch");
+    EXPECT_NE(why.find("a proxy of 'listener' belongs to another client"), std::string::npos)
+        << why;
+    EXPECT_EQ(other.echo->repeat(1, {1}), RadioTest::Bytes{1}) << "other calls are not affected";
+    EXPECT_EQ(caller.echo->callBack(1), 1) << "the owner must receive the calls";
+    EXPECT_EQ(other.heard->calls, 0);
+    // A one-way call has no reply, so its connection is closed.
+    other.echo = other.echo->ice_oneway();
+    const auto connection = other.echo->ice_getConnection();
+    passListener(other, "note");
+    std::string closed;
+    for (int calls = 0; calls < 100 && closed.empty(); ++calls) {
+        caller.echo->ice_ping();
+        closed = whyFails([&] { connection->throwException(); });
+    }
+    EXPECT_NE(closed, "") << "the connection was not closed";
+    EXPECT_EQ(caller.echo->callBack(1), 1);
+    // After the owner has disconnected, the name is free again.
+    owner.ic->destroy();
+    other.echo = other.echo->ice_twoway();
+    std::string last = "belongs to another client";
+    for (int calls = 0; calls < 100 && last.find("another client") != std::string::npos; ++calls) {
+        caller.echo->ice_ping();
+        last = passListener(other, "fetch");
+    }
+    EXPECT_EQ(last.find("belongs to another client"), std::string::npos) << last;
 }
 
 // With TLS, the gateway knows the subject of a client's certificate. `./icesoc key FILE

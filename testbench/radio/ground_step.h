@@ -66,8 +66,10 @@ public:
         }
         waitedNs_ += static_cast<uint64_t>((std::chrono::steady_clock::now() - begin).count());
     }
+    // Returns whether a program keeps step.
+    bool keeps() const { return load(status_.keeper) != 0; }
     // Returns the simulated time at which the program wakes up, ns.
-    uint64_t nextEvent() const { return load(status_.keeper) ? load(status_.untilNs) : never; }
+    uint64_t nextEvent() const { return keeps() ? load(status_.untilNs) : never; }
     uint64_t waitedNs() const { return waitedNs_; } // wall-clock time
 
 private:

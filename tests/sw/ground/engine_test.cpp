@@ -20,6 +20,7 @@ namespace {
 class EngineTest : public ::testing::Test {
 protected:
     EngineTest() {
+        rig_.setHurried(true);
         rig_.with([&] { rig_.uav.echo = true; });
     }
     XBeeAT::Settings settings() {
@@ -339,8 +340,7 @@ TEST_F(EngineTest, AListenerAloneHasTheModemTriedAgain) {
     rig_.with([&] { rig_.ground->power(false, rig_.ns()); });
     auto engine = start();
     ASSERT_GE(engine->listen(), 0);
-    while (!log_.has("the next connection will try again"))
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    ASSERT_TRUE(rig_.until([&] { return log_.has("the next connection will try again"); }));
     rig_.with([&] { rig_.ground->power(true, rig_.ns()); });
     EXPECT_TRUE(rig_.until([&] { return rig_.uav.isUp(); }));
 }

@@ -72,6 +72,7 @@ protected:
     FleetTest() {
         settings_.device = rig_.pty.path();
         settings_.guardMs = Rig::guardMs;
+        rig_.setHurried(true);
         rig_.with([&] {
             // the test adds other vehicles, so the vehicle of the rig is switched off
             rig_.uav.modem->power(false, rig_.ns());

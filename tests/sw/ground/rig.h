@@ -3,7 +3,8 @@
 // rig: simulates the other end of the ground's serial port: a modem on a pty, the air, and a UAV
 // that consists of a modem and a link layer. Simulated time follows the machine clock, but it
 // waits for an engine that keeps step. On a busy machine, time therefore passes slowly, and no
-// time-out expires too early.
+// time-out expires too early. If a test waits for the rig, and all that it uses keeps step, time
+// passes as fast as the models can be computed (setHurried).
 
 #pragma once
 
@@ -108,12 +109,19 @@ public:
         place(ground, pty, air, std::move(set));
     }
     // Puts the modem of a second ground station into an air.
-    void placeOther(RfChannel& where) { place(other, otherPty, where, {}); }
+    void placeOther(RfChannel& where) {
+        setHurried(false); // only an engine at `pty` keeps step
+        place(other, otherPty, where, {});
+    }
     // Runs `f` between two steps of the models, with the mutex locked.
     template <class F> auto with(F f) {
         std::lock_guard<std::mutex> lock(mutex_);
         return f();
     }
+    // Sets whether time passes quickly while the test waits in until(), pass() or read(). This is
+    // only right if no other program or thread has to do something meanwhile, apart from the
+    // engine at `pty`.
+    void setHurried(bool isHurried) { isHurried_ = isHurried; }
     // Waits until `done` returns true, for at most `seconds` of simulated time; a busy machine
     // takes longer in real time.
     template <class F> bool until(F done, uint64_t seconds = 60) {
@@ -122,7 +130,7 @@ public:
         while (!with([&] { return isLate = now_ > end, done(); })) {
             if (isLate)
                 return false;
-            std::this_thread::sleep_for(pause);
+            waitForStep();
         }
         return true;
     }
@@ -132,7 +140,7 @@ public:
     void pass(double time) {
         const double end = seconds() + time;
         while (seconds() < end)
-            std::this_thread::sleep_for(pause);
+            waitForStep();
     }
     bool isReadable(int fd) {
         return until([fd] {
@@ -178,30 +186,50 @@ private:
         modem.reset();
         modem = std::make_unique<XBee>(line, where, options);
     }
+    using Steady = std::chrono::steady_clock;
+
+    // Follows the machine clock, unless the test's thread is advancing time.
     void run() {
-        using Steady = std::chrono::steady_clock;
-        // longest time between two steps of the models, ns
-        constexpr uint64_t longestNs = 1'000'000;
-        for (auto last = Steady::now(); !stop_;) {
-            waiting_ = Steady::now();
-            step_.wait(now_);
+        while (!stop_) {
             {
-                std::lock_guard<std::mutex> lock(mutex_);
-                auto now = Steady::now();
-                now_ += std::min(static_cast<uint64_t>((now - last).count()), longestNs);
-                last = now;
-                clock_.set(now_);
-                air.advance(now_);
-                elsewhere.advance(now_);
-                ground->advance(now_);
-                if (other)
-                    other->advance(now_);
-                if (step)
-                    step();
-                uav.advance(now_);
+                std::lock_guard<std::mutex> lock(stepping_);
+                const auto now = Steady::now();
+                // longest time between two steps of the models, ns
+                constexpr uint64_t longestNs = 1'000'000;
+                if (!hurries())
+                    advance(std::min(static_cast<uint64_t>((now - last_).count()), longestNs));
+                last_ = now;
             }
             std::this_thread::sleep_for(std::chrono::microseconds(50));
         }
+    }
+    // Lets time pass while the test's thread waits.
+    void waitForStep() {
+        ++waiters_;
+        if (hurries()) {
+            std::lock_guard<std::mutex> lock(stepping_);
+            advance(hurriedNs);
+        } else {
+            std::this_thread::sleep_for(pause);
+        }
+        --waiters_;
+    }
+    // An engine that has not opened its modem does not keep step yet.
+    bool hurries() const { return isHurried_ && waiters_ > 0 && step_.keeps(); }
+    void advance(uint64_t ns) {
+        waiting_ = Steady::now();
+        step_.wait(now_);
+        std::lock_guard<std::mutex> lock(mutex_);
+        now_ += ns;
+        clock_.set(now_);
+        air.advance(now_);
+        elsewhere.advance(now_);
+        ground->advance(now_);
+        if (other)
+            other->advance(now_);
+        if (step)
+            step();
+        uav.advance(now_);
     }
 
     // Returns whether simulated time must still wait for the engine. The wait ends after 5 s of
@@ -215,6 +243,11 @@ private:
     ClockFile clock_;
     std::chrono::steady_clock::time_point waiting_;
     GroundStep step_{*clock_, pty, [this] { return goesOn(); }};
+    static constexpr uint64_t hurriedNs = 100'000; // step of a hurried wait
+    std::atomic<bool> isHurried_{false};
+    std::atomic<unsigned> waiters_{0};
+    Steady::time_point last_ = Steady::now();
+    std::mutex stepping_; // held during a step, before mutex_
     std::mutex mutex_;
     std::thread thread_;
 };

@@ -10,6 +10,7 @@
 #include "npi_memory.h"
 #include <functional>
 #include <gtest/gtest.h>
+#include <ostream>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -31,6 +32,11 @@ constexpr U32 coreClocksOfMs = 100;
 #endif
 // byte address of the core's buffers in DDR3, as the driver uses it
 constexpr U32 coreMemory = 0x01000000;
+
+// Prints a status in GoogleTest's messages, such as "10 (::Ice::TimeoutException)".
+inline void PrintTo(Ice_Status status, std::ostream* out) {
+    *out << static_cast<int>(status) << " (" << Ice_Status_text(status) << ")";
+}
 
 // Exception for a call that failed, with its status. It is not used if the call threw one of the
 // exceptions of its operation.

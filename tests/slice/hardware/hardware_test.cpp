@@ -58,6 +58,10 @@ TEST_F(CalculatorServant, ACoreThatNoLongerAnswersIsATimeOut) {
     EXPECT_EQ(statusOf([&] { core_.setMode(Demo_wrap, 0, 0); }), ICE_TIMEOUT);
 }
 
+TEST(CoreSlot, AStatusIsPrintedWithItsText) {
+    EXPECT_EQ(testing::PrintToString(ICE_TIMEOUT), "10 (::Ice::TimeoutException)");
+}
+
 TEST_F(CalculatorServant, SettersReachTheCoreAndGettersReadIt) {
     for (Demo_Mode mode : {Demo_wrap, Demo_saturate, Demo_refuse})
         for (Ice_Bool negate : {Ice_Bool(0), Ice_Bool(1)}) {

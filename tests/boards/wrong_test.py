@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: MIT
 """wrong_test: checks that `./icesoc board check` rejects boards that cannot work, with the correct
 message and no other. Each line of WRONG contains a change to the kit and the expected message."""
+import codecs
 import copy
 import sys
+import tempfile
 import unittest
+from pathlib import Path
 
 from icesoc.board import check, model
 
@@ -160,6 +163,14 @@ class Wrong(unittest.TestCase):
 
     def test_there_are_at_least_20(self):
         self.assertGreaterEqual(len(WRONG), 20)
+
+
+class Parts(unittest.TestCase):
+    def test_a_byte_order_mark_is_skipped(self):
+        with tempfile.NamedTemporaryFile(suffix=".csv") as file:
+            file.write(codecs.BOM_UTF8 + "ball,name # \x85\f\nA1,x\n".encode())
+            file.flush()
+            self.assertEqual(model.rows(Path(file.name)), [{"ball": "A1", "name # \x85\f": "x"}])
 
 
 for title, (changed, texts) in WRONG.items():

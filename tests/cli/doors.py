@@ -2,12 +2,16 @@
 # SPDX-License-Identifier: MIT
 """doors: checks that ./icesoc and make accept the same options, report errors with advice, and
 never pass a value to a shell. lists.py tests the lists of commands."""
-import concurrent.futures, importlib.util, json, os, shutil, subprocess, tempfile, time, unittest
+import concurrent.futures, contextlib, importlib.util, io, json, os, shutil, subprocess, tempfile
+import time, unittest
 from pathlib import Path
+from types import SimpleNamespace
 
 from icesoc import TREE
 from icesoc.cli import command, everything, flight  # noqa: F401
+from icesoc.cli.commands import core, regression
 from icesoc.cli.options import FLIGHT, SWITCH
+from icesoc.regress import regress
 from icesoc.util.lock import lock
 from icesoc.util.ninja import explained
 from script import LONGEST
@@ -76,6 +80,19 @@ class Values(Work):
         expected = f"NAME: expected the name of a core, got '{odd}'"
         self.assertIn(expected, said)
         self.assertIn(expected, ask("./icesoc", "core", "remove", odd)[1])
+
+    def test_the_name_of_tests_may_begin_with_a_hyphen(self):
+        for text in ("-V", "--help", "-3"):
+            chosen = regression.selection(SimpleNamespace(name=text, label="", folder=""), "folder")
+            self.assertEqual(regress.parse(chosen).name.text, text)
+
+    def test_a_list_of_cores_without_a_last_newline_gets_a_line(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(TREE)
+        (self.work / "cores.list").write_text("\ufefffir")
+        with contextlib.redirect_stdout(io.StringIO()):
+            core.put_into_repository(self.work, "low_pass")
+        self.assertEqual((self.work / "cores.list").read_text(), "fir\nlow_pass\n")
 
     def test_both_doors_give_the_same_values(self):
         samples = {"N": "3", "VALUE": "a", "FOLDER": str(TREE / "tools"), "WxH": "96x64",

@@ -87,10 +87,15 @@ registers = "taker.regs.json"
 verilog = ["taker.v"]
 pins = [{name = "b_i", internal = true}, {name = "c_i", width = 2}]
 END
-printf 'low_pass\ntaker c_i=low_pass.c_o b_i=low_pass.b_o\n' >"$work/ip/cores.list"
+# A byte order mark, which editors of Windows add, and a form feed do not change the list.
+printf '\357\273\277taker c_i=low_pass.c_o b_i=low_pass.b_o # a\ftaker\nlow_pass\n' \
+    >"$work/ip/cores.list"
 ! remove low_pass 2>"$work/log" && grep -q 'inputs of taker' "$work/log" ||
     { echo 'rm-ip makes a pin of an input' && exit 1; }
-printf 'low_pass\ntaker b_i=low_pass.b_o\n' >"$work/ip/cores.list"
+printf '# Jos\351\nlow_pass\n' >"$work/ip/cores.list"
+! remove low_pass 2>"$work/log" && grep -q 'cores.list: expected text in UTF-8' "$work/log" ||
+    { echo 'rm-ip reads a list in Latin-1' && exit 1; }
+printf '\357\273\277low_pass\ntaker b_i=low_pass.b_o\n' >"$work/ip/cores.list"
 remove low_pass >/dev/null
 [ "$(cat "$work/ip/cores.list")" = 'taker b_i=low_pass.b_o' ] ||
     { echo 'rm-ip keeps the core, or takes another line' && exit 1; }

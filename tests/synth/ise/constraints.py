@@ -10,6 +10,7 @@ covers all paths and pads. The exit status is 1 if anything is reported, or if m
 the constraints of MIG in another way than expected.
 """
 
+import codecs
 import json
 import re
 import subprocess
@@ -49,9 +50,13 @@ def netlist():
 
 
 def renamed():
-    """Returns the lines in which merge_ucf.py reports renamed constraints of a board."""
+    """Returns the lines in which merge_ucf.py reports renamed constraints of a board. The file of
+    MIG begins with a byte order mark, and ends with a comment in Latin-1."""
+    text = codecs.BOM_UTF8 + (HERE / "mig.ucf").read_bytes() + b"# C:/Users/Jos\xe9\n"
+    WORK.mkdir(parents=True, exist_ok=True)
+    (WORK / "mig.ucf").write_bytes(text)
     return subprocess.run(
-        [sys.executable, "-m", "icesoc.synth.merge_ucf", HERE / "mig.ucf", *FILES], check=True,
+        [sys.executable, "-m", "icesoc.synth.merge_ucf", WORK / "mig.ucf", *FILES], check=True,
         text=True, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE).stderr
 
 

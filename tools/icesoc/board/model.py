@@ -136,7 +136,8 @@ def names(boards=BOARDS):
 
 def rows(path):
     """Returns the rows of a CSV file of facts, without its comments."""
-    lines = [line for line in path.read_text().splitlines() if not line.startswith("#")]
+    text = path.read_text("utf-8-sig")
+    lines = [line for line in text.split("\n") if line and not line.startswith("#")]
     return list(csv.DictReader(lines))
 
 

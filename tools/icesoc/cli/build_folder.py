@@ -30,6 +30,15 @@ def writable(folder, otherwise):
         raise Stop(f"{folder} is not writable; {otherwise}")
 
 
+def read_list(path):
+    """Returns the text of a cores.list. Its lines end with a newline only, so str.splitlines, which
+    also splits at form feeds, must not be used."""
+    try:
+        return Path(path).read_text("utf-8-sig")
+    except ValueError as error:
+        raise Stop(f"{path}: expected text in UTF-8") from error
+
+
 def cores_in(folder):
     """Returns the folders of the cores in a folder. A folder with a cores.list is a repository, and
     has several cores. Any other folder is itself the only core."""

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from icesoc.board import make, model
 from icesoc.cli import choices, keys
-from icesoc.cli.build_folder import BuildFolder
+from icesoc.cli.build_folder import BuildFolder, read_list
 from icesoc.cli.options import (CORE_FOLDERS, COUNT, FILE, FOLDER, FRAME, KEY_FILE, PATH, SEED,
                                 SHARE, SWITCH, TEXT, UCOS2, WORDS, Option, matching, number, one_of)
 from icesoc.regs.model import Wrong
@@ -257,7 +257,7 @@ def check_chip(values, build):
     """Rejects a core of the tree that is not in the chip. Without this check, the call of the core
     would fail after minutes."""
     listed = build.cached("CORES") or "ip/cores.list"
-    lines = re.findall(r"^\s*(\w+)", Path(listed).read_text(), re.M)
+    lines = re.findall(r"^\s*(\w+)", read_list(listed), re.M)
     for core in (Path(folder).name for folder in values.cores):
         if core not in lines:
             raise Stop(f"the chip has no core '{core}': add a line '{core}' to {listed}", 2)

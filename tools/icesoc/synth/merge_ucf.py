@@ -19,7 +19,8 @@ PADS = {"c3_sys_clk": "sys_clk_i", "c3_sys_rst_i": "sys_rst_i"}
 
 def statements(path):
     """Yields (line number, text without comments) of each statement."""
-    text = re.sub(r"#[^\n]*", "", open(path).read())
+    with open(path, encoding="utf-8-sig", errors="replace") as file:
+        text = re.sub(r"#[^\n]*", "", file.read())
     line = 1
     for part in text.split(";"):
         if part.strip():

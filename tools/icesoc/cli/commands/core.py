@@ -11,7 +11,7 @@ from pathlib import Path
 from icesoc import TREE
 from icesoc.chip import manifest
 from icesoc.cli import choices
-from icesoc.cli.build_folder import BuildFolder
+from icesoc.cli.build_folder import BuildFolder, read_list
 from icesoc.cli.command import GROUPS, command
 from icesoc.cli.commands.synth import utilisation
 from icesoc.cli.options import (BUILD, CORE_FOLDERS, FILE, FOLDER, JOBS, SEED, SWITCH, TEXT, Option,
@@ -115,7 +115,7 @@ def put_into_repository(room, name):
     commit = output(["git", "rev-parse", "HEAD"], check=False, stderr=-3).strip()
     made = (TEMPLATE / "repository/Makefile.in").read_text()
     made = made.replace("@URL@", origin or os.getcwd()).replace("@COMMIT@", commit or "HEAD")
-    files = {"Makefile": made, "cores.list": Path("ip/cores.list").read_text(),
+    files = {"Makefile": made, "cores.list": read_list("ip/cores.list"),
              ".gitignore": "/build/\n"}
     for file in (".github/workflows/icesoc.yml", ".gitlab-ci.yml"):
         files[file] = Path(file).read_text()
@@ -123,8 +123,9 @@ def put_into_repository(room, name):
         if not (room / file).exists():
             (room / file).parent.mkdir(parents=True, exist_ok=True)
             (room / file).write_text(text)
-    with open(room / "cores.list", "a") as listed:
-        listed.write(f"{name}\n")
+    listed = read_list(room / "cores.list")
+    end = "" if listed.endswith("\n") or not listed else "\n"
+    (room / "cores.list").write_text(f"{listed}{end}{name}\n")
     say(f"Next: make -C {room} test; make -C {room} run calls it by radio")
 
 
@@ -348,7 +349,7 @@ def users_of(name):
     """Yields the cores that need the core `name`: ip/cores.list connects one of their inputs to it,
     and without it this input would become a pin of the chip. An input that the manifest calls
     "internal" does not count, because it would become 0."""
-    for line in Path("ip/cores.list").read_text().splitlines():
+    for line in read_list("ip/cores.list").split("\n"):
         user, *words = line.partition("#")[0].split() or [""]
         path = Path("ip", user, "core.toml")
         pins = manifest.read(path).pins() if user and path.is_file() else []
@@ -392,7 +393,7 @@ def remove(values):
     if core not in others:
         shutil.rmtree(core)
     listed = Path("ip/cores.list")
-    listed.write_text(re.sub(rf"^[ \t]*{name}(?![^\s#]).*\n?", "", listed.read_text(), flags=re.M))
+    listed.write_text(re.sub(rf"^[ \t]*{name}(?![^\s#]).*\n?", "", read_list(listed), flags=re.M))
     if (build / "build.ninja").exists():
         (build / f"files/{name}_slot.f").unlink(missing_ok=True)
         others = ";".join(str(folder) for folder in others if folder != core)

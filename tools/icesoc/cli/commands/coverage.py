@@ -47,7 +47,7 @@ def coverage(values):
     tree = tree_state(".", "bus hdl ip slice sw testbench tests tools")
     limits = Path("tests/limits.toml")
     if values.name:
-        run([regress, "--prepare", "--build", work, "--name", values.name])
+        run([regress, "--prepare", "--build", work, f"--name={values.name}"])
         limits = work / "no_limits.toml"
         limits.write_text('coverage."".points = 0\n')
     else:

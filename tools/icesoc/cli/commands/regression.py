@@ -29,9 +29,10 @@ def at_once(values):
 
 
 def selection(values, *more):
-    """Returns the options that select tests, as words for the regression program."""
-    return [word for name in ("name", "label", *more) if getattr(values, name)
-            for word in (f"--{name}", getattr(values, name))]
+    """Returns the options that select tests, as words for the regression program. A value may begin
+    with a hyphen."""
+    return [f"--{name}={getattr(values, name)}" for name in ("name", "label", *more)
+            if getattr(values, name)]
 
 
 @command("test", [

@@ -124,9 +124,9 @@ Flight::Flight(const Options& options)
       air_(o_.seed), ground_(air_, modem("ground", o_), prepared(o_, frame_), "", o_.replayed,
                              headOf(o_), [this] { return isWanted(); }),
       soc_(air_, modem("uav", o_)), events_(o_.out + "/events.jsonl"),
-      pace_(o_.speed == "real"  ? 1
-            : o_.speed == "max" ? 0
-                                : std::stod(o_.speed)) {
+      pace_(o_.speed == "real"                          ? 1
+            : o_.speed == "max" || o_.speed == "viewed" ? 0
+                                                        : std::stod(o_.speed)) {
     if (!o_.board.empty())
         soc_.wires() = BoardWires::fromFolder(o_.board);
     std::vector<WireFault> faults;
@@ -339,6 +339,8 @@ bool Flight::poll() {
     watch();
     ground_.status->cycles = soc_.cycles();
     ground_.status->wallNs = pace_.workedNs() - ground_.step.waitedNs();
+    if (o_.speed == "viewed" && access((o_.out + "/viewed").c_str(), F_OK) == 0)
+        pace_.limit(1, soc_.now());
     pace_.keep(soc_.now());
     bool over = o_.duration > 0 && static_cast<double>(soc_.now()) >= o_.duration * 1e9;
     over = over || (o_.replayed && soc_.now() >= o_.replayed->endNs());

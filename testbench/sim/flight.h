@@ -39,6 +39,14 @@ public:
             anchorNs_ = simulatedNs;
         }
     }
+    // Limits the rate from this simulated time on.
+    void limit(double rate, uint64_t simulatedNs) {
+        if (rate != rate_) {
+            anchor_ = Clock::now();
+            anchorNs_ = simulatedNs;
+        }
+        rate_ = rate;
+    }
     uint64_t workedNs() const {
         return static_cast<uint64_t>((Clock::now() - begin_ - slept_).count());
     }

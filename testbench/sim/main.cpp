@@ -56,7 +56,7 @@ bool fits(const json& field, const json& value) {
 std::string expectedOf(const std::string& name, const json& field) {
     static const std::map<std::string, std::string> patterns = {
         {"modem_key", "32 hexadecimal digits"},
-        {"speed", "real, max, or a factor such as 0.25"},
+        {"speed", "real, max, viewed, or a factor such as 0.25"},
         {"trouble", "KIND:ADDRESS:START:DURATION, such as away:2:1.5:3"}};
     if (patterns.count(name))
         return patterns.at(name);

@@ -89,7 +89,7 @@ FIELDS = [
 _TEXT: dict = {"type": "string"}
 _TIME: dict = {"type": "number", "minimum": 0}
 _FLAG: dict = {"type": "boolean"}
-_SPEED = {**_TEXT, "pattern": "real|max|0?[.][0-9]+|[0-9]{1,2}([.][0-9]+)?"}
+_SPEED = {**_TEXT, "pattern": "real|max|viewed|0?[.][0-9]+|[0-9]{1,2}([.][0-9]+)?"}
 INNER: dict[str, dict] = {name: {**kind, "description": text} for name, kind, text in [
     ("modem_key", {**_TEXT, "pattern": "[0-9a-fA-F]{32}"},
      "AES key of the vehicle's modem"),
@@ -108,7 +108,8 @@ INNER: dict[str, dict] = {name: {**kind, "description": text} for name, kind, te
     ("every_clock", _FLAG, "evaluate every clock, including quiet ones and clocks of idle "
      "cores (slow)"),
     ("speed", _SPEED, "real: simulated time follows real time; 0.25: a quarter of this speed; "
-     "max: as fast as possible"),
+     "max: as fast as possible; viewed: as fast as possible until a browser shows the flight's "
+     "page, then real"),
     ("duration", _TIME, "end after this simulated time, s"),
     ("gdb", {"type": "integer", "minimum": 0, "maximum": 65535},
      "port of the loopback interface on which to wait for GDB; 0 selects a free port"),

@@ -178,7 +178,9 @@ def mission(values, build, held):
         raise Stop(status=trial)
     if trial:
         warn(f"the page's trial was ended by signal {trial - 128}; the mission continues")
-    sim = simulator(values, held, [], [
+    # A viewer sees the mission in real time; without one, nothing waits for the wall clock.
+    speed = [] if values.live or opens(values) else ["--speed", "viewed"]
+    sim = simulator(values, held, speed, [
         "sw/ground/clients/mission.py", "{out}/flight.json", "--device", "{device}", "--frame",
         "{frame}", "--status", "{status}", "--plugin", build / "ground", "--slice",
         "sw/vehicle/Autopilot.ice", "--reference", build / "testbench/sim/vision-reference",

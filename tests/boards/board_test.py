@@ -11,6 +11,7 @@ import tempfile
 import unittest
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+from unittest import mock
 
 from icesoc import TREE
 from icesoc.board import check, firmware, make, model, picture, signals, ucf, wiring
@@ -99,6 +100,27 @@ class Boards(unittest.TestCase):
                 self.assertIs(build.for_vehicle(board, bridge), build)
             Path(folder, "CMakeCache.txt").write_text("")
             self.assertIs(build.for_vehicle("nucleo-qmtech", "async"), build)
+
+    def test_each_pair_of_board_and_bridge_has_its_own_folder(self):
+        kit = "boards/nucleo-qmtech-muxed/board.toml"
+        with tempfile.TemporaryDirectory() as folder, mock.patch.multiple(
+                BuildFolder, configure=mock.DEFAULT, follow=mock.DEFAULT) as made:
+            build = BuildFolder(folder, argparse.Namespace(jobs=1, built=True))
+
+            def shows(board, bridge, name, *variables):
+                self.assertEqual(str(build.for_vehicle(board, bridge).folder), f"build/{name}")
+                self.assertEqual(made["configure"].call_args.args[:-1], variables)
+
+            shows("", "sync", "sync", "-DBRIDGE=sync")
+            shows("xynergy", "", "board_xynergy", "-DBRIDGE=async", "-DBOARD=xynergy")
+            shows("xynergy", "sync", "board_xynergy_sync", "-DBRIDGE=sync", "-DBOARD=xynergy")
+            shows(kit, "async", "board_nucleo-qmtech-muxed", "-DBRIDGE=async",
+                  f"-DBOARD={Path(kit).absolute()}")
+            # a folder that was configured for another board
+            Path(folder, "CMakeCache.txt").write_text("BOARD:STRING=xynergy\n")
+            shows("", "sync", "board_xynergy_sync", "-DBRIDGE=sync", "-DBOARD=xynergy")
+            shows("nucleo-qmtech", "", "board_nucleo-qmtech", "-DBRIDGE=async",
+                  "-DBOARD=nucleo-qmtech")
 
     def test_a_recording_names_board_and_bridge(self):
         head = {"flight": {"board": "b"}, "clkHz": 2, "bridge": "sync"}

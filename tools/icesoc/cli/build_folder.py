@@ -156,14 +156,16 @@ class BuildFolder:
         folder of boards/, or a file board.toml) and of a bridge (async or sync). An empty text
         stands for the board or the bridge of this folder. It is this folder if it was configured
         for both; otherwise it is another folder with the same cores."""
-        other_board = board not in ("", self.cached("BOARD") or DEFAULT_BOARD)
-        if not other_board and bridge in ("", self.cached("BRIDGE") or DEFAULT_BRIDGE):
+        own = self.cached("BOARD") or DEFAULT_BOARD
+        if board in ("", own) and bridge in ("", self.cached("BRIDGE") or DEFAULT_BRIDGE):
             return self
-        path, name, variables = Path(board), bridge, [f"-DBRIDGE={bridge or DEFAULT_BRIDGE}"]
-        if other_board:
+        board, bridge = board or own, bridge or DEFAULT_BRIDGE
+        path, words, variables = Path(board), [], [f"-DBRIDGE={bridge}"]
+        if board != DEFAULT_BOARD or bridge == DEFAULT_BRIDGE:
             is_file = path.suffix == ".toml"
-            name = f"board_{path.absolute().parent.name if is_file else board}"
+            words.append(f"board_{path.absolute().parent.name if is_file else board}")
             variables.append(f"-DBOARD={path.absolute() if is_file else board}")
+        name = "_".join([*words, *[bridge] * (bridge != DEFAULT_BRIDGE)])
         other = BuildFolder(f"build/{name}", self)
         other.built = False
         other.configure(*variables, f"-DROOMS={ROOMS_OF_PROGRAMS}")

@@ -20,6 +20,7 @@
 module bus_registers #(
     parameter [31:0] ID_VALUE = 32'd0,
     parameter        EVENTS   = 1,        // number of events, 1..32
+    parameter [31:0] RAISED   = 32'hFFFFFFFF, // bit e: event e can happen; other events stay 0
     parameter [15:0] RW       = 16'h0000,
     parameter [15:0] RO       = 16'h0000,
     parameter [15:0] W1C      = 16'h0000,
@@ -39,7 +40,8 @@ module bus_registers #(
     wire [3:0]  reg_addr;
     reg  [31:0] rdata;
 
-    bus_wrapper #(.ID_VALUE(ID_VALUE), .WORDS(RW | RO | W1C | WS), .EVENTS(EVENTS)) u_wrapper (
+    bus_wrapper #(.ID_VALUE(ID_VALUE), .WORDS(RW | RO | W1C | WS), .EVENTS(EVENTS),
+                  .RAISED(RAISED)) u_wrapper (
         `include "slot_connect.vh"
         .reg_write_o(reg_write), .reg_read_o(reg_read), .reg_addr_o(reg_addr),
         .reg_wdata_o(wdata_o), .reg_rdata_i(rdata),
@@ -87,7 +89,8 @@ module bus_registers #(
     always @* begin
         rdata = 32'd0;
         for (i = 3; i < 16; i = i + 1)
-            rdata = rdata | ({32{{28'd0, reg_addr} == i}} & shown[32*(i-3) +: 32]);
+            if ({28'd0, reg_addr} == i)
+                rdata = shown[32*(i-3) +: 32];
     end
 
     wire unused = &{1'b0, reg_read, value_i, 1'b0};
@@ -129,7 +132,7 @@ module bus_registers #(
     wire [EVENTS-1:0] cleared = {EVENTS{bus_valid_i && bus_write_i && bus_addr_i == 4'd1}} &
         bus_wdata_i[EVENTS-1:0];
     always @(posedge clk_i) begin
-        seen <= rst_i ? {EVENTS{1'b0}} : (seen & ~cleared) | event_i;
+        seen <= rst_i ? {EVENTS{1'b0}} : ((seen & ~cleared) | event_i) & RAISED[EVENTS-1:0];
         if (rst_i)
             masked <= {EVENTS{1'b0}};
         else if (bus_valid_i && bus_write_i && bus_addr_i == 4'd2)

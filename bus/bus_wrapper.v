@@ -15,8 +15,9 @@
 
 module bus_wrapper #(
     parameter [31:0] ID_VALUE = 32'd0,
-    parameter [15:0] WORDS    = 16'hFFF8, // bit w: word w exists; bits 2..0 are ignored
-    parameter        EVENTS   = 1         // number of events, 1..32
+    parameter [15:0] WORDS    = 16'hFFF8,    // bit w: word w exists; bits 2..0 are ignored
+    parameter        EVENTS   = 1,           // number of events, 1..32
+    parameter [31:0] RAISED   = 32'hFFFFFFFF // bit e: event e can happen; other events stay 0
 ) (
     `include "slot_ports.vh"
     // access to the registers of the block
@@ -59,7 +60,7 @@ module bus_wrapper #(
     assign bus_rdata_o = first | (own && exists ? reg_rdata_i : 32'd0);
 
     always @(posedge clk_i) begin
-        sticky <= (sticky & ~clear) | event_i;
+        sticky <= ((sticky & ~clear) | event_i) & RAISED[EVENTS-1:0];
         if (write && bus_addr_i == MASK)
             mask <= bus_wdata_i[EVENTS-1:0];
         if (rst_i) begin
@@ -82,10 +83,11 @@ module bus_wrapper #(
             // No event is lost, even if it arrives while other events are cleared. The mask changes
             // only by writes.
             assert (sticky ==
-                    (($past(sticky) &
-                      ~($past(writes && bus_addr_i == EVENT) ? $past(bus_wdata_i[EVENTS-1:0]) :
-                        {EVENTS{1'b0}}))
-                               | $past(event_i)));
+                    (RAISED[EVENTS-1:0] &
+                     (($past(sticky) &
+                       ~($past(writes && bus_addr_i == EVENT) ? $past(bus_wdata_i[EVENTS-1:0]) :
+                         {EVENTS{1'b0}}))
+                                | $past(event_i))));
             assert (mask ==
                     ($past(writes && bus_addr_i == MASK) ? $past(bus_wdata_i[EVENTS-1:0]) :
                      $past(mask)));

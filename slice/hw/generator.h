@@ -107,7 +107,10 @@ struct Block {
     bool hasLong() const;
     unsigned memoryLsb() const; // number of the lowest address bit that MEMORY stores
     unsigned events() const;    // Returns the number of bits of EVENT that are used.
-    unsigned numbers() const;   // Returns the number of words, a multiple of slotWords.
+    // Returns a mask of the bits of EVENT that can become 1. Without it, synthesis would keep a
+    // flip-flop for each of the other bits.
+    unsigned raised() const;
+    unsigned numbers() const; // Returns the number of words, a multiple of slotWords.
     bool isPaged(unsigned word) const { return pageBits && word % slotWords >= pageWords; }
     // Returns all words of parameters and results, in the order of their numbers.
     std::vector<const Word*> words() const;

@@ -205,6 +205,14 @@ unsigned Block::events() const {
     return count;
 }
 
+unsigned Block::raised() const {
+    unsigned mask = 0;
+    for (const Call& c : calls)
+        if (c.isLong || c.isEvent)
+            mask |= 1u << c.bit;
+    return mask;
+}
+
 unsigned Block::numbers() const {
     auto list = words();
     return list.empty() ? slotWords : (list.back()->number / slotWords + 1) * slotWords;

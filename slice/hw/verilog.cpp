@@ -72,6 +72,7 @@ void registers(Writer& w, const Block& b, unsigned first) {
     w.line("    bus_registers #(");
     w.line("        .ID_VALUE(" + id + "), .EVENTS(" + std::to_string(events) + "), .RW(" +
            mask(rw) + "), .RO(" + mask(ro) + "), .WS(" + mask(first ? 0 : 1u << control) + "),");
+    w.line("        .RAISED(32'h" + hexDigits(first ? 0 : b.raised(), 8) + "),");
     w.line("        .WIDTHS({" + widths + "})");
     w.line("    ) u_registers" + suffix(first) + " (");
     w.line("        .clk_i(clk_i), .rst_i(rst_i),");
@@ -157,7 +158,7 @@ void longCalls(Writer& w, const Block& b) {
            (hasEvents ? "(busy | event_bits);" : "busy;"));
     w.line("    always @(posedge clk_i) begin");
     w.line("        busy    <= (busy & ~done) | (start & timed);");
-    w.line("        refused <= (refused & ~done & ~start) | (done & {" + refused + "});");
+    w.line("        refused <= timed & ((refused & ~done & ~start) | (done & {" + refused + "}));");
     w.line("        if (core_rst) begin");
     w.line("            busy    <= " + n + "'d0;");
     w.line("            refused <= " + n + "'d0;");

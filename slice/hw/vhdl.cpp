@@ -183,6 +183,9 @@ void registers(Writer& w, const Block& b) {
     for (const std::string& name : cleared)
         w.line("        " + name + " <= (others => '0');");
     w.line("      end if;");
+    for (unsigned bit = 0; bit < eventBits(b); ++bit)
+        if (!(b.raised() >> bit & 1))
+            w.line("      " + slice("event_bits", bit, 1) + " <= '0'; -- cannot happen");
     w.line("    end if;");
     w.line("  end process;");
 }

@@ -158,37 +158,50 @@ function(icesoc_uncertain program seeds)
   endforeach()
 endfunction()
 
-# icesoc_regmap(JSON [BLOCK]): generates files for the registers of one block from a *.regs.json.
-# The files in ${GEN_DIR} are a Verilog include, a C header, a VHDL package and a Markdown page.
-# With BLOCK, it also generates the register block <block>_regs.v, the proof of this block, and
-# <block>_regs.vhd. The target is regmap_<block>. The interface library is regs_<block>.
+# icesoc_regmap(JSON... [BLOCK]): generates files for the registers of each block from its
+# *.regs.json. The files in ${GEN_DIR} are a Verilog include, a C header, a VHDL package and a
+# Markdown page. With BLOCK, it also generates the register block <block>_regs.v, the proof of this
+# block, and <block>_regs.vhd. The target of a block is regmap_<block>, and its interface library is
+# regs_<block>. One process generates the files of one call, because starting Python takes longer
+# than generating the files of ten blocks; files that stay equal are not written.
 set(REGMAP ${PYTHON} -m icesoc.regs.generate)
 file(GLOB REGMAP_FILES CONFIGURE_DEPENDS ${TOOLS}/__init__.py ${TOOLS}/regs/*.py
   ${TOOLS}/regs/regs.schema.json ${TOOLS}/regs/templates/*.j2)
-function(icesoc_regmap json)
+function(icesoc_regmap)
   cmake_parse_arguments(A "BLOCK" "" "" ${ARGN})
-  get_filename_component(block ${json} NAME_WE)
-  get_filename_component(path ${json} ABSOLUTE)
-  set(outs ${GEN_DIR}/${block}_regs.vh ${GEN_DIR}/${block}_regs.h ${GEN_DIR}/${block}_regs_pkg.vhd
-           ${GEN_DIR}/${block}_regs.md)
   set(flag)
   if(A_BLOCK)
     set(flag --block)
-    list(APPEND outs ${GEN_DIR}/${block}_regs.v ${GEN_DIR}/${block}_regs_proof.vh
-      ${GEN_DIR}/${block}_regs.vhd)
   endif()
-  add_custom_command(OUTPUT ${outs}
-    COMMAND ${REGMAP} ${path} --output-dir ${GEN_DIR} ${flag}
-    DEPENDS ${REGMAP_FILES} ${path}
-    VERBATIM COMMENT "Registers of ${block}")
-  add_custom_target(regmap_${block} ALL DEPENDS ${outs})
-  set_property(GLOBAL APPEND PROPERTY ICESOC_REGMAP_TARGETS regmap_${block})
-  if(A_BLOCK)
-    set_property(GLOBAL APPEND PROPERTY ICESOC_REGISTER_BLOCKS ${block})
-  endif()
-  add_library(regs_${block} INTERFACE)
-  target_include_directories(regs_${block} INTERFACE ${GEN_DIR})
-  add_dependencies(regs_${block} regmap_${block})
+  set(paths)
+  set(blocks)
+  set(all)
+  foreach(json IN LISTS A_UNPARSED_ARGUMENTS)
+    get_filename_component(block ${json} NAME_WE)
+    get_filename_component(path ${json} ABSOLUTE)
+    list(APPEND blocks ${block})
+    list(APPEND paths ${path})
+    set(outs_${block} ${GEN_DIR}/${block}_regs.vh ${GEN_DIR}/${block}_regs.h
+      ${GEN_DIR}/${block}_regs_pkg.vhd ${GEN_DIR}/${block}_regs.md)
+    if(A_BLOCK)
+      list(APPEND outs_${block} ${GEN_DIR}/${block}_regs.v ${GEN_DIR}/${block}_regs_proof.vh
+        ${GEN_DIR}/${block}_regs.vhd)
+      set_property(GLOBAL APPEND PROPERTY ICESOC_REGISTER_BLOCKS ${block})
+    endif()
+    list(APPEND all ${outs_${block}})
+  endforeach()
+  string(REPLACE ";" ", " names "${blocks}")
+  add_custom_command(OUTPUT ${all}
+    COMMAND ${REGMAP} ${paths} --output-dir ${GEN_DIR} ${flag}
+    DEPENDS ${REGMAP_FILES} ${paths}
+    VERBATIM COMMENT "Registers of ${names}")
+  foreach(block IN LISTS blocks)
+    add_custom_target(regmap_${block} ALL DEPENDS ${outs_${block}})
+    set_property(GLOBAL APPEND PROPERTY ICESOC_REGMAP_TARGETS regmap_${block})
+    add_library(regs_${block} INTERFACE)
+    target_include_directories(regs_${block} INTERFACE ${GEN_DIR})
+    add_dependencies(regs_${block} regmap_${block})
+  endforeach()
 endfunction()
 
 # Adds the flags for waveforms and coverage counters to icesoc_verilate. This macro uses the

@@ -28,9 +28,8 @@ function(icesoc_hardware name file)
             --hw-regs ${dir} --hw-c ${dir} --hw-cpp ${dir} $<$<BOOL:${A_OWN_CLOCK}>:--hw-own-clock>
     DEPENDS slice2c ${path} VERBATIM COMMAND_EXPAND_LISTS COMMENT "Slice to hardware: ${name}")
   add_custom_target(${name}_hardware DEPENDS ${outs})
-  foreach(b IN LISTS A_BLOCKS)
-    icesoc_regmap(${dir}/${b}.regs.json)
-  endforeach()
+  list(TRANSFORM A_BLOCKS REPLACE "(.+)" "${dir}/\\1.regs.json" OUTPUT_VARIABLE descriptions)
+  icesoc_regmap(${descriptions})
   icesoc_c90(${name}_servants SOURCES ${sources} INCLUDES ${dir}
              LIBS ${name}_server ${name}_client hw_core hw_listener ${registers})
   add_dependencies(${name}_servants ${name}_hardware)

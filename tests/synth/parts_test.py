@@ -4,8 +4,8 @@
 and with figures that can be calculated by hand."""
 import copy, json, os, pathlib, statistics, tempfile, types, unittest, unittest.mock
 
-from icesoc.synth import (baseline, cores, equivalence, owners, report, reports, runner, slices,
-                          sources, timing)
+from icesoc.synth import (baseline, batch, cores, equivalence, owners, report, reports, runner,
+                          slices, sources, timing)
 from icesoc.util.errors import Stop
 from icesoc.synth.netlist import Cell, Name, Netlist, Pin, Port, ZERO
 from icesoc.synth.owners import Cost
@@ -149,7 +149,7 @@ class Timing(unittest.TestCase):
 
         def shows(text, load=0):
             with unittest.mock.patch("os.getloadavg", lambda: (load * os.cpu_count(), 0, 0)):
-                self.assertEqual(runner.time_left([chip, large, small], options, 30), text)
+                self.assertEqual(batch.time_left([chip, large, small], options, 30), text)
         # two processes share 146 s, 11 s and 2 s of work
         shows("0 of 3 designs, about 1:20 left: ")
         shows("0 of 3 designs, about 3:58 left: ", load=3)

@@ -15,6 +15,7 @@ import sys
 import time
 import xml.etree.ElementTree
 
+from icesoc.synth import batch
 from icesoc.synth import netlist
 from icesoc.synth import report
 from icesoc.synth import runner
@@ -176,7 +177,7 @@ def table_of(plan, library, options, models, o):
 
     designs = [design for design in plan.designs if plan.has(design, o.family[-1])
                and (not o.design or design.name in o.design)]
-    runner.in_parallel(options.jobs, work, sorted(
+    batch.in_parallel(options.jobs, work, sorted(
         designs, key=lambda design: options.luts.get(design.name, 0)))
     return report.Table(["module", "proof or tests", "seconds"],
                         [rows[name] for name in sorted(rows)]), len(failed)

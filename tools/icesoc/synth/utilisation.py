@@ -10,6 +10,7 @@ import re
 import sys
 
 from icesoc.synth import baseline
+from icesoc.synth import batch
 from icesoc.synth import cores
 from icesoc.synth import equivalence
 from icesoc.synth import report
@@ -52,7 +53,7 @@ def synthesise(plan, library, options, o):
     runs = [runner.Run(design, family, plan.has(design, family)
                        and (not o.design or design.name in o.design))
             for family in o.family for design in plan.designs]
-    runner.carry_out(runs, library, options)
+    batch.carry_out(runs, library, options)
     for run in runs:
         if run.wanted and run.error:
             print(f"utilisation: {run.design.name} for {run.family}: {run.error}", file=sys.stderr)

@@ -9,18 +9,19 @@ class Line:
     """A line of text. On a terminal, each text replaces the one before. Other outputs get only
     texts shown with `keep`."""
 
-    def __init__(self):
-        self.is_shown, self.lock = False, threading.Lock()
+    def __init__(self, stream=None):
+        """stream: default sys.stdout"""
+        self.stream, self.is_shown, self.lock = stream or sys.stdout, False, threading.Lock()
 
     @property
     def moves(self):
-        return sys.stdout.isatty()
+        return self.stream.isatty()
 
     def show(self, text, keep=False):
         """Shows a text. With `keep`, the text stays, and the next text is on a new line."""
         with self.lock:
             if self.moves:
-                width = os.get_terminal_size(sys.stdout.fileno()).columns or 80
+                width = os.get_terminal_size(self.stream.fileno()).columns or 80
                 self._write(f"\r\033[K{text[:width - 1]}" + "\n" * keep)
                 self.is_shown = not keep
             elif keep:
@@ -33,7 +34,7 @@ class Line:
             self.is_shown = False
 
     def _write(self, text):
-        print(text, end="", flush=True)
+        print(text, end="", flush=True, file=self.stream)
 
 
 def clock(units):

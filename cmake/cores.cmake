@@ -317,7 +317,8 @@ function(icesoc_chip)
             --block 0=system=${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             --block 1=modem=${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json --output-dir ${GEN_DIR}
     DEPENDS ${MANIFEST_FILES} ${TOOLS}/chip/collisions.py ${TOOLS}/chip/coremap.py
-            ${TOOLS}/chip/core_output.py ${TOOLS}/chip/model.py ${MAP_TEMPLATES}
+            ${TOOLS}/chip/core_output.py ${TOOLS}/chip/model.py ${TOOLS}/util/chip.py
+            ${MAP_TEMPLATES}
             ${CORES} ${CMAKE_SOURCE_DIR}/bus/map.regs.json
             ${inputs} ${CMAKE_SOURCE_DIR}/hdl/system/system.regs.json
             ${CMAKE_SOURCE_DIR}/hdl/modem/modem.regs.json ${slice_files}

@@ -43,14 +43,14 @@ install(FILES ${tools}/cli/__init__.py ${tools}/cli/choices.py ${tools}/cli/comm
   DESTINATION ${SHARE}/tools/icesoc/cli COMPONENT ${component})
 install(FILES ${tools}/cli/commands/__init__.py ${tools}/cli/commands/call.py
   DESTINATION ${SHARE}/tools/icesoc/cli/commands COMPONENT ${component})
-install(FILES ${tools}/util/__init__.py ${tools}/util/console.py ${tools}/util/errors.py
-  ${tools}/util/process.py DESTINATION ${SHARE}/tools/icesoc/util COMPONENT ${component})
+install(FILES ${tools}/util/__init__.py ${tools}/util/chip.py ${tools}/util/console.py
+  ${tools}/util/errors.py ${tools}/util/process.py DESTINATION ${SHARE}/tools/icesoc/util COMPONENT ${component})
 install(PROGRAMS ${here}/ground/icesoc-call DESTINATION ${CMAKE_INSTALL_BINDIR}
   COMPONENT ${component})
 set(objects ${CMAKE_CURRENT_BINARY_DIR}/chip.json)
 add_custom_command(OUTPUT ${objects}
   COMMAND ${PYTHON} ${here}/objects.py ${GEN_DIR}/chip.json ${top} ${objects}
-  DEPENDS ${here}/objects.py ${GEN_DIR}/chip.json VERBATIM COMMENT "Objects for icesoc-call")
+  DEPENDS ${here}/objects.py ${tools}/util/chip.py ${GEN_DIR}/chip.json VERBATIM COMMENT "Objects for icesoc-call")
 install(FILES ${objects} DESTINATION ${SHARE}/gen COMPONENT ${component})
 list(APPEND installable ${objects})
 

@@ -8,19 +8,19 @@ Slice files get their installed paths, relative to share/icesoc: ip/CORE for the
 for the vehicle's. Register descriptions are left out, because the cores of the default chip are
 called through Slice interfaces.
 """
-import json
 import os
 import sys
 
+from icesoc.util import chip
+
 given, tree, out = sys.argv[1:]
-with open(given) as file:
-    cores = json.load(file)["objects"]
+cores = chip.read(given).objects
 for core in cores:
-    del core["registers"]
-    if "interface" in core:
-        sys.exit(f"objects: {core['core']}: expected a core with its own interface")
-    paths = [os.path.relpath(path, tree) for path in core["slice"]]
-    core["slice"] = [path if path.startswith("ip/") else f"slice/{os.path.basename(path)}"
-                     for path in paths]
+    core.registers = ""
+    if core.interface:
+        sys.exit(f"objects: {core.core}: expected a core with its own interface")
+    paths = [os.path.relpath(path, tree) for path in core.slice]
+    core.slice = [path if path.startswith("ip/") else f"slice/{os.path.basename(path)}"
+                  for path in paths]
 with open(out, "w") as file:
-    json.dump({"objects": cores}, file, indent=1)
+    file.write(chip.Chip(objects=cores).text())

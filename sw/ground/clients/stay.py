@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
 """stay: keeps a vehicle reachable after its mission, until Ctrl-C (LIVE=1) or as long as a browser
 shows the page of the flight. Starts the gateway on the modem of the mission, and writes
-OUT/live.json, by which `./icesoc call` finds the flight:
+OUT/vehicles.conf, by which `./icesoc call` and programs of one's own find the vehicles:
 
-    {"pid": 4711, "build": "/.../build/main", "vehicles": {"uav1": "tcp -h 127.0.0.1 -p 40001"}}
+    Vehicle.uav1=tcp -h 127.0.0.1 -p 40001
+    Flight.Process=4711
+    Flight.Build=/.../build/main
 
 The server of the page writes OUT/viewed about once per second while a browser shows the page, and
 removes it when the page is closed. The file contains "opening" until a browser that was started
@@ -11,7 +13,6 @@ with the flight has loaded the page.
 """
 
 import contextlib
-import json
 import os
 import re
 import shutil
@@ -20,6 +21,7 @@ import sys
 import threading
 import time
 
+import vehicles
 from mission_log import whole
 
 # time without a request after which the page counts as closed, s; in a hidden tab, browsers send
@@ -87,19 +89,20 @@ def gateway(args):
 
 def serve(args):
     """Serves until a signal ends this program; returns the exit status."""
-    path, vehicles = os.path.join(args.out, "live.json"), {}
+    path, found = os.path.join(args.out, "vehicles.conf"), {}
     with gateway(args) as process:
         if not args.live:
             threading.Thread(target=end_with_page, args=(args.out, process), daemon=True).start()
         try:
             for line in process.stdout:
-                if found := re.search(r"port (\d+) leads to (\w+) ", line):
-                    vehicles[found[2]] = f"tcp -h 127.0.0.1 -p {found[1]}"
-                if len(vehicles) == args.vehicles:
+                if one := re.search(r"port (\d+) leads to (\w+) ", line):
+                    found[one[2]] = f"tcp -h 127.0.0.1 -p {one[1]}"
+                if len(found) == args.vehicles:
                     with whole(path) as temporary, open(temporary, "w") as file:
-                        json.dump({"pid": os.getpid(), "vehicles": vehicles,
-                                   "build": os.path.dirname(os.path.abspath(args.plugin))}, file)
-                    vehicles = {}
+                        file.write(vehicles.text(
+                            found, Process=os.getpid(),
+                            Build=os.path.dirname(os.path.abspath(args.plugin))))
+                    found = {}
             status = process.wait()
             if not args.live and not is_viewed(args.out):
                 return 0

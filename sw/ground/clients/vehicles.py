@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""vehicles: finds a vehicle by its name in a file of Ice properties that lists the vehicles.
+"""vehicles: finds a vehicle by its name in a file of Ice properties that lists the vehicles. A
+flight writes such a file, OUT/vehicles.conf, while its vehicles can be called.
 
 The file is the argument `file` of find(), else $ICESOC_VEHICLES, else
 ~/.config/icesoc/vehicles.conf, else /etc/icesoc/vehicles.conf:
@@ -33,16 +34,30 @@ def settings_file(file):
                   (given or " or ".join(FILES)))
 
 
+def read(path):
+    """Returns ({name: endpoint}, {name: value of another property}) of a file. Raises
+    Ice.FileException if the file cannot be read."""
+    found = Ice.createProperties()
+    found.load(path)
+    properties = found.getPropertiesForPrefix("")
+    return {key[len(PREFIX):]: properties.pop(key) for key in list(properties)
+            if key.startswith(PREFIX)}, properties
+
+
+def text(vehicles, **flight):
+    """Returns the content of the file for {name: endpoint}, with properties Flight.*."""
+    properties = {**{PREFIX + name: place for name, place in vehicles.items()},
+                  **{f"Flight.{name}": str(value) for name, value in flight.items()}}
+    return "".join(f"{name}=" + value.replace("\\", "\\\\").replace("#", "\\#") + "\n"
+                   for name, value in properties.items())
+
+
 def find(name, file=None):
     """Returns (place, properties) for the vehicle with this name; without a name, for the only
     vehicle in the file. place: the part of a proxy after the identity, such as ":tcp -h gateway -p
     10000". properties: Ice properties from the file."""
     path = settings_file(file)
-    found = Ice.createProperties()
-    found.load(path)
-    properties = found.getPropertiesForPrefix("")
-    vehicles = {key[len(PREFIX):]: properties.pop(key) for key in list(properties)
-                if key.startswith(PREFIX)}
+    vehicles, properties = read(path)
     if not name and len(vehicles) == 1:
         name = next(iter(vehicles))
     if name in vehicles:

@@ -21,6 +21,7 @@ from PIL import Image
 
 from script import TREE, Script, fresh, main, write
 from icesoc.util.browser import Browser
+import vehicles
 
 BUILD = Path(sys.argv[3]).resolve()
 TRIAL = TREE / "tests/cli/call.ice"
@@ -47,8 +48,8 @@ class Cases(Script):
         for name in "slice", "page":
             os.symlink(BUILD / name, f"build/{name}")
         self.gateway = f"127.0.0.1:{port}"
-        write("live.json", json.dumps({"pid": os.getpid(), "build": str(self.work / "build"),
-                                       "vehicles": {"uav1": f"tcp -h 127.0.0.1 -p {port}"}}))
+        write("vehicles.conf", vehicles.text({"uav1": f"tcp -h 127.0.0.1 -p {port}"},
+                                             Process=os.getpid(), Build=self.work / "build"))
         self.page = subprocess.Popen(
             [TREE / "tools/python", "-m", "icesoc.web.live", "--dir", self.work, "--build",
              "build"], stdout=subprocess.PIPE, text=True)
@@ -130,7 +131,7 @@ class Cases(Script):
 
     def other_vehicle(self):
         """The same page works with a gateway, without a flight."""
-        os.remove("live.json")
+        os.remove("vehicles.conf")
         with subprocess.Popen([TREE / "icesoc", "call", "--page", "--gateway", self.gateway,
                                "--build", self.work / "build"], stdout=subprocess.PIPE,
                               text=True) as process, Browser() as browser:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """objects: the objects of a vehicle with their interfaces and Slice files, from gen/chip.json in
 the build folder; and the endpoints of a flight in progress, which the flight writes to
-OUT/live.json.
+OUT/vehicles.conf.
 """
-import json
+import contextlib
 import os
 import re
 from dataclasses import dataclass
@@ -13,22 +13,14 @@ import places
 
 from icesoc import TREE
 from icesoc.call.slices import Slices, listed
+from icesoc.util import chip
 from icesoc.util.errors import Stop, nearest
 
 # interface of a core without a servant; its operations read and write the core registers by name
 REGISTERS = "::Hw::Registers"
 ACCESSES = {"get": ("ro", "rw", "w1c", "w1s"), "set": ("rw", "w1c", "w1s", "ws")}
-LIVE = "live.json"  # file in the folder of a flight; it exists only during the flight
+VEHICLES = "vehicles.conf"  # file in the folder of a flight; it exists only during the flight
 VIEWED = "viewed"  # file in the same folder, which is rewritten while a browser shows the page
-
-
-def read_json(path):
-    """Returns the parsed content of a JSON file, or None if the file cannot be read or is not
-    JSON."""
-    try:
-        return json.loads(Path(path).read_text())
-    except (OSError, ValueError):
-        return None
 
 
 @dataclass
@@ -56,13 +48,16 @@ class Catalogue:
     def __init__(self, build, files=()):
         """build: build folder of the vehicle, or None. files: Slice files to use instead of the
         vehicle's Slice files."""
-        chip = read_json(Path(build, "gen/chip.json")) if build else None
-        self.is_complete = chip is not None
-        cores = chip["objects"] if chip else []
+        cores = []
+        self.is_complete = False
+        if build is not None:
+            with contextlib.suppress(OSError, ValueError):
+                cores = chip.read(Path(build, chip.FILE)).objects
+                self.is_complete = True
         for core in cores:
-            core["slice"] = [str(TREE / file) for file in core["slice"]]
+            core.slice = [str(TREE / file) for file in core.slice]
         own = [] if build is None else [places.slice_file(file) for file in places.SLICE_FILES]
-        all_files = [*files, *own, *(file for core in cores for file in core["slice"])]
+        all_files = [*files, *own, *(file for core in cores for file in core.slice)]
         self.given = {os.path.realpath(file) for file in files}
         self.slices = Slices(all_files, compiler(build),
                              [folder for folder in ("/usr/share/ice/slice",)
@@ -72,9 +67,9 @@ class Catalogue:
             self.objects = {name: Object(name, interface)
                             for name, interface in places.OBJECTS.items()}
         for core in cores:
-            interface = core.get("interface") or only_interface(self.slices, core["slice"])
-            self.objects[core["identity"]] = Object(core["identity"], interface,
-                                                    core.get("registers", ""), core["core"])
+            interface = core.interface or only_interface(self.slices, core.slice)
+            self.objects[core.identity] = Object(core.identity, interface, core.registers,
+                                                 core.core)
 
     def find(self, text):
         """Returns (object, operation) of OBJECT.OPERATION, or of an operation that only one object
@@ -166,21 +161,33 @@ def compiler(build):
     return next((path for path in candidates if path.exists()), "slice2c")
 
 
+@dataclass
+class Flight:
+    """A flight whose vehicles can be called."""
+    vehicles: dict  # name: endpoint
+    build: str  # folder
+
+
 def flight(folder):
-    """Returns the content of live.json of a flight in progress in this folder, or None."""
-    found = read_json(Path(folder, LIVE))
+    """Returns the flight in progress in this folder, or None."""
+    path = Path(folder, VEHICLES)
+    if not path.is_file():
+        return None
+    import Ice  # imported here, because only a flight in progress needs Ice, which loads slowly
+    import vehicles
     try:
-        os.kill(found["pid"], 0)
-    except (TypeError, KeyError, ProcessLookupError):
+        found, properties = vehicles.read(str(path))
+        os.kill(int(properties["Flight.Process"]), 0)
+    except (Ice.FileException, KeyError, ValueError, OverflowError, ProcessLookupError):
         return None
     except PermissionError:
         pass
-    return found
+    return Flight(found, properties.get("Flight.Build", "")) if found else None
 
 
 def flights():
-    """Returns {folder: content of live.json} of all flights in progress below build/, build/run
-    first."""
-    folders = sorted(Path("build").glob("*/" + LIVE), key=lambda path: path.parent.name != "run")
-    found = {str(path.parent): flight(path.parent) for path in folders}
+    """Returns {folder: flight} of all flights in progress below build/, build/run first."""
+    folders = sorted((path.parent for path in Path("build").glob("*/" + VEHICLES)),
+                     key=lambda folder: folder.name != "run")
+    found = {str(folder): flight(folder) for folder in folders}
     return {folder: live for folder, live in found.items() if live}

@@ -38,11 +38,10 @@ def of_flight(folder, vehicle):
         raise Stop(f"no flight is in progress {place}: start one with make run LIVE=1, or give "
                    "--flight, --device or --gateway", 4)
     folder, live = next(iter(found.items()))
-    vehicles = live["vehicles"]
-    name = vehicle or next(iter(vehicles))
-    if name not in vehicles:
-        raise Stop(f"--vehicle: expected one of {', '.join(vehicles)}, got '{name}'", 2)
-    return Target(f"the flight in {folder}", ":" + vehicles[name], build=live["build"])
+    name = vehicle or next(iter(live.vehicles))
+    if name not in live.vehicles:
+        raise Stop(f"--vehicle: expected one of {', '.join(live.vehicles)}, got '{name}'", 2)
+    return Target(f"the flight in {folder}", ":" + live.vehicles[name], build=live.build)
 
 
 def of_device(values):

@@ -10,6 +10,7 @@ import json
 from pathlib import Path
 
 from icesoc.regs.verilog import span
+from icesoc.util import chip as description
 from icesoc.util import templates
 
 HAND = "Generated from ip/cores.list: do not edit."
@@ -232,22 +233,17 @@ def render(template, **values):
 
 
 def description_of(chip, slots, registers, slices):
-    """Returns the chip as JSON, for programs on the PC: its slots with their register descriptions,
-    the objects that a client can call (with their Slice files), and the signals of its probes.
-    registers: maps the name of a block to its *.regs.json; slices: pairs of folder and Slice
-    file."""
-    return json.dumps({
-        "slots": [{"slot": slot.number, "name": slot.name, "registers": registers[slot.name]}
-                  for slot in sorted(slots, key=lambda slot: slot.number)],
-        "objects": [
-            {"identity": core.identity, "core": core.name, "registers": registers[core.name],
-             "slice": [file for folder, file in slices if folder == core.folder],
-             **({} if core.servant else {"interface": "::Hw::Registers"})}
-            for core in chip.cores],
-        "probes": [
-            {"core": core.name, "identity": core.identity, "names": names_of(core),
-             "signals": core.signals} for core in chip.cores if core.is_probe],
-    }, indent=1) + "\n"
+    """Returns the description of the chip for programs on the PC. registers: maps the name of a
+    block to its *.regs.json; slices: pairs of folder and Slice file."""
+    return description.Chip(
+        [description.Slot(slot.number, slot.name, registers[slot.name])
+         for slot in sorted(slots, key=lambda slot: slot.number)],
+        [description.Object(core.identity, core.name,
+                            [file for folder, file in slices if folder == core.folder],
+                            registers[core.name], "" if core.servant else "::Hw::Registers")
+         for core in chip.cores],
+        [description.Probe(core.name, core.identity, names_of(core), core.signals)
+         for core in chip.cores if core.is_probe]).text()
 
 
 def files(chip, slots, base):

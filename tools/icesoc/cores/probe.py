@@ -12,12 +12,12 @@ folder of the vehicle's chip. Times count chip clocks, modulo 2**32.
 
 import argparse
 import collections
-import json
 import os
 import sys
 import time
 
 from icesoc import TREE
+from icesoc.util import chip
 from icesoc.util.errors import reason_of
 
 RING_BYTES, READ_BYTES = 1 << 18, 4096  # probe.regs.json, probe_servant.h
@@ -34,17 +34,16 @@ class Signals:
 
     def __init__(self, path, name):
         try:
-            with open(path) as f:
-                probes = {probe["core"]: probe for probe in json.load(f)["probes"]}
-        except (OSError, ValueError, LookupError, TypeError) as e:
+            probes = {probe.core: probe for probe in chip.read(path).probes}
+        except (OSError, ValueError) as e:
             raise Failed("--map: expected gen/chip.json of the build folder of the vehicle's chip, "
                          "got '%s': %s" % (path, getattr(e, "strerror", None) or reason_of(e)))
         if name not in probes:
             raise Failed("--map %s: expected a probe '%s', found %s" %
                          (path, name, ", ".join(probes) or "none"))
-        self.names = probes[name]["names"]
-        self.identity = probes[name]["identity"]
-        self.list = [(signal, width) for signal, width in probes[name]["signals"]]
+        self.names = probes[name].names
+        self.identity = probes[name].identity
+        self.list = [(signal, width) for signal, width in probes[name].signals]
 
     def check(self, state):
         if state.names & 0xFFFFFFFF != self.names:

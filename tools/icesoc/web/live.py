@@ -40,6 +40,7 @@ from http import HTTPStatus
 import places
 
 from icesoc.call import objects
+from icesoc.util import chip
 from icesoc.util.errors import Stop, reason_of
 from icesoc.web import bridge
 
@@ -118,9 +119,8 @@ def blocks_by_slot(build):
     # lacks this module.
     from icesoc.regs.model import Block, Wrong
     try:
-        with open(os.path.join(build, "gen/chip.json")) as chip:
-            return [(slot["slot"], slot["name"], Block.read(slot["registers"], is_built=True))
-                    for slot in json.load(chip)["slots"]]
+        return [(slot.slot, slot.name, Block.read(slot.registers, is_built=True))
+                for slot in chip.read(os.path.join(build, chip.FILE)).slots]
     except Wrong as wrong:
         raise ValueError(wrong) from None
 
@@ -231,7 +231,7 @@ def gateway(folder):
     if Page.gateway:
         return Page.gateway
     live = objects.flight(folder)
-    found = live and re.search(r"-h (\S+) -p (\d+)", next(iter(live["vehicles"].values())))
+    found = live and re.search(r"-h (\S+) -p (\d+)", next(iter(live.vehicles.values())))
     return (found[1], int(found[2])) if found else None
 
 
@@ -409,8 +409,8 @@ def main(program="icesoc-live", build=None):
     try:
         Page.slots = blocks_by_slot(words.build) if words.dir else []
         Page.build = words.build
-    except (OSError, ValueError, KeyError) as error:
-        sys.exit(f"{program}: error: cannot read '{words.build}/gen/chip.json': "
+    except (OSError, ValueError) as error:
+        sys.exit(f"{program}: error: cannot read '{words.build}/{chip.FILE}': "
                  + (getattr(error, "strerror", None) or reason_of(error)))
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda *_: os._exit(0))

@@ -16,6 +16,7 @@ from icesoc.call.values import Reader, plain, readable
 from icesoc.cli.command import command
 from icesoc.cli.options import (ADDRESS, ARGUMENTS, BUILD, COUNT, FILE, FOLDER, KEY_FILE, PATH,
                                 SWITCH, TEXT, Option, number, one_of)
+from icesoc.util import chip
 from icesoc.util.console import say
 from icesoc.util.errors import Interrupted, Stop, nearest
 
@@ -273,7 +274,7 @@ def call(options):
     from_outside = [name for name in ("device", "gateway", "locator") if getattr(options, name)]
     live = {} if from_outside or options.flight or places.IS_INSTALLED else flights()
     if live:
-        options.build = next(iter(live.values()))["build"]
+        options.build = next(iter(live.values())).build
     files = [os.path.join(options.place, file) for file in options.slice.split()]
     catalogue = Catalogue(options.build, files)
     if options.list:
@@ -316,9 +317,9 @@ def serve_page(options):
     from icesoc.util.process import run, tool
     if not re.fullmatch(r"(\[[0-9a-fA-F:.]+\]|[^\s:\[\]]+):\d{1,5}", options.gateway):
         raise Stop(f"--page: expected --gateway HOST:PORT, got '{options.gateway}'", 2)
-    chip = os.path.join(options.build, "gen/chip.json")
-    if not os.path.exists(chip):
-        raise Stop(f"{chip} not found; ./icesoc build writes it", 2)
+    path = os.path.join(options.build, chip.FILE)
+    if not os.path.exists(path):
+        raise Stop(f"{path} not found; ./icesoc build writes it", 2)
     with tempfile.TemporaryDirectory() as folder:
         return run([*tool("web.live"), "--dir", folder, "--build", options.build, "--gateway",
                     options.gateway], check=False)

@@ -10,7 +10,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from icesoc.call.objects import LIVE, VIEWED
+from icesoc.call.objects import VEHICLES, VIEWED
 from icesoc.cli import flight, keys
 from icesoc.cli.build_folder import BuildFolder, configured, netlists
 from icesoc.cli.command import command
@@ -170,7 +170,7 @@ def mission(values, build, held):
     def flown():
         return status_file.stat().st_ctime_ns if status_file.exists() else None
 
-    for name in LIVE, VIEWED:
+    for name in VEHICLES, VIEWED:
         (out / name).unlink(missing_ok=True)
     before = flown()
     trial = run([*page, "--try"], check=False)
@@ -188,7 +188,7 @@ def mission(values, build, held):
     shown = None
 
     def flies_on():
-        return (out / LIVE).exists()
+        return (out / VEHICLES).exists()
 
     try:
         # Opening the page also prints its address. This is done only after the simulator has

@@ -16,11 +16,13 @@ from icesoc.cli.build_folder import BuildFolder, read_list
 from icesoc.cli.options import (CORE_FOLDERS, COUNT, FILE, FOLDER, FRAME, KEY_FILE, PATH, SEED,
                                 SHARE, SWITCH, TEXT, UCOS2, WORDS, Option, matching, number, one_of)
 from icesoc.regs.model import Wrong
+from icesoc.util import rows
 from icesoc.util.console import say
 from icesoc.util.errors import Stop, nearest, reason_of
 from icesoc.util.schema import limits, problems
 
 VERSION = 4
+RECORDING = "flight.jsonl"  # written by the simulator (testbench/sim/recording.h)
 FIELDS = [
     Option("image", FILE, "picture for the camera: PNG, JPEG or PGM",
            "/usr/share/xplanet/images/earth.jpg"),
@@ -317,12 +319,8 @@ def recorded(folder):
     """Returns the first line of the recording in a folder: the description of the flight, and facts
     about its simulator (testbench/sim/recording.h). Returns an empty object if the line is
     malformed; the simulator then explains the fault."""
-    try:
-        with open(Path(folder) / "flight.jsonl", "rb") as recording:
-            head = json.loads(recording.readline())
-        return head if isinstance(head["flight"], dict) else {}
-    except (ValueError, KeyError, TypeError, RecursionError):
-        return {}
+    head = next(rows.read(Path(folder) / RECORDING), {})
+    return head if isinstance(head.get("flight"), dict) else {}
 
 
 def last_span(out):
@@ -330,12 +328,11 @@ def last_span(out):
     checkpoint that is at least 10 ms before the end. Returns None if the recording is incomplete,
     for example after the disk was full."""
     last = before = finish = 0.0
-    recording = (Path(out) / "flight.jsonl").read_text()
-    if not recording.endswith("\n"):
+    recording = Path(out) / RECORDING
+    if not recording.read_bytes().endswith(b"\n"):
         return None
-    for line in recording.split("\n"):
-        at = re.search(r'"ns":(\d+)', line)
-        finish = int(at[1]) / 1e9 if at else finish
-        if '"digest"' in line:
+    for row in rows.read(recording):
+        finish = row.get("ns", 0) / 1e9 or finish
+        if "digest" in row:
             before, last = last, finish
     return f"FROM={last if finish - last > 0.01 else before:.3f} TO={finish:.3f}"

@@ -12,6 +12,7 @@ from icesoc.util import vcd
 from icesoc.util.errors import Stop, reason_of
 from icesoc.util.files import write
 from icesoc.util.process import collect
+from icesoc.util.rows import read as read_rows
 
 CLOCKS_PER_SECOND = 1e8  # frequency of the chip in a flight, Hz
 SECONDS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9, "ps": 1e-12, "fs": 1e-15}  # GHDL's units of time
@@ -39,12 +40,7 @@ def scene_of(failure, test):
         return None
     if match := re.search(r"make run REPLAY='([^']+)' FROM=[0-9.]+ TO=([0-9.]+)", log):
         scene = Scene("icesoc-sim", int(float(match[2]) * CLOCKS_PER_SECOND), match[1])
-        events = pathlib.Path(scene.flight, "events.jsonl")
-        for line in events.read_text().splitlines() if events.exists() else []:
-            try:
-                event = json.loads(line)
-            except ValueError:
-                continue
+        for event in read_rows(pathlib.Path(scene.flight, "events.jsonl")):
             # the core that last reported an event to the processor is shown or, without one, the
             # modem
             slot = event.get("slot", -1)

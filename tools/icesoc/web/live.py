@@ -40,7 +40,7 @@ from http import HTTPStatus
 import places
 
 from icesoc.call import objects
-from icesoc.util import chip
+from icesoc.util import chip, rows
 from icesoc.util.errors import Stop, reason_of
 from icesoc.web import bridge
 
@@ -79,31 +79,6 @@ def contents(path):
             return file.read()
     except OSError:
         return b""
-
-
-def rows(lines):
-    """Yields the JSON objects in lines. Skips any other line, such as a last line that is
-    incomplete."""
-    for line in lines:
-        try:
-            row = json.loads(line)
-        except ValueError:
-            continue
-        if isinstance(row, dict):
-            yield row
-
-
-def newest(path):
-    """Returns the lines in the last bytes of a file."""
-    try:
-        with open(path, "rb") as file:
-            size = file.seek(0, os.SEEK_END)
-            file.seek(max(0, size - NEWEST))
-            if size > NEWEST:
-                file.readline()  # skips the rest of a line that begins before these bytes
-            return file.readlines()
-    except OSError:
-        return []
 
 
 def picture(folder, address):
@@ -168,12 +143,12 @@ def state(folder, slots):
                      for word in range(16) if seen[slot * 16 + word]]
             shown["slots"].append({"slot": slot, "block": name, "doc": block.doc if block else "",
                                    "words": words})
-    for row in rows(contents(folder + "/calls.jsonl").split(b"\n")):
+    for row in rows.read(folder + "/calls.jsonl"):
         if "features" in row:
             shown.update(features=row["features"], found=row["found"])
         else:
             shown["calls"].append(row)
-    shown["events"] = list(rows(newest(folder + "/events.jsonl")))
+    shown["events"] = list(rows.read(folder + "/events.jsonl", NEWEST))
     changed = {name: os.stat(path).st_mtime_ns for name in ("before.png", "report.json")
                if os.path.exists(path := f"{folder}/{name}")}
     shown["frame"] = "before.png" in changed

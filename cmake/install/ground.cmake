@@ -51,7 +51,8 @@ install(PROGRAMS ${here}/ground/icesoc-call DESTINATION ${CMAKE_INSTALL_BINDIR}
 set(objects ${CMAKE_CURRENT_BINARY_DIR}/chip.json)
 add_custom_command(OUTPUT ${objects}
   COMMAND ${PYTHON} ${here}/objects.py ${GEN_DIR}/chip.json ${top} ${objects}
-  DEPENDS ${here}/objects.py ${tools}/util/chip.py ${GEN_DIR}/chip.json VERBATIM COMMENT "Objects for icesoc-call")
+  DEPENDS ${here}/objects.py ${tools}/util/chip.py ${GEN_DIR}/chip.json
+  VERBATIM COMMENT "Objects for icesoc-call")
 install(FILES ${objects} DESTINATION ${SHARE}/gen COMPONENT ${component})
 list(APPEND installable ${objects})
 

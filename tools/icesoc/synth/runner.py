@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""runner: runs a synthesis with Yosys, caches the result under the hash of its sources, and computes
-the figures of the run. batch.py runs several.
+"""runner: runs a synthesis with Yosys, caches the result under the hash of its sources, and
+computes the figures of the run. batch.py runs several.
 
 The cache stores the figures as JSON: {"lut", "ff", ...: counts; "cells": counts by Yosys cell type;
 "costs": {path: {signal: Cost}}; and the figures of slices.py, timing.py, nets.py}. "clocks"

@@ -37,6 +37,9 @@ REASONS = {
     "list differs at [2]: expected its end, got 7":
         "g.cpp:4: Failure\nExpected equality of these values:\n  list\n"
         "    Which is: { 3, 4, 7 }\n  want\n    Which is: { 3, 4 }\n",
+    "list differs beyond [1], where its text was cut off; EXPECT_SAME reports the place":
+        "g.cpp:4: Failure\nExpected equality of these values:\n  list\n"
+        "    Which is: { 3, 4, ... }\n  want\n    Which is: { 3, 4, ... }\n",
     "filter(list) differs at [40]: expected -3, got 7":
         "g.cpp:4: Failure\nfilter(list) differs at [40]: expected -3, got 7\n",
     "call(1) is 5, not Ok, which is 0":

@@ -35,7 +35,7 @@ TEST_F(Scaler, SequencesOfEveryLengthGoThroughMemoryAndBack) {
             sum += expected[i];
         }
         EXPECT_EQ(shift(values, offset), sum) << size << " elements";
-        EXPECT_EQ(shifted_, expected);
+        EXPECT_SAME(shifted_, expected);
     }
 }
 

@@ -63,12 +63,15 @@ class Failure:
 def comparison(match):
     """Returns the difference in a GoogleTest message, such as "status is 5, not ICE_OK, which is
     0". For two lists, returns the first different element: "list differs at [2]: expected 5, got
-    4"."""
+    4". If GoogleTest has cut the lists off before this element, returns the last known index."""
     a, of_a, b, of_b = match.groups()
     if of_a and of_b and of_a[0] == of_b[0] == "{":
         got, expected = (text.strip("{ }").split(", ") for text in (of_a, of_b))
         for index, (x, y) in enumerate(zip([*got, "its end"], [*expected, "its end"])):
-            if x != y and "..." not in (x, y):
+            if "..." in (x, y):  # GoogleTest prints 32 elements
+                return (f"{a} differs beyond [{index - 1}], where its text was cut off; "
+                        "EXPECT_SAME reports the place")
+            if x != y:
                 return f"{a} differs at [{index}]: expected {y}, got {x}"
     if not of_a:
         a, of_a, b, of_b = b, of_b, a, of_a

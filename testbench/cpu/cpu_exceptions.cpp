@@ -363,7 +363,7 @@ void CortexM3::handleRaised() {
         pc_ = executing_;
         if (hasDebugger)
             breakpointHit_ = true;
-        else // C1.6.1; the exception DebugMonitor is never enabled, so this is a hard fault
+        else // C1.5; the exception DebugMonitor is never enabled, so this is a hard fault
             fault(DebugMonitor, 0, "BKPT without a debugger");
         return;
     case Fetch:

@@ -8,6 +8,7 @@
 #include "passed_proxies.h"
 
 #include <algorithm>
+#include <iostream>
 #include <iterator>
 
 namespace gateway {
@@ -59,11 +60,20 @@ std::exception_ptr explained(std::exception_ptr why) {
     }
 }
 
-// Refuses a request of a client. A one-way request has no reply, so the client only notices the
-// loss if its connection is closed.
-[[noreturn]] void refuse(const Request& request, const std::string& why) {
-    if (request.isOneway())
+// Reports the loss of a one-way request. It has no reply, so the client only notices the loss if
+// its connection is closed. A datagram has no connection of its own: all clients of the endpoint
+// share it.
+void reportLoss(const Request& request, const std::string& why) {
+    if (!request.isOneway())
+        return;
+    if (request.current.con->type() == "udp")
+        std::cerr << "gateway: dropped a datagram: " + why + "\n";
+    else
         request.current.con->close(Ice::ConnectionClose::Forcefully);
+}
+
+[[noreturn]] void refuse(const Request& request, const std::string& why) {
+    reportLoss(request, why);
     std::rethrow_exception(unknown(why));
 }
 
@@ -286,12 +296,10 @@ bool Forwarder::recordProxies(const std::shared_ptr<Request>& request) {
     }
     if (!others)
         return true;
-    if (request->isOneway())
-        request->current.con->close(Ice::ConnectionClose::Forcefully);
-    finish(request, false, [&] {
-        fail({request}, unknown("a proxy of '" + Ice::identityToString(*others) +
-                                "' belongs to another client: use a UUID as the identity"));
-    });
+    const std::string why = "a proxy of '" + Ice::identityToString(*others) +
+                            "' belongs to another client: use a UUID as the identity";
+    reportLoss(*request, why);
+    finish(request, false, [&] { fail({request}, unknown(why)); });
     return false;
 }
 

@@ -32,6 +32,7 @@ struct Parts {
     unsigned id = 1; // 0 for a one-way request
     std::string object = "echo", operation = "ice_ping", context = "";
     size_t encapsulation = 6;
+    Message parameters = {};
     size_t facets = 0; // number of facets that the message claims to contain; it contains none
 };
 
@@ -50,8 +51,9 @@ Message request(const Parts& parts) {
         append(body, std::string("key"));
         append(body, parts.context);
     }
-    append(body, parts.encapsulation);
+    append(body, parts.encapsulation + parts.parameters.size());
     append(body, 0x0101, 2);
+    body.insert(body.end(), parts.parameters.begin(), parts.parameters.end());
     Message all{'I', 'c', 'e', 'P', 1, 0, 1, 0, 0, 0};
     append(all, 14 + body.size());
     all.insert(all.end(), body.begin(), body.end());
@@ -205,6 +207,34 @@ TEST_F(HostileClients, ErrorsAreWords) {
     expectWords({waiting.begin(), waiting.end()});
     EXPECT_TRUE(hasPrinted("one-way calls that were not sent: 1 (the gateway ends)")) << said();
     expectWords(said());
+}
+
+// All clients of a datagram endpoint share one connection. A refused datagram must not close it.
+TEST_F(HostileClients, ADatagramThatIsTooLongIsDroppedAlone) {
+    const auto pid = unsigned(getpid()); // an address that no other test uses
+    const std::string host = "127." + std::to_string(64 + (pid >> 16) % 64) + "." +
+                             std::to_string((pid >> 8) % 256) + "." + std::to_string(pid % 256);
+    start({}, "tcp -h 127.0.0.1 -p 0:udp -h " + host + " -p 10000");
+    const int client = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    sockaddr_in to{};
+    to.sin_family = AF_INET;
+    to.sin_port = htons(10000);
+    ASSERT_EQ(inet_pton(AF_INET, host.c_str(), &to.sin_addr), 1);
+    for (const size_t context : {0, 9000, 0}) {
+        Parts parts;
+        parts.id = 0;
+        parts.context = std::string(context, 'x');
+        parts.operation = "note";
+        parts.parameters = {7, 0, 0, 0};
+        const Message datagram = request(parts);
+        EXPECT_EQ(sendto(client, datagram.data(), datagram.size(), 0,
+                         reinterpret_cast<sockaddr*>(&to), sizeof to),
+                  ssize_t(datagram.size()));
+    }
+    expectNoted(2);
+    close(client);
+    EXPECT_EQ(stopOrKill(), 0);
+    EXPECT_TRUE(hasPrinted("dropped a datagram: a message of 9")) << said();
 }
 
 // Ice logs its warnings with the position in its source code and the name of the exception.

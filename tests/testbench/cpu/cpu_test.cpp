@@ -204,7 +204,7 @@ TEST_F(Cpu, AFaultInTheHardFaultHandlerLocksUpUntilReset) {
     EXPECT_EQ(run("Case_nesting"), "abBA");
 }
 
-// C1.6.1: without a debugger, BKPT is a hard fault. The debugger of this test connects when the
+// C1.5: without a debugger, BKPT is a hard fault. The debugger of this test connects when the
 // handler begins, so that the BKPT at the end stops the program.
 TEST_F(Cpu, ABreakpointInstructionWithoutADebuggerIsAHardFault) {
     m3.cpu.hasDebugger = false;

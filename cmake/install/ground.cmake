@@ -58,7 +58,7 @@ list(APPEND installable ${objects})
 
 # icesoc-page: installs the page of the gateway, with Ice for JavaScript, which is GPL-2.0.
 install(FILES ${tools}/web/__init__.py ${tools}/web/bridge.py ${tools}/web/live.py
-  ${tools}/web/common.css ${tools}/web/common.js
+  ${tools}/web/mission.py ${tools}/web/common.css ${tools}/web/common.js
   DESTINATION ${SHARE}/tools/icesoc/web COMPONENT ${component})
 file(GLOB parts CONFIGURE_DEPENDS ${tools}/web/flight/*)
 install(FILES ${parts} DESTINATION ${SHARE}/tools/icesoc/web/flight COMPONENT ${component})

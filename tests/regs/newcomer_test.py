@@ -15,7 +15,7 @@ from pathlib import Path
 from icesoc import TREE
 from icesoc.regs.generate import markdown
 from icesoc.regs.model import Block
-from icesoc.web import live
+from icesoc.web import mission
 
 LINE = ('    {"word": 11, "name": "EXPOSURE", "access": "rw", "width": 12, "reset": "0x7", '
         '"doc": "lines of exposure"},\n')
@@ -71,7 +71,7 @@ class Newcomer(unittest.TestCase):
                  r"^\| 11 \| \*\*EXPOSURE\*\* \| rw \| 11..0 \| lines of exposure")
         block = Block.read(self.description)
         self.assertIn("**EXPOSURE**", markdown(block))
-        shown = live.register(block, 11, 5, live.WRITTEN)
+        shown = mission.register(block, 11, 5, mission.WRITTEN)
         self.assertEqual((shown["name"], shown["doc"]), ("EXPOSURE", "lines of exposure"))
         # In the hardware, the register can be reset, written and read.
         bench = self.out / "bench.v"

@@ -40,17 +40,13 @@ from http import HTTPStatus
 import places
 
 from icesoc.call import objects
-from icesoc.util import chip, rows
+from icesoc.util import chip
 from icesoc.util.errors import Stop, reason_of
-from icesoc.web import bridge
+from icesoc.web import bridge, mission
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 
 PATIENCE = 10  # seconds
-# bytes; a page shows only this last part of events.jsonl, because the file of a long flight is
-# large
-NEWEST = 128 << 10
-MOST_VEHICLES = 32  # vehicles per modem on the ground
 FILES = {  # path -> MIME type, file
     "/": ("text/html; charset=utf-8", HERE + "/flight/index.html"),
     "/live.css": ("text/css", HERE + "/flight/live.css"),
@@ -60,103 +56,12 @@ FILES = {  # path -> MIME type, file
     "/objects.js": ("text/javascript", HERE + "/flight/objects.js"),
     "/common.css": ("text/css", HERE + "/common.css"),
     "/common.js": ("text/javascript", HERE + "/common.js")}
-STATUS = places.record_of("testbench/status/sim_status.toml")
-SCHEMA = HERE + "/../cli/flight.schema.json"
 # The page may load data only from its server, and no other page may embed it in a frame.
 POLICY = ("connect-src 'self'%s; default-src 'self'; "
           "img-src 'self' data: blob:; style-src 'self' 'unsafe-inline'; "
           "worker-src blob:; "  # Ice for JavaScript uses a worker for its timers
           "frame-ancestors 'none'; base-uri 'none'; form-action 'none'")
 COMMAND = "icesoc-call" if places.IS_INSTALLED else "./icesoc call"
-COUNTERS = ("ns", "cycles", "bytesUp", "bytesDown", "packets", "lost", "wallNs")
-WRITTEN = 2
-
-
-def contents(path):
-    """Returns a file's content; empty if it cannot be read."""
-    try:
-        with open(path, "rb") as file:
-            return file.read()
-    except OSError:
-        return b""
-
-
-def picture(folder, address):
-    """Returns the path of a vehicle's picture of this flight. After the vehicle has returned the
-    corners, it is the picture with the corners drawn in."""
-    paths = (f"{folder}/{name}{address}.png" for name in ("after", "before"))
-    return next(filter(os.path.exists, paths), "")
-
-
-def blocks_by_slot(build):
-    """Returns [(slot, name of its block, the block)] for the chip of a build folder."""
-    # Imported here, because the page of an installed gateway shows no registers and the package
-    # lacks this module.
-    from icesoc.regs.model import Block, Wrong
-    try:
-        return [(slot.slot, slot.name, Block.read(slot.registers, is_built=True))
-                for slot in chip.read(os.path.join(build, chip.FILE)).slots]
-    except Wrong as wrong:
-        raise ValueError(wrong) from None
-
-
-def register(block, word, value, seen):
-    """Returns a word with its name and its fields. For a value written to EVENT, each bit that is 1
-    is shown as "cleared", because it clears an event."""
-    common = ("ID", "EVENT", "MASK")
-    found = next((r for r in block.registers if r.word == word), None) if block else None
-    clears = word == 1 and seen == WRITTEN
-    fields = []
-    for f in found.fields if found and word else []:
-        bits = value >> f.lsb & (1 << f.width) - 1
-        if bits or not clears:
-            fields.append({"name": f.name, "value": "cleared" if clears else bits, "doc": f.doc})
-    name = found.name if found else common[word] if word < 3 else f"word {word}"
-    return {"word": word, "value": value, "written": seen == WRITTEN, "name": name,
-            "doc": found.doc if found and word > 2 else "", "fields": fields}
-
-
-def heading(folder):
-    """Returns the options in flight.json that differ from their defaults, as text."""
-    try:
-        with open(SCHEMA) as schema, open(folder + "/flight.json") as file:
-            fields, flight = json.load(schema)["properties"], json.load(file)
-    except (OSError, ValueError):
-        return ""
-    hidden = ("version", "out", "firmware", "key", "port", "live")
-    return ", ".join(f"{name} {value if not isinstance(value, list) else ' '.join(value)}"
-                     for name, value in flight.items()
-                     if name not in hidden and value != fields.get(name, {}).get("default"))
-
-
-def state(folder, slots):
-    """Returns the data of the page, read from files of the simulator and the ground station. If a
-    file is missing, its fields are empty."""
-    shown = {"calls": [], "features": [], "slots": [], "flight": heading(folder)}
-    status = contents(folder + "/status")
-    if len(status) >= STATUS.size and status.startswith(STATUS.constants["SIM_MAGIC"].encode()):
-        values = STATUS.unpack(status)
-        shown["air"] = {name: values[name] for name in COUNTERS}
-        registers, seen = values["registers"], values["seen"]
-        for slot, name, block in slots:
-            words = [register(block, word, registers[slot * 16 + word], seen[slot * 16 + word])
-                     for word in range(16) if seen[slot * 16 + word]]
-            shown["slots"].append({"slot": slot, "block": name, "doc": block.doc if block else "",
-                                   "words": words})
-    for row in rows.read(folder + "/calls.jsonl"):
-        if "features" in row:
-            shown.update(features=row["features"], found=row["found"])
-        else:
-            shown["calls"].append(row)
-    shown["events"] = list(rows.read(folder + "/events.jsonl", NEWEST))
-    changed = {name: os.stat(path).st_mtime_ns for name in ("before.png", "report.json")
-               if os.path.exists(path := f"{folder}/{name}")}
-    shown["frame"] = "before.png" in changed
-    others = ((address, picture(folder, address)) for address in range(2, MOST_VEHICLES + 1))
-    shown["others"] = [[address, os.path.basename(path)] for address, path in others if path]
-    # If the report is older than the picture, it belongs to the previous mission.
-    shown["over"] = len(changed) == 2 and changed["report.json"] >= changed["before.png"]
-    return shown
 
 
 def mark_viewed(folder, is_viewed=True):
@@ -246,18 +151,19 @@ class Page(http.server.BaseHTTPRequestHandler):
             return bridge.serve(self, hosts[0], query, gateway(self.folder))
         frame = self.folder + "/before.png" if path == "/frame.png" else ""
         if vehicle := re.fullmatch(r"/vehicle(\d{1,2})\.png", path):
-            frame = picture(self.folder, vehicle[1])
+            frame = mission.picture(self.folder, vehicle[1])
         kind, file = FILES.get(path, ("image/png", frame))
         if path == "/ice.js":
             kind, file = "text/javascript", self.build + "/page/ice.js"
         if path == "/state":
             mark_viewed(self.folder)
-            kind, content = "application/json", json.dumps(state(self.folder, self.slots)).encode()
+            kind = "application/json"
+            content = json.dumps(mission.state(self.folder, self.slots)).encode()
         elif path == "/objects":
             kind, content = "application/json", json.dumps(
                 self.described(hosts[0].rpartition(":")[0] or hosts[0])).encode()
         else:
-            content = contents(file)
+            content = mission.contents(file)
         if path == "/":
             content = content.replace(b"%TOKEN%", bridge.TOKEN.encode())
             content = content.replace(b"%KIND%", b"vehicle" if self.vehicles else b"flight")
@@ -382,7 +288,7 @@ def main(program="icesoc-live", build=None):
     Page.secret = os.environ.get("ICESOC_PAGE_SECRET", "")
     Page.is_https = bool(words.certificate)
     try:
-        Page.slots = blocks_by_slot(words.build) if words.dir else []
+        Page.slots = mission.blocks_by_slot(words.build) if words.dir else []
         Page.build = words.build
     except (OSError, ValueError) as error:
         sys.exit(f"{program}: error: cannot read '{words.build}/{chip.FILE}': "

@@ -167,8 +167,17 @@ macro(icesoc_core_test)
       icesoc_uncertain(test_ip_${name} 1)
     endif()
     target_compile_definitions(test_ip_${name} PRIVATE ${clock})
+    icesoc_tested(${name} test_ip_${name})
   endif()
 endmacro()
+
+# icesoc_tested(CORE PROGRAM): adds a program of a core's tests, which `./icesoc core test` builds.
+function(icesoc_tested core program)
+  if(TARGET tests_of_${core})
+    add_dependencies(tests_of_${core} ${program})
+    set_property(GLOBAL APPEND PROPERTY ICESOC_TESTED_CORES ${core})
+  endif()
+endfunction()
 
 # icesoc_read_manifests(FILE...): reads the manifests of several cores in one call of Python. A
 # later icesoc_core() uses the stored result. Without a stored result, icesoc_core() starts Python
@@ -238,6 +247,7 @@ function(icesoc_core)
   endforeach()
   set_property(GLOBAL PROPERTY ICESOC_CORE_${name}_flags ${A_FLAGS})
   set_property(GLOBAL APPEND PROPERTY ICESOC_CORES ${name})
+  add_custom_target(tests_of_${name}) # programs of the core's tests
   icesoc_core_test()
 endfunction()
 

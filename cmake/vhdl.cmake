@@ -62,6 +62,7 @@ function(icesoc_vhdl_test)
   add_executable(${A_NAME}_vectors ${A_NAME}_vectors.cpp)
   target_link_libraries(${A_NAME}_vectors PRIVATE ${A_LIBS} bench)
   add_dependencies(${A_NAME}_vectors ghdl)
+  icesoc_tested(${A_NAME} ${A_NAME}_vectors)
   set_property(GLOBAL APPEND PROPERTY ICESOC_TEST_PROGRAMS ${A_NAME}_vectors)
   add_test(NAME vhdl.${A_NAME} COMMAND ${CMAKE_SOURCE_DIR}/cmake/vhdl_test.sh ${A_NAME} ${GHDL}
            $<TARGET_FILE:${A_NAME}_vectors> ${CMAKE_CURRENT_BINARY_DIR}/vhdl ${A_SOURCES}

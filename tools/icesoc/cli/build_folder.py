@@ -5,6 +5,7 @@ import contextlib
 import os
 import re
 import shutil
+import time
 from pathlib import Path
 
 from icesoc.cli import keys
@@ -13,7 +14,7 @@ from icesoc.util.console import warn
 from icesoc.util.errors import Stop
 from icesoc.util.lock import lock
 from icesoc.util.ninja import run_ninja
-from icesoc.util.process import output, run, tool
+from icesoc.util.process import run, tool
 
 DEFAULT_BOARD, DEFAULT_BRIDGE = "nucleo-qmtech", "async"
 ROOMS_OF_PROGRAMS = "bus;slice;sw;hdl;ip;testbench;tests"
@@ -39,6 +40,15 @@ def read_list(path):
         raise Stop(f"{path}: expected text in UTF-8") from error
 
 
+def packages_now(words):
+    """Returns a text that changes if the command `words`, its script or Debian's list of installed
+    packages changes. Without such a list, it changes each time."""
+    status = Path(os.environ.get("DPKG_ADMINDIR", "/var/lib/dpkg"), "status")
+    times = [path.stat().st_mtime_ns if path.exists() else time.time_ns()
+             for path in (status, Path(words[0]))]
+    return f"{words} {status} {times}"
+
+
 def cores_in(folder):
     """Returns the folders of the cores in a folder. A folder with a cores.list is a repository, and
     has several cores. Any other folder is itself the only core."""
@@ -60,8 +70,14 @@ class BuildFolder:
         """Installs missing packages; with `tests`, also those for tests, and with `packages`, also
         those that make Debian packages. Then runs CMake, unless the folder is configured."""
         if not self.built:
-            run(["cmake/setup.sh", *["--tests"] * tests, *["--packages"] * packages])
+            words = ["cmake/setup.sh", *["--tests"] * tests, *["--packages"] * packages]
+            checked, state = self / "packages.checked", packages_now(words)
+            is_checked = checked.exists() and checked.read_text() == state
+            if not is_checked:
+                run(words)
             self.configure(*arguments)
+            if not is_checked:
+                checked.write_text(packages_now(words))
             if self.ucos2:
                 self.set(UCOS2=os.path.abspath(self.ucos2))
             if self.core_folders:
@@ -190,11 +206,6 @@ class BuildFolder:
         return run([*tool("regress.ctest"), "--test-dir", self.folder, "-j", tests,
                     "--output-on-failure", "--no-tests=error", "--output-junit",
                     (self / junit).absolute(), *words], env=env, check=check)
-
-    def targets(self):
-        """Returns the names of all targets."""
-        return re.findall(r"^(.*): phony$",
-                          output(["ninja", "-C", self.folder, "-t", "targets", "all"]), re.M)
 
 
 def configured(values, *targets, tests=False):

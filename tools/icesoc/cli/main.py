@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """main: the two entry points (./icesoc and make), the environment of all programs, and error
 handling."""
+import importlib
 import io
 import os
 import pwd
@@ -48,12 +49,15 @@ def make_gave():
     return (goal, goals or [goal], names) if goal else None
 
 
+# Commands that start quickly, because only the file that declares them is imported.
+QUICK = {"call": "call", "core test": "core", "run": "flights"}
+
+
 def declare(words):
-    """Declares the commands. For `call`, declares only this command, so that it starts quickly."""
-    if words[:1] == ["call"] and "_ARGCOMPLETE" not in os.environ:
-        from icesoc.cli.commands import call  # noqa: F401
-    else:
-        from icesoc.cli import everything  # noqa: F401
+    """Declares the command of these words, or all commands."""
+    names = () if "_ARGCOMPLETE" in os.environ else (" ".join(words[:1]), " ".join(words[:2]))
+    file = next((QUICK[name] for name in names if name in QUICK), "")
+    importlib.import_module(f"icesoc.cli.commands.{file}" if file else "icesoc.cli.everything")
 
 
 def act(words):

@@ -191,10 +191,12 @@ def known(values):
     if not values.ip:
         raise Stop("expected the name of a core: ./icesoc core test fir (make ip-test IP=fir)", 2)
     build = BuildFolder(values.build, values).prepare()
-    if not values.built:
-        # CMake may not have found folders that were created after its last run
-        build.ninja("build.ninja")
     cores = build.known_cores()
+    if not values.built and (values.ip not in cores or
+                             not (build.core(values.ip) / "core.toml").is_file()):
+        # CMake may not have found folders that were created or removed after its last run
+        build.ninja("build.ninja")
+        cores = build.known_cores()
     if values.ip not in cores:
         raise Stop(f"unknown core '{values.ip}': expected one of {' '.join(cores)}", 2)
     return build
@@ -212,11 +214,10 @@ def test(values):
     Exit status 8: a test failed.
     """
     core, build = values.ip, known(values)
-    programs = [name for name in build.targets() if name in (f"test_ip_{core}", f"{core}_vectors")]
-    if not programs:
+    build.ninja(f"tests_of_{core}")
+    if core not in build.cached("TESTED_CORES").split(";"):
         raise Stop(f"{core} has no test: {core}_test.cpp not found in the core's folder")
-    build.ninja(*programs)
-    return build.ctest("-R", rf"^(test_ip_{core}[.]|vhdl[.]{core}$)", tests=1,
+    return build.ctest("-R", rf"^(test_ip_{core}[.]|vhdl[.]{core}$)", tests=values.jobs,
                        junit=f"junit-{core}.xml", SEED=values.seed)
 
 

@@ -17,7 +17,7 @@ from pathlib import Path
 import yaml
 
 from icesoc.cli.build_folder import BuildFolder
-from script import TREE, Script, fresh, git, main, write
+from script import TREE, Script, append, commit, fresh, git, main, repository, write
 
 WORK, BUILD = map(Path, sys.argv[2:4])
 
@@ -82,6 +82,29 @@ class Cases(Script):
               f"CORE_FOLDERS:STRING={mine}/first\n")
         self.assertEqual(folders(""), ([mine / "first"], None))
         self.assertEqual(folders("none"), ([], Path("ip/cores.list").absolute()))
+
+    def test_repository_published(self):
+        """A new repository uses a commit of IceSoC that can be cloned: if the tree's last commit is
+        not pushed, it uses the last pushed one, and the cores of that commit's chip."""
+        work = fresh(WORK)
+        mine, theirs, tree = work / "mine", work / "theirs", work / "tree"
+        theirs.mkdir()
+        linked(theirs)
+        os.chdir(theirs)
+        repository()
+        commit("pushed")
+        pushed = git("rev-parse HEAD")
+        git("clone -q . ../tree")
+        os.chdir(tree)
+        repository()
+        append("ip/cores.list", "unpushed\n")
+        commit("not pushed")
+        self.ask(TREE / "icesoc", "core", "new", "ramp", "--lang", "vhdl", "--repository", mine,
+                 "--built", "--build", work / "none", env={**os.environ, "ICESOC_TREE": str(tree)})
+        self.has(f"checkout --quiet {pushed}$", f"clone --quiet {theirs}/?[.]? ",
+                 file=mine / "Makefile")
+        self.has("^vision ", "^ramp$", file=mine / "cores.list")
+        self.lacks("unpushed", file=mine / "cores.list")
 
     def test_container(self):
         """Each command of the Containerfile runs with the files that the container copies, on a
@@ -178,10 +201,10 @@ class Cases(Script):
         # The workflow clones the origin of this tree at this commit; it removes a clone that lacks
         # the commit.
         if (TREE / ".git").exists():
-            commit = git(f"-C {shlex.quote(str(TREE))} rev-parse HEAD")
             text = (mine / "Makefile").read_text()
-            self.assertIn(f"checkout --quiet {commit}\n", text)
-            text = re.sub("quiet .*/.* ", f"quiet {TREE} ", text.replace(commit, "0" * 40))
+            used = re.search("checkout --quiet ([0-9a-f]{40})\n", text)[1]
+            git(f"-C {shlex.quote(str(TREE))} merge-base --is-ancestor {used} HEAD")
+            text = re.sub("quiet .*/.* ", f"quiet {TREE} ", text.replace(used, "0" * 40))
             write(mine / "Makefile", text)
             self.ask("make", "-C", mine, "clone", "ICESOC=clone", status=2)
             self.has(f"^fatal: .*{'0' * 40}")

@@ -118,5 +118,13 @@ rm -rf "$work/.git" "$work/build"
 mkdir "$work/build"
 touch "$work/build/build.ninja"
 refused 'nothing was changed' fir --lang verilog
-rm -r "$work/build"
+# The same after Ctrl-C while CMake runs; the fake CMake sends the signal.
+mkdir "$work/bin"
+printf '#!/bin/sh\nkill -INT $PPID\nsleep 60\n' >"$work/bin/cmake"
+chmod +x "$work/bin/cmake"
+status=0
+(PATH=$work/bin:$PATH; cd "$work" && new fir --lang verilog >/dev/null 2>&1) || status=$?
+[ $status = 130 ] && [ ! -e "$work/ip/fir" ] ||
+    { echo "after Ctrl-C (exit status $status) ip/fir is left" && exit 1; }
+rm -r "$work/build" "$work/bin"
 echo 'names: all as expected'

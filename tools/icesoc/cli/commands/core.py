@@ -40,8 +40,8 @@ def check_name(name, room="ip"):
                    "(make new-ip NAME=low_pass LANG=verilog)", 2)
     if not re.fullmatch(r"[a-z][a-z0-9]*|[a-z][a-z0-9]+(_[a-z][a-z0-9]+)+", name):
         raise Stop(
-            f"'{name}': expected words of small letters and digits, joined by _, such as low_pass",
-            2)
+            f"'{name}': expected words of small letters and digits, joined by _, such as "
+            "low_pass", 2)
     if name in RESERVED:
         raise Stop(f"'{name}' {REFUSAL}", 2)
     for folder in (Path("ip", name), Path(room, name)):
@@ -106,16 +106,31 @@ REPOSITORY = Option("repository", FOLDER, "separate repository for the core inst
                                           " created if missing")
 
 
+def published():
+    """Returns the newest commit of this branch that can be cloned from `origin`, and the text of
+    its ip/cores.list. Both are "" if this tree is not a git repository. A commit that has not been
+    pushed is not used, unless the tree has no branch of a remote repository."""
+    def git(*words):
+        return output(["git", *words], check=False, stderr=-3).strip()
+    commit = git("rev-parse", "HEAD")
+    if git("rev-list", "--max-count=1", "HEAD", "--not", "--remotes=origin"):
+        edge = [line[1:] for line in git("rev-list", "--boundary", "HEAD", "--not",
+                                         "--remotes=origin").splitlines() if line[0] == "-"]
+        commit = edge[0] if edge else commit
+    chip = git("show", f"{commit}:ip/cores.list")
+    return commit, chip and chip + "\n"
+
+
 def put_into_repository(room, name):
     """Adds a core's line to cores.list of the user's repository, and adds files that the repository
     lacks. Workflows are copied from this tree."""
     room = Path(room).absolute()
     origin = output(["git", "remote", "get-url", "origin"], check=False, stderr=-3).strip()
     origin = re.sub("(?<=://)[^/@]*@", "", origin)  # removes the user name and the password
-    commit = output(["git", "rev-parse", "HEAD"], check=False, stderr=-3).strip()
+    commit, chip = published()
     made = (TEMPLATE / "repository/Makefile.in").read_text()
     made = made.replace("@URL@", origin or os.getcwd()).replace("@COMMIT@", commit or "HEAD")
-    files = {"Makefile": made, "cores.list": read_list("ip/cores.list"),
+    files = {"Makefile": made, "cores.list": chip or read_list("ip/cores.list"),
              ".gitignore": "/build/\n"}
     for file in (".github/workflows/icesoc.yml", ".gitlab-ci.yml"):
         files[file] = Path(file).read_text()
@@ -176,8 +191,10 @@ def new(values):
         try:
             logged(["cmake", build.folder], build / "new-ip.log",
                    f"the build does not take '{name}' (above); nothing was changed")
-        except Stop:
+        except BaseException as error:
             shutil.rmtree(f"ip/{name}")
+            if not isinstance(error, Stop):  # Ctrl-C
+                raise
             with open(build / "new-ip.log", "a") as log:
                 run(["cmake", build.folder], check=False, stdout=log, stderr=log)
             raise

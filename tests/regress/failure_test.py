@@ -47,8 +47,11 @@ REASONS = {
         "    Which is: 0\n",
     "status is 5, not 0":
         "g.cpp:4: Failure\nExpected equality of these values:\n  0\n  status\n    Which is: 5\n",
-    'C++ exception with description "waited for ready" thrown in the test body.':
-        "one error before\nunknown file: Failure\n{}\n[  FAILED  ] A.Throws (7 ms)",
+    "sum: waited for ready":
+        'one error before\nunknown file: Failure\nC++ exception with description "{}" thrown in '
+        "the test body.\nat clock cycle 7\n[  FAILED  ] A.Throws (7 ms)",
+    "a file has no [name]":
+        'unknown file: Failure\nC++ exception with description "{}" thrown in SetUp().\n',
     "a.c:1:10: fatal error: none.h: No such file or directory":
         'FAILED: x\nsh -c "gcc -c a.c"\n{}\n    1 | #include "none.h"\nninja: build stopped',
     "twice.c:3:5: warning: ISO C90": "/t.sh: begun\n{}\nmake: *** [x] Error 1",

@@ -26,6 +26,7 @@ from project import (BREAK, LONGEST, REGRESS, TREE, Project, append, commit, edi
                      write)
 from icesoc.mutants import results
 from icesoc.regress import runner, unchanged
+from icesoc.regress.ctest import write_finished
 from icesoc.regress.tests import Test
 
 NEEDS = """
@@ -190,6 +191,11 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
                      file="build/regress/junit.xml")
         self.regress("--rerun-failed", 1)
         self.has("^2 tests, SEED=1")
+        # CTest has not printed the number of tests when no test has ended
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            write_finished(self.work, self.work / "junit.xml", {}, 0)
+        self.assertEqual(printed.getvalue(),
+                         "\nstopped before a test had ended: 0 passed, 0 failed\n")
 
     def test_slow_terminal(self):
         """TERM while the terminal is slow: results that CTest has printed and the tool has not read

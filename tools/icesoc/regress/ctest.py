@@ -39,7 +39,8 @@ def write_finished(folder, results, ends, total):
     """Writes JUnit of the finished tests of a run that was stopped, and prints how many."""
     cases = finished(folder, ends)
     now = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
-    stopped = f"after {len(cases)} of {total}"
+    # CTest prints the total with the first test that ends
+    stopped = f"after {len(cases)} of {total}" if total else "before a test had ended"
     write_junit(results, cases, now, lambda result: ("", ""), stopped=stopped)
     failed = [case.name for case in cases if case.status == "failed"]
     passed = sum(case.status == "passed" for case in cases)

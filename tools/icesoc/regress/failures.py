@@ -30,6 +30,8 @@ OF_VALUE = re.compile(r"\berror\b|(?<!as )\bexpected\b|\bdiffers?\b|"
 # GoogleTest's lines about two unequal values, and about a condition.
 EQUALITY = re.compile(r"(?m)^Expected equality of these values:"
                       r"\n +(.*)(?:\n +Which is: (.*))?\n +(.*)(?:\n +Which is: (.*))?$")
+# GoogleTest's line about an unexpected exception; the description can have several lines.
+THROWN = re.compile(r'(?m)^C\+\+ exception with description "((?:.|\n)*?)" thrown in .*\.$')
 CONDITION = re.compile(r"(?m)^Value of: (.*)\n +Actual: (.*)\nExpected: (.*)$")
 
 
@@ -87,6 +89,7 @@ def reason_of(log):
     # the description of a failed test, which Python's unittest prints, is not a reason
     log = re.sub(r"(?m)^((?:ERROR|FAIL): test_.*\n)(?:.*\n)*?-{70}$", r"\1", log)
     log = CONDITION.sub(r"\1 is \2, not \3", EQUALITY.sub(comparison, log))
+    log = THROWN.sub(r"\1", log)
     log = re.sub(r"((?:Error|Exception)\b.*:)\n+ *(?=\S)", r"\1 ", log)
     log = re.sub(r"(?m)^@@ .*\n(?: .*\n)*(-.*)\n([+].*)", r"differs: \1 \2", log)
     for line in log.splitlines():

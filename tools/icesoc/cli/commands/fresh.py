@@ -112,10 +112,12 @@ def summary(row):
 
 
 def empty_machine(root, release):
+    log = Path(f"{root}-debootstrap.log")
+    say(f"Installing {RELEASES[release]} in {root} takes some minutes; log: {log} ...")
     shutil.rmtree(root, ignore_errors=True)
     root.parent.mkdir(parents=True, exist_ok=True)
     run(["debootstrap", "--variant=minbase", "--include=git,make,ca-certificates", release, root,
-         MIRROR], stdout=open(f"{root}-debootstrap.log", "w"))
+         MIRROR], stdout=open(log, "w"))
     (root / "etc/apt/sources.list").write_text("".join(
         f"deb {MIRROR} {suite} main\n" for suite in (release, f"{release}-updates")))
     # The system is discarded afterwards, so dpkg need not wait for the disk.
@@ -150,12 +152,13 @@ def do(root, release, step, folder="/root/icesoc", booted=False):
         *(f"{name}={value}" for name, value in (kept | place).items()), "sh", "-c", BOOT, "sh",
         root, step, folder]
     begun = time.monotonic()
+    say(f"{RELEASES[release]}: {step}; log: {log} ...")
     with open(log, "w") as file:
         status = run(words, check=False, stdin=subprocess.DEVNULL, stdout=file, stderr=file)
     row = {
         "release": release, "step": step, "status": status,
         "minutes": round((time.monotonic() - begun) / 60, 1), "commit": output([
             "git", "describe", "--always"]).strip()}
-    say(summary(row) + f": {log}")
+    say(summary(row))
     say("\n".join("    " + line for line in log.read_text(errors="replace").splitlines()[-12:]))
     return row

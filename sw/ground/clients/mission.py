@@ -364,7 +364,8 @@ def fly(args):
                  "the same key" %
                  args.patience)
     except (Ice.Exception, RuntimeError, OSError, subprocess.CalledProcessError) as e:
-        sys.exit("mission: %s" % reason_of(e))
+        call = getattr(e, "call", "")
+        sys.exit("mission: %s%s" % (call and call + ": ", reason_of(e)))
     finally:
         communicator.destroy()
 

@@ -127,6 +127,7 @@ class Log:
             raise
         except Ice.Exception as e:
             outcome = " failed: " + type(e).__name__
+            e.call = what  # mission.py prints it with the reason
             raise
         finally:
             answered.set()

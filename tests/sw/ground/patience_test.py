@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: MIT
 """patience_test: tests that the time-out of calls in a mission counts simulated time, even on a
-slow PC."""
+slow PC, and that the exception of a failed call contains the call."""
+import contextlib
+import io
+import tempfile
 import unittest
 from unittest import mock
+
+import Ice
 
 import mission_log
 
@@ -47,6 +52,18 @@ class Patience(unittest.TestCase):
         self.assertFalse(patience.is_over())
         self.real += 1
         self.assertTrue(patience.is_over())
+
+
+class FailedCall(unittest.TestCase):
+    def test_the_exception_contains_the_call(self):
+        def fails():
+            raise Ice.UnknownException()
+        with tempfile.TemporaryDirectory() as out, contextlib.redirect_stdout(io.StringIO()):
+            log = mission_log.Log(mission_log.Air(""), out, out)
+            with self.assertRaises(Ice.UnknownException) as caught:
+                log.call("ground -> UAV", "fir.filter(list)", fails)
+            log.live.close()
+        self.assertEqual(caught.exception.call, "fir.filter(list)")
 
 
 if __name__ == "__main__":

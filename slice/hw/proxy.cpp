@@ -46,13 +46,14 @@ void method(Writer& w, const Block& b, const Call& c) {
                     w.line(exceptionType(*b.interface, o) + " ex{};");
                 std::string call = operationName(*b.interface, o) + "(&core_.servant" + p.ins +
                                    p.outs + ", nullptr)";
+                std::string check = "this->hw_check(\"" + o.name + "\", ";
                 if (c.isAmd) {
                     std::string part = coreType(b) + "_" + cOperation(o.name);
-                    w.line("this->hw_check(" + part + "_begin(&core_" + p.ins + "));");
-                    w.line("this->hw_finish(" + std::to_string(c.bit) + ");");
+                    w.line(check + part + "_begin(&core_" + p.ins + "));");
+                    w.line("this->hw_finish(\"" + o.name + "\", " + std::to_string(c.bit) + ");");
                     call = part + "_end(&core_" + p.outs + ")";
                 }
-                w.line("this->hw_check(" + call + (o.throws.empty() ? ");" : ", ex);"));
+                w.line(check + call + (o.throws.empty() ? ");" : ", ex);"));
                 if (!p.result.empty())
                     w.line("return result;");
             });
@@ -69,8 +70,8 @@ void event(Writer& w, const Block& b, const Call& c) {
     w.block("bool " + cIdentifier(c.operation->name) + "(" + parameters + ")", {}, [&] {
         w.single("if (!Hw_Core_event(&core_.core, " + std::to_string(c.bit) + "))",
                  "return false;");
-        w.line("this->hw_check(" + coreType(b) + "_" + cOperation(c.operation->name) +
-               "_take(&core_" + arguments + "));");
+        w.line("this->hw_check(\"" + c.operation->name + "\", " + coreType(b) + "_" +
+               cOperation(c.operation->name) + "_take(&core_" + arguments + "));");
         w.line("return true;");
     });
 }

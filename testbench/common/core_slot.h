@@ -43,10 +43,11 @@ inline void PrintTo(Ice_Status status, std::ostream* out) {
 // exceptions of its operation.
 class CoreError : public std::runtime_error {
 public:
-    explicit CoreError(Ice_Status status)
-        : std::runtime_error(status == ICE_TIMEOUT
-                                 ? std::string("the core did not finish the call in time")
-                                 : std::string("the call failed: ") + Ice_Status_text(status)),
+    CoreError(const std::string& operation, Ice_Status status)
+        : std::runtime_error(operation +
+                             (status == ICE_TIMEOUT
+                                  ? std::string(": the core did not finish the call in time")
+                                  : std::string(" failed: ") + Ice_Status_text(status))),
           status_(status) {}
     Ice_Status status() const { return status_; }
 
@@ -133,18 +134,19 @@ public:
         EXPECT_EQ(status, HW_OK);
         core_ = &core;
     }
-    static void hw_check(Ice_Status status) {
+    static void hw_check(const char* operation, Ice_Status status) {
         if (status != ICE_OK)
-            throw CoreError(status);
+            throw CoreError(operation, status);
     }
-    template <class Exception> static void hw_check(Ice_Status status, const Exception& exception) {
+    template <class Exception>
+    static void hw_check(const char* operation, Ice_Status status, const Exception& exception) {
         if (status == ICE_USER_EXCEPTION)
             throw exception;
-        hw_check(status);
+        hw_check(operation, status);
     }
     // Polls until a deferred operation has ended. Like the task of the firmware, it polls after
     // each interrupt of the core, and a few milliseconds after the time-out of the operation.
-    void hw_finish(U32 operation) {
+    void hw_finish(const char* name, U32 operation) {
         Hw_Status status = HW_OK;
         U32 next = HW_NEVER;
         Hw_Core_later(core_, operation);
@@ -155,7 +157,7 @@ public:
         }
         core_->later[operation] = 0;
         if (status != HW_OK)
-            throw CoreError(status == HW_TIMEOUT ? ICE_TIMEOUT : ICE_UNKNOWN_EXCEPTION);
+            throw CoreError(name, status == HW_TIMEOUT ? ICE_TIMEOUT : ICE_UNKNOWN_EXCEPTION);
     }
 
     static U32 busErrors(void* context) { return static_cast<CoreSlot*>(context)->errors_; }

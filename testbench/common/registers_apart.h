@@ -119,7 +119,8 @@ void expectRegistersApart(CoreSlot<Module>& slot, const Hw_Register (&table)[N],
             hold.push_back(r);
     }
     if (hold.empty())
-        std::cout << "note: no register keeps what is written: is its reset active low, or high?\n";
+        std::cout << "note: no register keeps what is written: either all are write-only, or the "
+                     "core is in reset because its reset has the other polarity\n";
     for (const Register& r : hold)
         access(true, r);
     for (const Register& r : hold) {

@@ -85,13 +85,22 @@ TEST_F(Scaler, ACoreRefusesAndHangsLaterToo) {
     EXPECT_EQ(shift({1, 2, 3}, 1), 9);
 }
 
+TEST_F(Scaler, TheExceptionOfAFailedCallNamesTheOperation) {
+    try {
+        shift(std::vector<Ice_Short>(3), 0x7777);
+        FAIL() << "the call did not fail";
+    } catch (const CoreError& e) {
+        EXPECT_STREQ(e.what(), "shift: the core did not finish the call in time");
+    }
+}
+
 TEST_F(Scaler, ASecondCallWhileOneIsUnderWayIsALimitAndOthersGoOn) {
     std::vector<Ice_Short> values(100, 1);
     Demo_Samples list{100, values.data()};
     ASSERT_EQ(Demo_Scaler_Core_shift_begin(&core_.core_, &list, 1), ICE_OK);
     EXPECT_EQ(Demo_Scaler_Core_shift_begin(&core_.core_, &list, 1), ICE_LIMIT);
     core_.setLimit(7);
-    core_.hw_finish(3);
+    core_.hw_finish("shift", 3);
     EXPECT_EQ(shift({1}, 1), 2);
 }
 

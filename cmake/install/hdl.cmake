@@ -102,8 +102,8 @@ in_folder(files ddr mcb_backend.v memory_mcb.v)
 icesoc_hdl_core(memory_mcb TOP memory_mcb FILES ${files} INCLUDES ddr/mcb_ports.vh
   DEPENDS npi_arbiter PURPOSE "Memory controller of several ports on the Spartan-6 memory block")
 
-in_folder(files fsmc fsmc_parameter_rules.v fsmc_timeout.v fsmc_nwait.v fsmc_found.v fsmc_lanes.v
-  fsmc_post.v fsmc_memory.v fsmc_registers.v fsmc_bridge.v fsmc_sync_bridge.v)
+in_folder(files fsmc fsmc_parameter_rules.v fsmc_timeout.v fsmc_nwait.v fsmc_found.v fsmc_post.v
+  fsmc_memory.v fsmc_registers.v fsmc_bridge.v fsmc_sync_bridge.v)
 in_folder(includes ddr shift_order.vh memory_ports.vh)
 icesoc_hdl_core(fsmc_bridge TOP fsmc_bridge FILES ${files} INCLUDES ${includes}
   DEPENDS cdc CONSTRAINTS platform.ucf

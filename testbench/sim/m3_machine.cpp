@@ -26,13 +26,13 @@ Stm32F2::Config configOf(uint32_t hclkHz, uint64_t seed, uint32_t oscillatorHz) 
 // on the stack.
 std::string stackOf(Stm32F2& stm32) {
     const CortexM3& cpu = stm32.cpu();
-    std::string text = "The program is in " + stm32.image()->functionAt(cpu.reg(CortexM3::Pc));
+    std::string text = stm32.image()->functionAt(cpu.reg(CortexM3::Pc));
     for (uint32_t at = cpu.reg(CortexM3::Sp), end = at + 256; at < end; at += 4) {
         const uint32_t word = cpu.word(at);
         if ((word & 1) && word >> 20 == 0x080) // the word is an address of code in flash
             text += ", " + stm32.image()->functionAt(word);
     }
-    return text + ".";
+    return text;
 }
 
 } // namespace
@@ -87,7 +87,14 @@ M3Machine::M3Machine(SocModel& soc, const Config& config, std::function<bool()> 
     soc_.onIrq([this](bool high) { stm32_.setPinB(0, high); });
     if (!soc_.wires().areOthersStraight() && soc_.irq()) // a line that is stuck
         stm32_.setPinB(0, true);
-    tellOnAbort(this, [this] { return stackOf(stm32_); });
+    tellOnAbort(this, [this] { return "The program is in " + stackOf(stm32_) + "."; });
+    stm32_.onWatchdog = [this] {
+        watchdogReport_ = fmt::format("the watchdog resets the processor at {:.6f} s; the firmware "
+                                      "is in {}",
+                                      static_cast<double>(soc_.now()) / 1e9,
+                                      program ? stackOf(stm32_) : "another program");
+        fmt::print(stderr, "icesoc-sim: {}\n", watchdogReport_);
+    };
 }
 
 M3Machine::~M3Machine() {

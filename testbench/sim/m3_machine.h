@@ -65,6 +65,8 @@ public:
     Stm32F2& stm32() { return stm32_; }
     const std::vector<uint8_t>& fpgaFlash() const { return fpgaFlash_.memory; }
     CortexM3& cpu() { return stm32_.cpu(); }
+    // Returns the text about the last reset by the watchdog, which was also printed, or "".
+    const std::string& watchdogReport() const { return watchdogReport_; }
     // trace of the program's tasks; empty if `flash` was given, because its program is unknown
     std::optional<ProgramTrace> program;
 
@@ -81,6 +83,7 @@ private:
     std::function<bool()> poll_;
     SpiFlash fpgaFlash_;
     Stm32F2 stm32_;
+    std::string watchdogReport_;
     uint64_t nextPoll_ = 0, until_ = never;
     bool powered_ = false, over_ = false;
     // frozen copies of the process; null unless a debugger may go back

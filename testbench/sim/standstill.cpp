@@ -112,7 +112,8 @@ void Standstill::onTick(const void* context) {
     for (const std::string& name : names)
         text += (text.empty() ? "" : ", called by ") + name;
     fmt::print(stderr,
-               "icesoc-sim: simulated time has stopped at {:.6f} s; the firmware is in {}\n",
+               "icesoc-sim: simulated time has stopped at {:.6f} s; the firmware is in {}; Ctrl-C "
+               "ends the flight\n",
                static_cast<double>(now) / 1e9,
                text.empty() ? "an unknown function: addr2line (binutils) finds no name" : text);
     // The flight's signal handler only sets a flag, which hanging firmware never reads. With the

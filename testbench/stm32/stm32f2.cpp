@@ -100,6 +100,8 @@ void Stm32F2::lookAround() {
     if (watchdog_.on && now_() >= watchdog_.due) {
         watchdog_.fired = true;
         watchdog_.due = ~0ull;
+        if (onWatchdog)
+            onWatchdog();
         cpu_.requestReset();
     }
     if (fpgaEdgeNs_ != never && now_() >= fpgaEdgeNs_)

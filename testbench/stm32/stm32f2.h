@@ -74,6 +74,9 @@ public:
     // Returns the 4 KiB of SRAM that VBAT preserves through resets and without power.
     std::array<uint32_t, 1024>& backup() { return backup_; }
 
+    // Called when the watchdog expires, before it resets the processor.
+    std::function<void()> onWatchdog;
+
     struct Resets {
         unsigned power = 0, software = 0, watchdog = 0;
     };

@@ -171,6 +171,8 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
             return false;
         EXPECT_EQ(f.ground.replies.count(100), 0u);
         EXPECT_EQ(reported(), BOOT_WATCHDOG);
+        EXPECT_NE(f.m3->watchdogReport().find(" s; the firmware is in "), std::string::npos)
+            << f.m3->watchdogReport();
         f.ground.replies.clear();
         return true;
     };

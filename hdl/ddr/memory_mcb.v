@@ -12,6 +12,7 @@ module memory_mcb #(
     parameter [2:0]       URGENT_RUN = 3'd3,
     parameter [PORTS-1:0] READ_FIFO  = {PORTS{1'b1}},
     parameter [PORTS-1:0] BYTES      = 0,
+    parameter [PORTS-1:0] MERGE      = 0,
     parameter             BLOCK_RAM  = 1,
     parameter             ADDR_WIDTH = 27
 ) (
@@ -29,7 +30,7 @@ module memory_mcb #(
 
     npi_arbiter #(
         .PORTS(PORTS), .URGENT(URGENT), .URGENT_RUN(URGENT_RUN), .READ_FIFO(READ_FIFO),
-        .BYTES(BYTES), .BLOCK_RAM(BLOCK_RAM), .ADDR_WIDTH(ADDR_WIDTH)
+        .BYTES(BYTES), .MERGE(MERGE), .BLOCK_RAM(BLOCK_RAM), .ADDR_WIDTH(ADDR_WIDTH)
     ) u_arbiter (
         .clk_i(clk_i), .rst_i(rst_i),
         .npi_addr_i(npi_addr_i), .npi_addr_req_i(npi_addr_req_i), .npi_addr_ack_o(npi_addr_ack_o),

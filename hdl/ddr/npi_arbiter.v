@@ -20,6 +20,9 @@ module npi_arbiter #(
     // one bit per port: the port writes one byte per word and puts it on all eight lanes, so that
     // its write FIFO needs to store only one lane (npi_write_fifo)
     parameter [PORTS-1:0] BYTES      = 0,
+    // one bit per port: the port writes words in parts, which its write FIFO collects
+    // (npi_write_fifo). The port pushes a word after its last part.
+    parameter [PORTS-1:0] MERGE      = 0,
     parameter             BLOCK_RAM  = 1,  // 1: FIFOs in block RAM; 0: in LUT RAM, which is one
                                            // clock faster
     parameter             ADDR_WIDTH = 27, // width of a byte address, 9..32 (27 for 128 MiB)
@@ -122,7 +125,7 @@ module npi_arbiter #(
             localparam [PORT_BITS-1:0] ME = p;
             assign back_at[p] = back_valid && back_port == ME;
             npi_write_fifo #(
-                .BYTES(BYTES[p]), .LOG2(FIFO_LOG2), .BLOCK(BLOCK_RAM)
+                .BYTES(BYTES[p]), .MERGE(MERGE[p]), .LOG2(FIFO_LOG2), .BLOCK(BLOCK_RAM)
             ) u_write (
                 .clk_i(clk_i), .rst_i(rst_i || npi_wr_flush_i[p]),
                 .push_i(npi_wr_push_i[p]),
@@ -135,7 +138,7 @@ module npi_arbiter #(
                 wire rd_full; // a port must have room for the words of its reads (rule 3)
                 npi_fifo #(.WIDTH(68), .LOG2(FIFO_LOG2), .BLOCK(BLOCK_RAM)) u_read (
                     .clk_i(clk_i), .rst_i(rst_i || npi_rd_flush_i[p]),
-                    .push_i(rd_valid_i && back_at[p]), .data_i(rd_word),
+                    .push_i(rd_valid_i && back_at[p]), .store_i(1'b0), .data_i(rd_word),
                     .pop_i(npi_rd_pop_i[p]),
                     .data_o({npi_rd_word_o[4*p +: 4], npi_rd_data_o[64*p +: 64]}),
                     .empty_o(npi_rd_empty_o[p]), .full_o(rd_full)
@@ -167,6 +170,16 @@ module npi_arbiter #(
             end
         end
     end
+    // A port stores a part of a word in its write FIFO. The simulator then does not stop the clock
+    // (testbench/sim/rests.vh).
+    reg     stores;
+    integer s;
+    always @* begin
+        stores = 1'b0;
+        for (s = 0; s < PORTS; s = s + 1)
+            stores = stores || (MERGE[s] && |npi_wr_be_i[8*s +: 8]);
+    end
+
     assign wr_valid_o = |(move_at[PORTS-1:0] & ~npi_wr_empty_o);
     assign wr_data_o  = wr_data;
     assign wr_be_o    = wr_be;
@@ -175,7 +188,7 @@ module npi_arbiter #(
     // These inputs are not used, because byte enables replace read-modify-write, and because
     // transfers are aligned.
     wire unused =
-        &{1'b0, npi_rmw_i, npi_size_i, npi_addr_i, addr[2:0], back_index[4], move_at, 1'b0};
+        &{1'b0, npi_rmw_i, npi_size_i, npi_addr_i, addr[2:0], back_index[4], move_at, stores, 1'b0};
 
 `ifdef FORMAL
     `include "npi_arbiter_proof.vh"

@@ -5,6 +5,11 @@
 // Words are stored in LUT RAM, or with BLOCK in block RAM. Block RAM needs no LUTs for the words,
 // but one more clock from push_i to empty_o. The user must not push while the FIFO is full or pop
 // while it is empty; the proofs of the users show that this does not happen.
+//
+// With LANES > 1, the user collects each word in the FIFO: store_i stores lanes of the word that is
+// pushed next, and push_i only counts this word. Lanes that are stored in the clock of push_i
+// belong to the word after it. The user must not store lanes while the FIFO is full, or in the
+// clock of the push that fills it. Until a lane is stored, it contains a lane of an earlier word.
 
 `default_nettype none
 `include "shift_order.vh"
@@ -12,11 +17,13 @@
 module npi_fifo #(
     parameter WIDTH = 72,
     parameter LOG2  = 5, // depth: 2**LOG2 words, LOG2 is 2..24
-    parameter BLOCK = 0  // 1: the words are in block RAM; 0: in LUT RAM
+    parameter BLOCK = 0, // 1: the words are in block RAM; 0: in LUT RAM
+    parameter LANES = 1  // number of lanes of a word; 1: push_i stores the word
 ) (
     input  wire             clk_i,
     input  wire             rst_i, // reset, which also empties the FIFO
     input  wire             push_i,
+    input  wire [LANES-1:0] store_i, // not used if LANES is 1
     input  wire [WIDTH-1:0] data_i,
     input  wire             pop_i,
     output wire [WIDTH-1:0] data_o,
@@ -28,12 +35,17 @@ module npi_fifo #(
     // to data_o; with LUT RAM, address of the word on data_o.
     reg  [LOG2-1:0] write_place, read_place;
     wire [LOG2-1:0] write_next = after(write_place);
+    localparam LANE = WIDTH / LANES; // width of a lane
+    wire [LOG2-1:0] store_place = LANES > 1 && push_i ? write_next : write_place;
+    wire [LANES-1:0] store = LANES > 1 ? store_i : {LANES{push_i}};
+    integer l;
 
     // full_o comes from a register, because long paths of the requesters begin at this output.
     wire nearly; // the FIFO is full, or has room for exactly one word
     wire moves;  // the word at read_place can move to data_o
     reg  full;
     assign full_o = full;
+    wire unused = &{1'b0, store_i, 1'b0};
 
     always @(posedge clk_i) begin
         if (push_i)
@@ -56,8 +68,9 @@ module npi_fifo #(
             assign empty_o = write_place == read_place && !full;
             assign data_o  = words[read_place];
             always @(posedge clk_i)
-                if (push_i)
-                    words[write_place] <= data_i;
+                for (l = 0; l < LANES; l = l + 1)
+                    if (store[l])
+                        words[store_place][LANE*l +: LANE] <= data_i[LANE*l +: LANE];
         end else begin : g_block
             // no_rw_check (Yosys): no word is read in the clock in which it is written (see below).
             // Without this attribute, Yosys would add 150 flip-flops and 80 LUTs on chips whose RAM
@@ -76,8 +89,9 @@ module npi_fifo #(
             assign empty_o = empty;
             assign data_o  = word;
             always @(posedge clk_i) begin
-                if (push_i)
-                    words[write_place] <= data_i;
+                for (l = 0; l < LANES; l = l + 1)
+                    if (store[l])
+                        words[store_place][LANE*l +: LANE] <= data_i[LANE*l +: LANE];
                 if (moves)
                     word <= words[read_place];
                 empty <= rst_i || (fetch && !ready);
@@ -117,6 +131,7 @@ module npi_fifo #(
                 if (past && !rst_i) begin
                     assert (!(push_i && full_o));
                     assert (!(pop_i && empty_o));
+                    assert (LANES == 1 || !(|store_i && (full_o || (push_i && nearly))));
                 end
         end else begin : g_proof
             initial assume (rst_i);

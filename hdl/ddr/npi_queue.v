@@ -59,6 +59,12 @@ module npi_queue #(
     `SHIFT_ORDER(moved_after, 5)
     `SHIFT_NUMBERS(moved_of, moved_number, moved_after, 5)
 
+    // Returns the next number. The function has no carry chain, in which each bit takes a LUT site.
+    function [4:0] next_number;
+        input [4:0] from;
+        next_number = from ^ {&from[3:0], &from[2:0], &from[1:0], from[0], 1'b1};
+    endfunction
+
     // Returns the number of words minus 1 for a size; sizes 6 and 7 count as 5.
     function [4:0] last_of;
         input [2:0] size;
@@ -136,7 +142,7 @@ module npi_queue #(
         if (cmd_valid_o && cmd_ready_i)
             issue <= after(issue);
         if (back_done_i)
-            back_index <= back_index + 5'd1;
+            back_index <= next_number(back_index);
         if (back_ends)
             back <= after(back);
         full <= !back_ends && (full || (push_i && nearly));

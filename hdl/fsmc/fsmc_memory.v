@@ -59,7 +59,7 @@ module fsmc_memory #(
     input  wire                 npi_addr_ack_i,
     output reg                  npi_rnw_o,
     output wire [3:0]           npi_size_o,
-    output wire [4*WIDTH-1:0]   npi_wr_data_o,
+    output wire [4*WIDTH-1:0]   npi_wr_data_o, // parts of words (MERGE in npi_arbiter)
     output wire [7:0]           npi_wr_be_o,
     output wire                 npi_wr_push_o,
     input  wire [4*WIDTH-1:0]   npi_rd_data_i,
@@ -83,7 +83,7 @@ module fsmc_memory #(
         .wr_i(wr_i), .wr_addr_i(wr_addr_i), .wr_data_i(wr_data_i), .wr_be_i(wr_be_i),
         .wr_lost_o(wr_lost_o), .room_o(room_o), .more_room_o(more_room_o),
         .flush_i(flush_i || rd_miss_i), .idle_o(idle_o),
-        .push_o(npi_wr_push_o), .push_data_o(npi_wr_data_o), .push_be_o(npi_wr_be_o),
+        .store_be_o(npi_wr_be_o), .store_data_o(npi_wr_data_o), .push_o(npi_wr_push_o),
         .word_valid_o(post_valid), .word_addr_o(post_addr),
         .word_taken_i(npi_addr_ack_i && !npi_rnw_o)
     );
@@ -166,6 +166,24 @@ module fsmc_memory #(
     wire at_alone = same_sync && fetch_block == at_block && have_one;
     wire at_whole = same_sync && idle_o && (at_block ? full[1] : full[0]);
 
+    // These sums have no carry chains, in which each bit takes a LUT site.
+    reg [BLOCK_LOG2-1:0] next_word; // fetch_word + 1
+    reg [PAIR-1:0]       next_pair; // at_pair + ahead
+    reg                  carry;
+    integer              i;
+    always @* begin
+        carry = 1'b1;
+        for (i = 0; i < BLOCK_LOG2; i = i + 1) begin
+            next_word[i] = fetch_word[i] ^ carry;
+            carry        = carry && fetch_word[i];
+        end
+        carry = ahead;
+        for (i = 0; i < PAIR; i = i + 1) begin
+            next_pair[i] = at_pair[i] ^ carry;
+            carry        = carry && at_pair[i];
+        end
+    end
+
     wire fetching = wanted || busy;
     wire last     = npi_rd_pop_o && (single || &fetch_word);
     wire miss     = rd_miss_i && idle_o && !fetching && !at_whole &&
@@ -199,7 +217,7 @@ module fsmc_memory #(
             {wanted, busy} <= 2'b01;
 
         if (npi_rd_pop_o && !single)
-            fetch_word <= fetch_word + 1'b1;
+            fetch_word <= next_word;
         if (last)
             {busy, stale} <= 2'b00;
         if (fill && fetch_word == one_word)
@@ -240,7 +258,7 @@ module fsmc_memory #(
             if (target)
                 pair1 <= at_pair;
             else
-                pair0 <= at_pair + {{(PAIR-1){1'b0}}, ahead};
+                pair0 <= next_pair;
             if (full == 2'b00)
                 upper <= at_upper;
         end

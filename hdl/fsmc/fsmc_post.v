@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
-// fsmc_post: merges halfword writes into words of four halfwords, pushes complete words into the
-// write FIFO of the memory port, and queues their addresses.
+// fsmc_post: merges halfword writes into words of four halfwords in the write FIFO of the memory
+// port, and queues the addresses of these words.
 //
-// A halfword that belongs to the open word is merged into this word. A word is closed when it is
-// complete, when a write to another word arrives, or if flush_i is high. Its data then moves into
-// the write FIFO of the port, while its address waits in this module for the request. Therefore
-// only the open word occupies flip-flops; the closed words are in the RAM of the FIFO.
+// The FIFO collects the open word (MERGE in npi_arbiter): a halfword is stored in the FIFO in the
+// clock in which it arrives. The word is closed after a write of its last byte, when a write to
+// another word arrives, or if flush_i is high. Its address then waits in this module for the
+// request.
 
 `default_nettype none
+`include "shift_order.vh"
 
 module fsmc_post #(
     parameter ADDR_BITS = 25, // width of a halfword address
@@ -31,10 +32,10 @@ module fsmc_post #(
     input  wire                 flush_i,
     output wire                 idle_o,    // no word is open, and no closed word waits
     // write FIFO of the port
-    // high for one cycle: the word is closed and its data moves to the FIFO
-    output wire                 push_o,
-    output reg  [4*WIDTH-1:0]   push_data_o,
-    output wire [7:0]           push_be_o,
+    // the FIFO stores these bytes; in the cycle of push_o, they belong to the next word
+    output wire [7:0]           store_be_o,
+    output wire [4*WIDTH-1:0]   store_data_o,
+    output wire                 push_o,    // high for one cycle: the word is closed
     // closed word that has waited longest
     output wire                 word_valid_o,
     output wire [ADDR_BITS-3:0] word_addr_o,
@@ -43,18 +44,37 @@ module fsmc_post #(
     localparam WORD = ADDR_BITS - 2;
 
     reg [WORD-1:0] addrs [0:(1<<LOG2)-1];
-    // The `count` entries that start at `head` are the addresses of the closed words. The initial
-    // value prevents Yosys from duplicating the register head (as in npi_queue).
-    reg [LOG2-1:0] head = 0, count;
+    // The `count` entries from `head` to the one before `tail`, in shift order, are the addresses
+    // of the closed words. The initial values prevent Yosys from duplicating head (as in
+    // npi_queue).
+    `SHIFT_ORDER(after, LOG2)
+    reg [LOG2-1:0] head = 0, tail = 0, count;
     reg            open, none; // none: count == 0
     reg [WORD-1:0] open_addr;
-    reg [7:0]      open_be;
+    reg            ended; // the last byte of the open word was written
 
     wire       joins = open_addr == wr_addr_i[ADDR_BITS-1:2];
-    wire [LOG2-1:0] tail = head + count;
+
+    // Returns the next or the previous number. The function has no carry chain, in which each bit
+    // takes a LUT site.
+    function [LOG2-1:0] stepped;
+        input [LOG2-1:0] from;
+        input            down;
+        integer i;
+        reg     carry;
+        begin
+            carry = 1'b1;
+            for (i = 0; i < LOG2; i = i + 1) begin
+                stepped[i] = from[i] ^ carry;
+                carry = carry && (from[i] ^ down);
+            end
+        end
+    endfunction
+
     wire full   = &count; // no other word can be closed, so the open word stays open
-    wire close  = open && !full && (&open_be || flush_i || (wr_i && !joins));
+    wire close  = open && !full && (ended || flush_i || (wr_i && !joins));
     wire accept = wr_i && !(full && open && !joins);
+    wire begins = accept && |wr_be_i; // a word without bytes is not opened
 
     assign wr_lost_o    = wr_i && !accept;
     // The open word is counted as a closed word, so that only a write reduces the room.
@@ -65,40 +85,36 @@ module fsmc_post #(
     assign idle_o       = !open && !word_valid_o;
     assign word_addr_o  = addrs[head];
     assign push_o       = close;
-    assign push_be_o    = open_be;
 
     wire [3:0] bank = 4'd1 << wr_addr_i[1:0];
     wire [7:0] take = {{2{bank[3]}}, {2{bank[2]}}, {2{bank[1]}}, {2{bank[0]}}} & {4{wr_be_i}} &
         {8{accept}};
-    genvar b;
-    generate
-        for (b = 0; b < 8; b = b + 1) begin : g_byte
-            always @(posedge clk_i)
-                if (take[b])
-                    push_data_o[WIDTH/2*b +: WIDTH/2] <= wr_data_i[WIDTH/2*(b%2) +: WIDTH/2];
-        end
-    endgenerate
+    assign store_be_o   = take;
+    assign store_data_o = {4{wr_data_i}};
 
     always @(posedge clk_i) begin
         if (close)
             addrs[tail] <= open_addr;
         if (close != word_taken_i)
-            // the adder does not depend on `close`, which arrives late
-            count <= word_taken_i ? count - 1'b1 : count + 1'b1;
+            // the number does not depend on `close`, which arrives late
+            count <= stepped(count, word_taken_i);
+        if (close)
+            tail <= after(tail);
         if (close || word_taken_i)
             none <= !close && count == 1;
-        if (close || accept)
-            open <= accept;
-        open_be <= take | (open && !close ? open_be : 8'd0);
+        open  <= begins || (open && !close);
+        ended <= take[7] || (ended && !close);
         if (accept)
             open_addr <= wr_addr_i[ADDR_BITS-1:2];
         if (word_taken_i)
-            head <= head + 1'b1;
+            head <= after(head);
         if (rst_i) begin
             head <= 0;
+            tail <= 0;
             count <= 0;
             none <= 1'b1;
             open <= 1'b0;
+            ended <= 1'b0;
         end
     end
 
@@ -117,20 +133,32 @@ module fsmc_post #(
     // Model of the write FIFO of the port. For each word it stores the halfword under observation
     // and the byte enables of this halfword.
     reg [WIDTH+1:0] fifo [0:DEPTH-1];
-    wire [WIDTH+1:0] open_half =
-        {push_be_o[2*place_lane +: 2], push_data_o[WIDTH*place_lane +: WIDTH]};
-    always @(posedge clk_i)
+    reg [WIDTH+1:0] open_half; // the halfword under observation in the word that the FIFO collects
+    reg             begun = 1'b0; // the FIFO has stored bytes of this word
+    wire [1:0]      store_half_be = store_be_o[2*place_lane +: 2];
+    wire [WIDTH-1:0] store_half = store_data_o[WIDTH*place_lane +: WIDTH];
+    always @(posedge clk_i) begin
         if (push_o)
             fifo[tail] <= open_half;
+        open_half[WIDTH +: 2] <= store_half_be | (push_o || rst_i ? 2'b00 : open_half[WIDTH +: 2]);
+        if (store_half_be[0])
+            open_half[HALF-1:0] <= store_half[HALF-1:0];
+        if (store_half_be[1])
+            open_half[WIDTH-1:HALF] <= store_half[WIDTH-1:HALF];
+        begun <= !rst_i && (|store_be_o || (begun && !push_o));
+    end
 
-    // Part n of `after` is the value that the halfword will have in memory when the n oldest
+    // Part n of `value` is the value that the halfword will have in memory when the n oldest
     // waiting words have been written. The open word is the last of them.
-    wire [WIDTH*(DEPTH+1)-1:0] after;
-    assign after[WIDTH-1:0] = memory;
+    wire [WIDTH*(DEPTH+1)-1:0] value;
+    assign value[WIDTH-1:0] = memory;
+    wire [LOG2*(DEPTH+1)-1:0] places; // places of these words in `addrs`
+    assign places[LOG2-1:0] = head;
     genvar q;
     generate
-        for (q = 0; q < DEPTH; q = q + 1) begin : g_after
-            wire [LOG2-1:0] at = head + q;
+        for (q = 0; q < DEPTH; q = q + 1) begin : g_value
+            wire [LOG2-1:0] at = places[LOG2*q +: LOG2];
+            assign places[LOG2*(q+1) +: LOG2] = after(at);
             wire closed = q < count;
             wire [WORD-1:0] addr_ram = addrs[at];
             wire [WIDTH+1:0] half_ram = fifo[at];
@@ -139,13 +167,15 @@ module fsmc_post #(
             wire [1:0] be;
             assign {be, data} = closed ? half_ram : open_half;
             wire hits = (closed || (q == count && open)) && addr == place[ADDR_BITS-1:2];
-            assign after[WIDTH*(q+1) +: HALF] = hits &&
-                be[0] ? data[HALF-1:0] : after[WIDTH*q +: HALF];
-            assign after[WIDTH*(q+1)+HALF +: HALF] = hits &&
-                be[1] ? data[WIDTH-1:HALF] : after[WIDTH*q+HALF +: HALF];
+            assign value[WIDTH*(q+1) +: HALF] = hits &&
+                be[0] ? data[HALF-1:0] : value[WIDTH*q +: HALF];
+            assign value[WIDTH*(q+1)+HALF +: HALF] = hits &&
+                be[1] ? data[WIDTH-1:HALF] : value[WIDTH*q+HALF +: HALF];
+            always @(posedge clk_i)
+                assert (!past || rst_i || q != count || tail == at);
         end
     endgenerate
-    wire [WIDTH-1:0] final_value = after[WIDTH*DEPTH +: WIDTH];
+    wire [WIDTH-1:0] final_value = value[WIDTH*DEPTH +: WIDTH];
     wire [WIDTH-1:0] head_data;
     wire [1:0] head_be;
     assign {head_be, head_data} = fifo[head];
@@ -186,9 +216,15 @@ module fsmc_post #(
             assert (more_room_o || !$past(more_room_o && !wr_i));
             assert (room_o || !(more_room_o || $past(more_room_o)));
             assert (none == (count == 0));
-            // A complete word is closed at once; it does not wait for a write to another word,
-            // or for a flush.
-            assert (push_o || !(open && push_be_o == 8'hFF && count != DEPTH - 1));
+            // The last byte of a word closes the word at once; the word does not wait for a write
+            // to another word, or for a flush.
+            assert (push_o || !($past(store_be_o[7]) && count != DEPTH - 1));
+            // The FIFO collects exactly the open word, which has at least one byte. Only the open
+            // word is pushed.
+            assert (begun == open);
+            assert (!push_o || begun);
+            assert (!ended || open);
+            assert (open || open_half[WIDTH +: 2] == 2'b00);
             // The word that has waited longest is stable until it is taken.
             if ($past(word_valid_o && !word_taken_i && !rst_i))
                 assert (word_valid_o && $stable(word_addr_o));
@@ -198,8 +234,8 @@ module fsmc_post #(
     end
 `endif
 `ifdef COVER_POINTS
-    whole_word: cover property (@(posedge clk_i) close && &open_be);
-    part_of_word: cover property (@(posedge clk_i) close && !(&open_be));
+    last_byte_closes: cover property (@(posedge clk_i) close && ended);
+    part_of_word: cover property (@(posedge clk_i) close && !ended);
     write_elsewhere_closes: cover property (@(posedge clk_i) close && accept && !joins);
     joins_the_last_that_fits: cover property (@(posedge clk_i) wr_i && full && joins && open);
     no_room: cover property (@(posedge clk_i) wr_lost_o);

@@ -137,7 +137,10 @@ module platform #(
         .clk_i(clk_i), .bit_async_i(mcb_calib_done_i), .bit_sync_o(calib_done)
     );
 
-    memory_mcb #(.PORTS(PORTS), .READ_FIFO(READ_FIFO), .BYTES(BYTES)) u_memory (
+    // The bridge writes words in parts.
+    memory_mcb #(
+        .PORTS(PORTS), .READ_FIFO(READ_FIFO), .BYTES(BYTES), .MERGE({{(PORTS-1){1'b0}}, 1'b1})
+    ) u_memory (
         .clk_i(clk_i), .rst_i(rst_i),
         .npi_addr_i({npi_addr_i, npi_addr}),
         .npi_addr_req_i({npi_addr_req_i, npi_addr_req}),

@@ -73,8 +73,9 @@ module probe #(
 
     wire [64*WORDS-1:0] oldest;
     npi_fifo #(.WIDTH(64 * WORDS), .LOG2(9), .BLOCK(1)) u_fifo (
-        .clk_i(clk_i), .rst_i(rst_i), .push_i(push), .data_i({last, lost, cycles_i}),
-        .pop_i(pop), .data_o(oldest), .empty_o(empty), .full_o(full));
+        .clk_i(clk_i), .rst_i(rst_i), .push_i(push), .store_i(1'b0),
+        .data_i({last, lost, cycles_i}), .pop_i(pop), .data_o(oldest), .empty_o(empty),
+        .full_o(full));
 
     always @(posedge clk_i) begin
         if (arm) begin

@@ -43,6 +43,9 @@ public:
     // as in a memory that is busy with other ports. With 0, all words leave the FIFO at the
     // acknowledgement.
     void setLinger(double linger) { linger_ = linger; }
+    // Makes the write FIFO collect words: bytes that are enabled are stored in each cycle, and a
+    // push completes a word (MERGE in npi_arbiter).
+    void setMerge() { merge_ = true; }
     uint64_t reads() const { return reads_; }
     uint64_t writes() const { return writes_; }
 
@@ -63,6 +66,7 @@ private:
         if (top_.rst_i) {
             read_.clear();
             write_.clear();
+            open_ = {};
             lingering_ = 0;
             ack_ = readValid_ = false;
             return;
@@ -83,13 +87,29 @@ private:
             read_.clear();
             readValid_ = false;
         }
+        if (!merge_)
+            open_ = {top_.npi_wr_data_o, static_cast<uint8_t>(top_.npi_wr_be_o)};
         if (top_.npi_wr_push_o) {
-            write_.push_back({top_.npi_wr_data_o, static_cast<uint8_t>(top_.npi_wr_be_o)});
-            if (write_.size() + lingering_ > fifoWords)
-                broken("push into a full write FIFO");
+            if (merge_ && !open_.extra)
+                broken("push of a word without bytes");
+            write_.push_back(open_);
+            open_ = {};
         }
+        if (merge_)
+            storePart();
+        if (write_.size() + lingering_ + (merge_ && open_.extra) > fifoWords)
+            broken("push into a full write FIFO");
         sampleRequest();
         readValid_ = !read_.empty() && (readValid_ || !random_.chance(stall_));
+    }
+
+    void storePart() {
+        for (unsigned b = 0; b < 8; ++b)
+            if (top_.npi_wr_be_o >> b & 1) {
+                uint64_t mask = uint64_t(0xFF) << (8 * b);
+                open_.data = (open_.data & ~mask) | (top_.npi_wr_data_o & mask);
+                open_.extra |= static_cast<uint8_t>(1u << b);
+            }
     }
 
     void sampleRequest() {
@@ -175,6 +195,8 @@ private:
     unsigned size_ = 0;
     size_t lingering_ = 0; // words of acknowledged writes that are still in the FIFO
     std::deque<Word> read_, write_;
+    bool merge_ = false;
+    Word open_{}; // word that the write FIFO collects
     std::unordered_map<uint32_t, uint8_t> bytes_;
     uint64_t reads_ = 0, writes_ = 0;
 };

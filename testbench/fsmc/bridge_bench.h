@@ -94,6 +94,7 @@ public:
         : memory(bench, stall, seed * 2 + 1), slave(bench, stall, seed * 2 + 2),
           master(pins, {[this] { tick(); }, [this] { settle(); }}, hclk, clk) {
         slave.words[MAP_SLOT_SYSTEM * 16 + SYSTEM_ID] = SYSTEM_ID_VALUE;
+        memory.setMerge();
         top.page_i = 0;
         settle();
         for (int i = 0; i < 8; ++i)

@@ -34,6 +34,7 @@ module memory_rest_proof #(
     (* hierconn *) wire \u_core.u_arbiter.u_queue.moving ;
     (* hierconn *) wire \u_core.u_arbiter.u_queue.coming ;
     (* hierconn *) wire \u_core.u_arbiter.u_queue.cmd_valid_o ;
+    (* hierconn *) wire \u_core.u_arbiter.stores ;
 
     wire closes;
     core_gate #(.GATED(1)) u_gate ( // the same gate as in sim_soc.v
@@ -43,7 +44,9 @@ module memory_rest_proof #(
     always @(posedge clk_i)
         cover (closes);
 
-    memory_mcb #(.PORTS(PORTS), .READ_FIFO(~{{PORTS-1{1'b0}}, 1'b1})) u_core (
+    memory_mcb #(
+        .PORTS(PORTS), .READ_FIFO(~{{PORTS-1{1'b0}}, 1'b1}), .MERGE({{PORTS-1{1'b0}}, 1'b1})
+    ) u_core (
         .clk_i(closes), .rst_i(rst_i),
         .npi_addr_i(npi_addr_i), .npi_addr_req_i(npi_addr_req_i), .npi_rnw_i(npi_rnw_i),
         .npi_size_i(npi_size_i), .npi_rmw_i(npi_rmw_i), .npi_wr_data_i(npi_wr_data_i),

@@ -9,7 +9,7 @@
 `define MEMORY_RESTS(memory) \
     !(|{memory.npi_addr_req_i, memory.npi_wr_push_i, memory.npi_wr_flush_i, memory.npi_rd_pop_i, \
         memory.npi_rd_flush_i, memory.u_arbiter.u_queue.moving, memory.u_arbiter.u_queue.coming, \
-        memory.u_arbiter.u_queue.cmd_valid_o})
+        memory.u_arbiter.u_queue.cmd_valid_o, memory.u_arbiter.stores})
 
 // PLATFORM_STIRS is true while an access to the memory or to the register bus of the platform `p`
 // may change the state of the bridge, the decoder, the modem or the system slot. Memory port 0

@@ -59,14 +59,19 @@ module nwait_bench;
     wire [7:0]  npi_be;
     reg         npi_ack = 1'b0, npi_empty = 1'b1;
     reg  [63:0] npi_answer = 64'd0;
-    reg  [71:0] pushed [0:63];
+    reg  [71:0] pushed [0:63]; // write FIFO; pushed[tail] is the word that it collects
     reg  [63:0] memory [0:1023];
     integer head = 0, tail = 0, to_come = 0, from = 0, rests = 0, seed, b;
     always @(posedge clk) begin
         if (npi_push) begin
-            pushed[tail % 64] = {npi_be, npi_data};
             tail = tail + 1;
+            pushed[tail % 64][71:64] = 8'd0;
         end
+        for (b = 0; b < 8; b = b + 1)
+            if (npi_be[b]) begin
+                pushed[tail % 64][64+b]    = 1'b1;
+                pushed[tail % 64][8*b +: 8] = npi_data[8*b +: 8];
+            end
         if (npi_req && npi_ack) begin
             if (npi_rnw) begin
                 to_come = 1 << npi_size;
@@ -165,6 +170,7 @@ module nwait_bench;
     reg [15:0] model [0:4095], value, got, low;
     reg [31:0] words [0:15];
     initial begin
+        pushed[0] = 72'd0;
         if (!$value$plusargs("seed=%d", seed))
             seed = 1;
         if (!$value$plusargs("operations=%d", operations))

@@ -16,7 +16,7 @@ bus_decoder) variants='SLOTS=1 SLOTS=4 SLOTS=64' ;;
 npi_select) variants="PORTS=2 PORTS=3 PORTS=4 PORTS=5 PORTS=6 PORTS=7 PORTS=8 URGENT=2'd1" ;;
 npi_arbiter | memory_mcb)
     variants="PORTS=2 PORTS=3 PORTS=4 PORTS=5 PORTS=6 PORTS=7 PORTS=8 URGENT=2'd1 READ_FIFO=2'd1"
-    variants="$variants BYTES=2'd2 BLOCK_RAM=0 ADDR_WIDTH=30"
+    variants="$variants BYTES=2'd2 MERGE=2'd1 BLOCK_RAM=0 ADDR_WIDTH=30"
     [ "$module" != npi_arbiter ] || refused='PORTS=1 PORTS=9 URGENT_RUN=0 ADDR_WIDTH=33' ;;
 mcb_backend) variants='ADDR_WIDTH=9 ADDR_WIDTH=30' refused='ADDR_WIDTH=31' ;;
 npi_queue) variants='PORT_BITS=2 PORT_BITS=3' ;;
@@ -30,8 +30,8 @@ bus_window)
 bus_to_axi4lite) variants='ADDR_WIDTH=3 ADDR_WIDTH=32' ;;
 bus_to_wishbone) variants='ADDR_WIDTH=3 ADDR_WIDTH=32 PIPELINED=1' ;;
 async_fifo) variants='LOG2=2 LOG2=6' ;;
-npi_fifo) variants='LOG2=2 LOG2=24,BLOCK=1 LOG2=5 BLOCK=1' ;;
-npi_write_fifo) variants='BYTES=0 BYTES=1 BYTES=1,BLOCK=1' ;;
+npi_fifo) variants='LOG2=2 LOG2=24,BLOCK=1 LOG2=5 BLOCK=1 LANES=8 LANES=8,BLOCK=1' ;;
+npi_write_fifo) variants='BYTES=0 BYTES=1 BYTES=1,BLOCK=1 MERGE=1 MERGE=1,BLOCK=1' ;;
 modem) variants='CLK_HZ=2000000 CLK_HZ=100000000 API=1' ;;
 fsmc_bridge | fsmc_sync_bridge)
     variants='MUXED=1 WAIT_HIGH=1,TIMEOUT_LOG2=24 TIMEOUT_LOG2=1 POST_LOG2=2,BLOCK_LOG2=4'

@@ -190,11 +190,26 @@ Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr* is) {
     return status;
 }
 
+/* Withdraws an asynchronous call that could not be sent. Returns 0 if the call has already ended:
+ * another task noticed first that the connection was lost, and made the callback. */
+static int withdraw(Ice_ObjectPrxPtr self) {
+    Ice_CommunicatorPtr ic = self->communicator;
+    Ice_Call* call = &ic->calls[self->call];
+    int isOwn;
+    icec_lock(ic, ICE_LOCK_STATE);
+    /* before the call is in the table, its slot belongs to this task */
+    isOwn = self->status != ICE_LATER || (call->state == ICE_CALL_WAITING && call->id == self->id);
+    if (isOwn)
+        call->state = ICE_CALL_BUILDING;
+    icec_unlock(ic, ICE_LOCK_STATE);
+    return isOwn;
+}
+
 Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callback, void* cookie) {
     Ice_CommunicatorPtr ic = self->communicator;
     int slot = self->call;
     Ice_Status status = sendAndUnlock(self, callback, cookie);
-    if (status != ICE_OK || self->mode != ICE_TWOWAY)
+    if (self->mode != ICE_TWOWAY || (status != ICE_OK && withdraw(self)))
         return Ice_ObjectPrx_end(self, status);
     /* Wakes the receiving task, which then waits at most until the time-out of this call. */
     if (isWaiting(ic, slot))

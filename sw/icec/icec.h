@@ -269,7 +269,8 @@ Ice_OutputStreamPtr Ice_ObjectPrx_begin(Ice_ObjectPrxPtr self, const char* opera
 Ice_Status Ice_ObjectPrx_invoke(Ice_ObjectPrxPtr self, Ice_InputStreamPtr* is);
 Ice_Status Ice_ObjectPrx_end(Ice_ObjectPrxPtr self, Ice_Status status);
 /* Makes an asynchronous call; replaces invoke and end. If this function returns ICE_OK, the task
- * that receives the reply calls `callback`. The stream `is` is valid during the callback. */
+ * that receives the reply calls `callback` once; otherwise no task calls it. The stream `is` is
+ * valid during the callback. */
 typedef void (*Ice_Callback)(void* cookie, Ice_Status status, Ice_InputStreamPtr is);
 Ice_Status Ice_ObjectPrx_invokeAsync(Ice_ObjectPrxPtr self, Ice_Callback callback, void* cookie);
 

@@ -115,6 +115,8 @@ private:
             return ICE_CONNECTION_LOST;
         if (tap)
             tap(message);
+        if (!open[connection]) // `tap` has closed it
+            return ICE_CONNECTION_LOST;
         if (peer_)
             peer_->inject(ICE_EVENT_MESSAGE, connection, message);
         return ICE_OK;

@@ -291,6 +291,32 @@ TEST_F(Calls, TimeOutsAreKeptAndLateRepliesPassedOver) {
     EXPECT_EQ(call(prx_, "op"), ICE_OK);
 }
 
+// While one task sends a request, another task receives the end of the connection.
+TEST_F(Calls, AnAsynchronousCallWhoseSendingFailsIsReportedOnce) {
+    ASSERT_EQ(call(prx_, "op"), ICE_OK);
+    here().loop.tap = [&](const Bytes& message) {
+        if (message[8] != 0) // not a request
+            return;
+        here().loop.inject(ICE_EVENT_CLOSED, prx_.connection);
+        EXPECT_EQ(Ice_Communicator_poll(&here().ic, 0), ICE_OK);
+    };
+    Ice_Status status = ICE_OK;
+    int calls = 0;
+    std::pair<Ice_Status*, int*> result(&status, &calls);
+    ASSERT_NE(Ice_ObjectPrx_begin(&prx_, "op", 0), nullptr);
+    const auto done = [](void* cookie, Ice_Status s, Ice_InputStreamPtr) {
+        const auto& to = *static_cast<std::pair<Ice_Status*, int*>*>(cookie);
+        *to.first = s;
+        ++*to.second;
+    };
+    const Ice_Status sent = Ice_ObjectPrx_invokeAsync(&prx_, done, &result);
+    EXPECT_EQ(sent == ICE_OK ? status : sent, ICE_CONNECTION_LOST);
+    EXPECT_EQ(calls, sent == ICE_OK ? 1 : 0) << "the caller must get the failure exactly once";
+    here().loop.tap = nullptr;
+    for (int i = 0; i < 2 * ICE_CALLS; ++i)
+        EXPECT_EQ(call(prx_, "op"), ICE_OK) << "a slot was not released";
+}
+
 TEST_F(Calls, WhoWaitsForALongOperationGetsSignsOfLife) {
     int beats = 0;
     there().loop.tap = [&](const Bytes& m) { beats += m[8] == 3; }; // ValidateConnection

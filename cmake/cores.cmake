@@ -143,7 +143,7 @@ macro(icesoc_core_test)
       icesoc_netlist(${name}_slot DESIGN ${top} DEPENDS ${targets})
     else()
       icesoc_verilate(${name}_slot TOP ${top} SOURCES ${files} DEPENDS ${targets}
-                      FLAGS ${A_FLAGS} ${CORE_TEST_FLAGS}
+                      FLAGS ${A_FLAGS} ${CORE_TEST_FLAGS} EDITED
                       PARAMS ${clock} INCLUDES ${CMAKE_SOURCE_DIR}/bus ${CMAKE_SOURCE_DIR}/hdl/ddr
                         ${CMAKE_SOURCE_DIR}/hdl/system ${CMAKE_SOURCE_DIR}/hdl/cdc
                         ${folder})

@@ -228,17 +228,21 @@ macro(icesoc_verilate_observed)
 endmacro()
 
 # icesoc_verilate(NAME TOP module SOURCES file... [PARAMS NAME=value...] [INCLUDES dir...]
-#                 [REGS block...] [DEPENDS target-or-file...] [FLAGS ...] [FAST] [CLASS class])
+#                 [REGS block...] [DEPENDS target-or-file...] [FLAGS ...] [FAST] [EDITED]
+#                 [CLASS class])
 # Builds a Verilated model of a module as the library NAME with the class V<NAME>, or V<CLASS>. Lint
 # (-Wall) is on, and its warnings are errors. FAST is for the model of the whole chip. With
 # COVERAGE, a FAST model has coverage counters only in soc.v and platform.v, because the other
 # blocks are counted by their own tests. With counters in all modules, a few simulated seconds of
-# flight take minutes.
+# flight take minutes. EDITED is for a model that is compiled after each edit: the header of
+# Verilator's run-time library, which takes half of the compile time of a small model, is
+# precompiled.
 #
 # Clang compiles the model. Compared with g++, compiling takes 0.6 of the time (measured with fir),
 # and the compiled model is 1.18 times as fast (measured with the chip).
 function(icesoc_verilate name)
-  cmake_parse_arguments(A "FAST" "TOP;CLASS" "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;FLAGS" ${ARGN})
+  cmake_parse_arguments(A "FAST;EDITED" "TOP;CLASS" "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;FLAGS"
+    ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name})
   set(class V${name})
   if(A_CLASS)
@@ -271,6 +275,15 @@ function(icesoc_verilate name)
   if(NOT COVERAGE AND NOT SANITIZE)
     set(compiler ${CLANGXX})
   endif()
+  set(fast -O3 ${TUNE})
+  set(environment)
+  icesoc_verilator_runtime()
+  if(A_EDITED AND TARGET verilated_header)
+    set(environment CCACHE_PCH_EXTSUM=1 CCACHE_SLOPPINESS=pch_defines,time_macros)
+    list(APPEND fast -include-pch ${VERILATED_HEADER} -Xclang -fno-pch-timestamp)
+    list(APPEND deps ${VERILATED_HEADER} verilated_header)
+  endif()
+  list(JOIN fast " " fast)
   # The simulator is installed, so its messages must not contain the path of this tree.
   set(without_tree)
   if(A_FAST)
@@ -289,8 +302,8 @@ function(icesoc_verilate name)
     ${without_tree}
     COMMAND ${unchanged} restore ${dir}
     COMMAND ${CMAKE_COMMAND} -E env --unset=MAKEFLAGS CCACHE_DIR=$ENV{CCACHE_DIR}
-            make -s -j2 -C ${dir} -f ${class}.mk ${class}__ALL.a
-            "CXX=${CCACHE} ${compiler}" "OPT_FAST=-O3 ${TUNE}" OPT_GLOBAL=-O2
+            ${environment} make -s -j2 -C ${dir} -f ${class}.mk ${class}__ALL.a
+            "CXX=${CCACHE} ${compiler}" "OPT_FAST=${fast}" OPT_GLOBAL=-O2
             OPT_SLOW=-O0 "USER_CPPFLAGS=-fPIC" ARCHIVE=1
     DEPENDS ${deps} ${unchanged} VERBATIM COMMENT "Verilating ${A_TOP} as ${name}")
   set(defines ${A_FLAGS})
@@ -302,7 +315,6 @@ function(icesoc_verilate name)
             "-DDEFINES=${defines}" -P ${CMAKE_SOURCE_DIR}/cmake/files.cmake
     DEPENDS ${lib} ${CMAKE_SOURCE_DIR}/cmake/files.cmake VERBATIM COMMENT "Files of ${name}")
   add_custom_target(verilated_${name} DEPENDS ${lib} ${files})
-  icesoc_verilator_runtime()
   add_library(${name} INTERFACE)
   add_dependencies(${name} verilated_${name})
   target_include_directories(${name} SYSTEM INTERFACE ${dir})
@@ -343,7 +355,8 @@ function(icesoc_netlist name)
     CLASS ${A_CLASS} FLAGS ${A_FLAGS} -Wno-lint -Wno-style -Wno-UNOPTFLAT)
 endfunction()
 
-# Verilator's run-time library, compiled once for all models.
+# Verilator's run-time library, compiled once for all models, and its precompiled header.
+set(VERILATED_HEADER ${CMAKE_BINARY_DIR}/verilated.pch)
 function(icesoc_verilator_runtime)
   if(TARGET verilator_runtime)
     return()
@@ -369,6 +382,18 @@ function(icesoc_verilator_runtime)
   target_compile_definitions(verilator_runtime PUBLIC VM_TRACE_FST=$<BOOL:${TRACE}>)
   target_include_directories(verilator_runtime SYSTEM PUBLIC ${root}/include ${root}/include/vltstd)
   target_link_libraries(verilator_runtime PUBLIC ZLIB::ZLIB Threads::Threads)
+  if(NOT TRACE AND NOT COVERAGE AND NOT SANITIZE)
+    set(makefile ${CMAKE_SOURCE_DIR}/cmake/verilated_header.mk)
+    get_filename_component(compiler ${CLANGXX} REALPATH)
+    add_custom_command(OUTPUT ${VERILATED_HEADER}
+      COMMAND ${CMAKE_COMMAND} -E env --unset=MAKEFLAGS
+              make -s -B -f ${makefile} VERILATOR_ROOT=${root} TO=${VERILATED_HEADER}
+              CXX=${CLANGXX} "OPT_FAST=-O3 ${TUNE} -Xclang -fno-pch-timestamp"
+              USER_CPPFLAGS=-fPIC
+      DEPENDS ${makefile} ${root}/include/verilated.h ${compiler}
+      VERBATIM COMMENT "Precompiled header of Verilator's run-time library")
+    add_custom_target(verilated_header DEPENDS ${VERILATED_HEADER})
+  endif()
 endfunction()
 include(vhdl)
 include(arm)

@@ -213,7 +213,7 @@ class Cases(Project):
         edit("tests/room/t.sh", *BREAK)
         # The test has never passed, so the report lists the uncommitted files.
         self.regress("--name b.Bad", 1)
-        self.has("^        changed since the commit; it is not known to have passed: "
+        self.has("^        changed since the last commit [(]no recorded run has passed[)]: "
                  r"tests/room/t.sh:3 \(1 line\)$")
         write("hdl/fifo/fifo.v", "a\nB\nc\nD\nE\n")
         write("docs/page.md", "2\n")

@@ -106,7 +106,7 @@ class Changes:
         # The list of files that a script uses is incomplete. If none of the listed files has
         # changed, all changes are therefore shown.
         files = self.of_test(test, since) or self.differing(since)
-        text = "the commit; it is not known to have passed" if not end else \
+        text = "the last commit (no recorded run has passed)" if not end else \
             f"it passed at {commit}" + (
                 f" with SEED={end[3]}" if end[3] != seed else "")
         if not files:

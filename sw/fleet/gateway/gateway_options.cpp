@@ -44,7 +44,10 @@ std::string given(const std::string& text) {
 // key.
 std::string readModemKey(const std::string& path) {
     std::string key = XBeeAT::readSecret(path);
-    key.erase(key.find_last_not_of(" \n") + 1);
+    key.erase(key.find_last_not_of(" \r\n") + 1);
+    const std::string mark = "\xEF\xBB\xBF"; // byte order mark that some editors write
+    if (key.compare(0, mark.size(), mark) == 0)
+        key.erase(0, mark.size());
     if (key.empty() || key.size() > 32 ||
         key.find_first_not_of("0123456789abcdefABCDEF") != std::string::npos)
         throw std::runtime_error("modem key file '" + path +
@@ -215,7 +218,8 @@ std::map<std::string, int> fleetOf(const Options& o) {
 
 std::string endpointsOf(const std::string& text, int place) {
     const std::string endpoints = given(text);
-    static const std::regex port(R"(-p ([1-9]\d*))");
+    // A number with more digits is not a port; Ice then reports it.
+    static const std::regex port(R"(-p ([1-9]\d{0,4})(?!\d))");
     std::string above;
     std::smatch at;
     auto from = endpoints.begin();

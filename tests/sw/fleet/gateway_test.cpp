@@ -258,12 +258,20 @@ TEST_F(Gateway, AOnewayThatWaitsTooLongIsNeverCarriedOut) {
 }
 
 TEST(GatewayOptions, WrongOnesAreRefusedByName) {
+    // A key file with a byte order mark and a carriage return, as editors of Windows write it, is
+    // not an error; the error is then the device.
+    const std::string key = testing::TempDir() + "gateway_modem_key." + std::to_string(getpid());
+    std::ofstream(key) << "\xEF\xBB\xBF"
+                          "0011\r\n";
+    ASSERT_EQ(chmod(key.c_str(), 0600), 0);
     const std::pair<std::multimap<std::string, std::string>, std::string> cases[] = {
         {{}, "it is not a serial port"},
         {{{"-d", "/dev/no-such-port"}}, "No such file"},
         {{{"-l", "nonsense"}}, "expected HOST:PORT"},
         {{{"-l", "127.0.0.1:70000"}}, "expected a port of 0 to 65535"},
         {{{"-l", "[::1"}}, "[::1"},
+        {{{"-l", "tcp -h 127.0.0.1 -p 99999999999"}}, "99999999999"},
+        {{{"--modem-key", key}}, "it is not a serial port"},
         {{{"-a", "65536"}}, "--address"},
         {{{"--key", "/no/such/file"}}, "openssl rand -hex 16"},
         {{{"--modem-key", "/no/such/file"}}, "No such file"},
@@ -292,6 +300,7 @@ TEST(GatewayOptions, WrongOnesAreRefusedByName) {
         for (const char* internal : {".h:", ".cpp:", "::Ice::"})
             EXPECT_EQ(gateway.said().find(internal), std::string::npos) << gateway.said();
     }
+    std::remove(key.c_str());
 }
 
 TEST(GatewayOptions, AnUnknownOneIsReportedEvenIfTheDeviceIsMissing) {

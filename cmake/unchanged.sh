@@ -14,10 +14,8 @@ if [ "$1" = save ]; then
     mkdir -p "$2" "$before"
     find "$2" -maxdepth 1 \( -name "*.cpp" -o -name "*.h" \) -exec cp -p -t "$before" {} +
 else
-    for old in "$before"/*; do
-        [ -f "$old" ] || continue # at the first build, the folder is empty
-        file=$2/${old##*/}
-        if cmp -s "$old" "$file"; then touch -r "$old" "$file"; fi
-    done
+    # Three programs for all files; two for each file took 0.1 s after an edit of the chip.
+    LC_ALL=C diff -qs "$before" "$2" |
+        sed -n 's/^Files \(.*\) and .* are identical$/\1/p' | xargs -r mv -t "$2"
     rm -rf "$before"
 fi

@@ -17,6 +17,8 @@ from pathlib import Path
 import yaml
 
 from icesoc.cli.build_folder import BuildFolder
+from icesoc.cli.flight import check_chip
+from icesoc.util.errors import Stop
 from script import TREE, Script, append, commit, fresh, git, main, repository, write
 
 WORK, BUILD = map(Path, sys.argv[2:4])
@@ -78,6 +80,13 @@ class Cases(Script):
         self.assertEqual(folders(str(mine)), (both, list_))
         self.assertEqual(folders(f"{mine};{mine}/second"), ([*both, mine / "second"], list_))
         self.assertEqual(folders(f"{mine}/second"), ([mine / "second"], None))
+        # A flight finds its cores in this list, also before the build folder is configured.
+        values = types.SimpleNamespace(jobs=1, built=False, core_folders=str(mine),
+                                       cores=[str(mine / "first")])
+        check_chip(values, BuildFolder(work / "built", values))
+        values.cores = [str(mine / "second")]
+        with self.assertRaisesRegex(Stop, f"add a line 'second' to {list_}"):
+            check_chip(values, BuildFolder(work / "built", values))
         write(work / "built/CMakeCache.txt", f"CORES:FILEPATH={list_}\n"
               f"CORE_FOLDERS:STRING={mine}/first\n")
         self.assertEqual(folders(""), ([mine / "first"], None))

@@ -259,7 +259,7 @@ def kit(folder, described=""):
 def check_chip(values, build):
     """Rejects a core of the tree that is not in the chip. Without this check, the call of the core
     would fail after minutes."""
-    listed = build.cached("CORES") or "ip/cores.list"
+    listed = build.chip_list() or build.cached("CORES") or "ip/cores.list"
     lines = re.findall(r"^\s*(\w+)", read_list(listed), re.M)
     for core in (Path(folder).name for folder in values.cores):
         if core not in lines:

@@ -183,7 +183,7 @@ class Cases(Script):
                 (mine / "build/main" / path.name).symlink_to(path)
         cache = (BUILD / "CMakeCache.txt").read_text()
         write(mine / "build/main/CMakeCache.txt",
-              cache.replace("KNOWN_CORES:INTERNAL=", "KNOWN_CORES:INTERNAL=sample_verilog;"))
+              re.sub("(KNOWN|TESTED)_CORES:INTERNAL=", r"\g<0>sample_verilog;", cache))
         before = entries(icesoc)
         self.carried_out(mine, ICESOC_TREE=str(icesoc), ICESOC=str(icesoc), CORES="fir")
         self.assertEqual(entries(icesoc), before)  # the tree itself must be unchanged

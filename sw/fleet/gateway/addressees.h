@@ -19,19 +19,22 @@ namespace gateway {
 class Addressees {
 public:
     // Records that a client has passed proxies of these objects to the vehicle. If one of the
-    // objects belongs to connected clients of another subject, records nothing and returns this
-    // object.
-    std::optional<Ice::Identity> record(Client& client, const std::vector<Ice::Identity>& passed) {
+    // objects surely belongs to connected clients of another subject, records nothing and returns
+    // this object. `isSure`: other parameters hardly look like these proxies.
+    std::optional<Ice::Identity> record(Client& client, const std::vector<Ice::Identity>& passed,
+                                        bool isSure) {
         for (const Ice::Identity& object : passed) {
             const auto found = owners_.find(object);
             if (found != owners_.end() && !found->second.connections.empty() &&
-                found->second.subject != client.subject)
+                found->second.subject != client.subject && found->second.isSure)
                 return object;
         }
         for (const Ice::Identity& object : passed)
             if (!client.hasLeft && client.objects < mostKnown) {
                 Owners& owners = owners_[object];
-                owners.subject = client.subject;
+                if (owners.connections.empty())
+                    owners = {client.subject, false, {}};
+                owners.isSure |= isSure && owners.subject == client.subject;
                 client.objects += owners.connections.insert(client.connection).second;
             }
         return std::nullopt;
@@ -71,6 +74,7 @@ private:
     // The connected clients that have passed a proxy of an object, and their common subject.
     struct Owners {
         std::string subject;
+        bool isSure = false;
         std::set<Connection> connections;
     };
     std::map<Ice::Identity, Owners> owners_;

@@ -292,7 +292,9 @@ bool Forwarder::recordProxies(const std::shared_ptr<Request>& request) {
     std::optional<Ice::Identity> others;
     {
         std::lock_guard<std::mutex> lock(mutex_);
-        others = addressees_.record(*request->client, passed);
+        // With encoding 1.0, a text before zeros looks like a proxy.
+        const bool isSure = request->current.encoding != Ice::Encoding_1_0;
+        others = addressees_.record(*request->client, passed, isSure);
     }
     if (!others)
         return true;

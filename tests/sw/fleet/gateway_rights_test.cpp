@@ -143,6 +143,17 @@ TEST_F(Gateway, AClientOfAnotherSubjectCannotPassTheSameObject) {
     EXPECT_EQ(other.echo->repeat(1, {1}), RadioTest::Bytes{1}) << "other calls are not affected";
     EXPECT_EQ(caller.echo->callBack(1), 1) << "the owner must receive the calls";
     EXPECT_EQ(other.heard->calls, 0);
+    // With encoding 1.0, a text before zeros looks like a proxy. Two clients may pass it.
+    const std::vector<Ice::Byte> text{21,  0, 0, 0, 1, 0, 5, 'p', 'i', 'l', 'o',
+                                      't', 0, 0, 0, 0, 0, 0, 0,   0,   0};
+    for (const Program* program : {&owner, &other}) {
+        std::vector<Ice::Byte> result;
+        const std::string refused = whyFails([&] {
+            program->echo->ice_encodingVersion(Ice::Encoding_1_0)
+                ->ice_invoke("fetch", Ice::OperationMode::Normal, text, result);
+        });
+        EXPECT_EQ(refused.find("belongs to another client"), std::string::npos) << refused;
+    }
     // A one-way call has no reply, so its connection is closed.
     other.echo = other.echo->ice_oneway();
     const auto connection = other.echo->ice_getConnection();

@@ -158,9 +158,10 @@ module fsmc_memory #(
     // Copies of both comparisons of the address at the pins, registered together with rd_at_i. If
     // the pins change meanwhile, a copy may be wrong; then only a useless word is fetched, or valid
     // data is discarded.
+    wire region_at_pins = &same_upper;
     wire same_sync, same_region;
     cdc_copy #(.WIDTH(2)) u_same (
-        .clk_i(clk_i), .bus_async_i({same_block, &same_upper}),
+        .clk_i(clk_i), .bus_async_i({same_block, region_at_pins}),
         .bus_sync_o({same_sync, same_region})
     );
     wire at_alone = same_sync && fetch_block == at_block && have_one;
@@ -379,6 +380,7 @@ module fsmc_memory #(
             if ($past(!rst_i && !drop_i && !wr_i && !(miss && !same_region)))
                 assert (($past(full) & ~full &
                          ($past(miss || next) ? ~(2'b01 << target) : 2'b11)) == 2'b00);
+            assert (region_at_pins == (rd_upper == upper));
             // Both blocks have the same upper address bits, so a miss in another region invalidates
             // both.
             if ($past(miss && !same_region))

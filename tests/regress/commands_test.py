@@ -40,10 +40,12 @@ set_tests_properties(bench.good PROPERTIES ENVIRONMENT "NEEDS=nothing")
 foreach(core fir ${CORE_FOLDERS})
   get_filename_component(core ${core} NAME)
   add_custom_target(test_ip_${core} ALL COMMAND cp ${work}/waved ${build}/test_ip_${core})
+  add_custom_target(tests_of_${core} DEPENDS test_ip_${core})
   list(APPEND known ${core})
   add_test(NAME test_ip_${core}.Impulse COMMAND echo "note: LEVELS: not read back")
 endforeach()
 set(KNOWN_CORES "${known}" CACHE INTERNAL "")
+set(TESTED_CORES "${known}" CACHE INTERNAL "")
 add_custom_target(synth_inputs COMMAND mkdir -p ${build}/synth
   COMMAND cp ${work}/utilisation ${build}/synth)
 add_test(NAME test_s.Sane COMMAND sh -c

@@ -106,11 +106,11 @@ if ! command -v dpkg-query >/dev/null 2>&1; then
     exit 1
 fi
 
+# dpkg-query fails for unknown packages. It reports a package as not-installed if only other
+# packages mention it.
 # shellcheck disable=SC2046 # a list of words
-there=$(dpkg-query -W -f ';${db:Status-Status} ${Package};' $(echo "$packages" | sed 's/ .*//') \
-    # dpkg-query fails for unknown packages. It reports a package as not-installed if only other
-    # packages mention it.
-    2>/dev/null) || true
+there=$(dpkg-query -W -f ';${db:Status-Status} ${Package};' \
+    $(echo "$packages" | sed 's/ .*//') 2>/dev/null) || true
 list=$(echo "$packages" | while read -r name why; do
     case "$name;$there" in
     ";"* | *";installed $name;"*) ;;

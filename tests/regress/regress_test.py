@@ -235,6 +235,10 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         write("cmake/setup.sh", "packages='\nyosys synthesis\n'\n")
         write(build / "program", f"#!/bin/sh\ncat {source}/data {build}/out/result\n")
         write("build/main/out/result", "r")
+        # CMake names dpkg's list of packages in build.ninja
+        outside = self.work.with_name("unchanged_status")
+        outside.write_text("1")
+        write(build / "build.ninja", f"build {outside}: phony\n")
         tests = {"program": Test(1, "test_a.One", [f"{build}/test_a"]),
                  "script": Test(2, "lint.a", [str(source / "tests/room/t.sh")])}
         os.rename(build / "program", build / "test_a")
@@ -251,6 +255,7 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         for what, act, changed in (
                 ("nothing", lambda: None, ""),
                 ("an unrelated package", lambda: package("game", "1"), ""),
+                ("the list of packages", lambda: append(outside, "2"), ""),
                 ("what tests write", lambda: write("build/main/out/result", "s"), ""),
                 ("a file that it does not name", lambda: write("other.txt", "1"), "script"),
                 ("a file that it names", lambda: write("data/one.txt", "2"), "program script"),

@@ -104,7 +104,10 @@ class Inputs:
         listed = collect(["ninja", "-C", self.build, "-t", "targets", "all"])[1]
         names = (line.rpartition(":")[0] for line in listed.splitlines())
         paths = (os.path.join(self.build, name) for name in names)
-        return sorted(path for path in paths if USED.search(path) and os.path.isfile(path))
+        # Ninja also lists inputs of CMake outside the tree, such as dpkg's list of packages.
+        ours = f"{self.source}/", f"{self.build}/"
+        return sorted(path for path in paths if path.startswith(ours) and USED.search(path)
+                      and os.path.isfile(path))
 
     @functools.cached_property
     def all(self):

@@ -112,7 +112,7 @@ icesoc_hdl_core(fsmc_bridge TOP fsmc_bridge FILES ${files} INCLUDES ${includes}
 in_folder(files modem modem_baud.v modem_timer.v modem_ring.v modem_uart_tx.v modem_uart_rx.v
   modem_at_rows.v modem_at.v modem_api_tx.v modem_api_rx.v modem_tx.v modem_rx.v modem_npi.v
   modem_regs.v modem.v)
-in_folder(includes ddr shift_order.vh memory_ports.vh)
+in_folder(includes ddr count_up.vh shift_order.vh memory_ports.vh)
 icesoc_hdl_core(modem TOP modem FILES ${files} INCLUDES ${includes} modem/modem_regs.vh
   DEPENDS bus CONSTRAINTS platform.ucf
   PURPOSE "Controller of an XBee modem, which receives packets into memory")

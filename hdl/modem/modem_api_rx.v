@@ -22,6 +22,7 @@ module modem_api_rx (
 );
     localparam [2:0] DELIMITER = 3'd0, HIGH = 3'd1, LOW = 3'd2, DATA = 3'd3, CHECKSUM = 3'd4;
 
+    (* fsm_encoding = "none" *) // one-hot states would take more flip-flops and LUTs
     reg [2:0] state;
     reg [6:0] left; // number of bytes before the checksum
     reg [7:0] sum;

@@ -5,6 +5,7 @@
 //   7E 00 length, the packet, checksum
 
 `default_nettype none
+`include "count_up.vh"
 
 module modem_api_tx (
     input  wire       clk_i,
@@ -27,6 +28,7 @@ module modem_api_tx (
 
     // position in the frame: 0..2 for the first three bytes, then DATA, then CHECKSUM
     reg [2:0] place;
+    `COUNT_UP(up, 3)
     reg [7:0] sum;
 
     wire taken = valid_o && ready_i;
@@ -52,7 +54,7 @@ module modem_api_tx (
             if (place == CHECKSUM)
                 place <= 3'd0;
             else if (place != DATA || (last_i && api_i))
-                place <= place + 3'd1;
+                place <= up(place);
         end
         if (rst_i)
             place <= api_i ? 3'd0 : DATA;

@@ -11,6 +11,7 @@
 // that is rejected or not answered is repeated up to twice.
 
 `default_nettype none
+`include "count_up.vh"
 `include "shift_order.vh"
 
 module modem_at #(
@@ -50,6 +51,7 @@ module modem_at #(
 
     reg [5:0] place;    // row of the current step in the table modem_at_rows
     `SHIFT_ORDER(after, 6)
+    `COUNT_UP(up, 4)
     reg       fresh;    // the line has not been idle yet, so the time has not started
     reg       steady;   // the character to send is available
     reg [3:0] value;    // last digit
@@ -101,7 +103,9 @@ module modem_at #(
         endcase
     end
     wire       letter = value[3] && (value[2] || value[1]); // A..F
-    wire [7:0] hex    = {1'b0, letter, !letter, !letter, value + (letter ? 4'd7 : 4'd0)};
+    wire [7:0] hex    = {1'b0, letter, !letter, !letter, value[3] && !letter,
+                         letter ? value[2] && (value[1] || value[0]) : value[2],
+                         letter ? value[1] ~^ value[0] : value[1], value[0] ^ letter};
 
     assign word_o     = data[7:3];
     assign tx_valid_o = steady;
@@ -138,7 +142,7 @@ module modem_at #(
         if (passed || missed || start)
             place <= {5'd0, missed && enters};
         if (passed) // after step EE without encryption, step KY is skipped
-            step_o <= step_o + (skip && !value[0] ? 4'd2 : 4'd1);
+            step_o <= up(step_o) | {3'd0, skip && !value[0]};
         if (passed || start) begin
             tried <= 1'b0;
             walks <= 1'b0;

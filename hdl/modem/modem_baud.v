@@ -11,6 +11,7 @@
 //          8..15   250,000
 
 `default_nettype none
+`include "count_up.vh"
 
 module modem_baud #(
     parameter CLK_HZ = 100000000 // frequency of clk_i in Hz, at least 2 MHz
@@ -33,6 +34,7 @@ module modem_baud #(
 
     reg  [WIDTH:0]   phase; // phase; the highest bit is the carry
     reg  [4:0]       count; // counts ticks of 38400 baud
+    `COUNT_UP(up, 5)
 
     // A chain of conditions selects the step, because Yosys turns a case into a ROM with registers
     // before it. The step is subtracted: only for a subtraction, Yosys always connects `phase` to
@@ -45,7 +47,8 @@ module modem_baud #(
 
     always @(posedge clk_i) begin
         phase <= {1'b0, phase[WIDTH-1:0]} - minus;
-        count <= count + {4'd0, phase[WIDTH]};
+        if (phase[WIDTH])
+            count <= up(count);
         tick_o <= phase[WIDTH] && (count & hide) == 5'd0;
         if (rst_i) begin
             phase <= 0;

@@ -7,6 +7,7 @@
 // modem.v excludes both.
 
 `default_nettype none
+`include "count_up.vh"
 
 module modem_ring (
     input  wire       clk_i,
@@ -20,9 +21,12 @@ module modem_ring (
     output wire [4:0] free_o   // number of free buffers, 0..16
 );
     reg [6:0] bytes [0:15];
-    reg [4:0] head; // number of the oldest buffer; the upper bit counts turns of the ring
+    // number of the oldest buffer; the upper bit counts turns of the ring. The initial value
+    // prevents Yosys from duplicating the register (as in npi_queue).
+    reg [4:0] head = 5'd16;
     // number of the buffer that is filled next; the upper bit counts turns of the ring
     reg [4:0] tail;
+    `COUNT_UP(up, 5)
 
     assign next_o   = tail[3:0];
     assign oldest_o = head[3:0];
@@ -32,8 +36,10 @@ module modem_ring (
     always @(posedge clk_i) begin
         if (push_i)
             bytes[tail[3:0]] <= bytes_i;
-        tail <= tail + {4'd0, push_i};
-        head <= head + {4'd0, pop_i};
+        if (push_i)
+            tail <= up(tail);
+        if (pop_i)
+            head <= up(head);
         if (rst_i) begin
             head <= 5'd16;
             tail <= 5'd0;

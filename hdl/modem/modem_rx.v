@@ -10,6 +10,7 @@
 // that follow without a pause are lost; earlier packets stay in the ring.
 
 `default_nettype none
+`include "count_up.vh"
 
 module modem_rx (
     input  wire       clk_i,
@@ -40,6 +41,7 @@ module modem_rx (
     reg [6:0] length;   // announced length minus 5; ignored if it is above 95
     reg       near;     // wr_index_o / 4 is length / 4 + 1
     reg [8:0] silence;  // ticks without a byte; 256 ticks are 3.2 characters
+    `COUNT_UP(up, 9)
     reg       pending;  // wr_data_o waits
     reg       ending;   // the last byte of the packet is in wr_data_o, or has been written
     reg       dropping; // no buffer was free for this packet, or a byte of it was lost
@@ -70,7 +72,7 @@ module modem_rx (
         if (!rx_idle_i || rx_valid_i)
             silence <= 9'd0;
         else if (tick_i && !silent)
-            silence <= silence + 9'd1;
+            silence <= up(silence);
 
         if (rx_valid_i && !deaf) begin
             wr_data_o <= rx_data_i;

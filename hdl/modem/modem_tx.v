@@ -7,6 +7,7 @@
 // packet. The modem transmits a packet of 100 (95) bytes without such a pause.
 
 `default_nettype none
+`include "count_up.vh"
 
 module modem_tx (
     input  wire       clk_i,
@@ -35,8 +36,10 @@ module modem_tx (
     localparam [1:0] FETCH = 2'd0, SEND = 2'd1, REST = 2'd2;
     wire [6:0] longest = encrypt_i ? 7'd95 : 7'd100;
 
+    (* fsm_encoding = "none" *) // one-hot states would take more flip-flops and LUTs
     reg [1:0] state;
     reg [8:0] count; // number of bytes read; in state REST, number of ticks of silence
+    `COUNT_UP(up, 9)
     // in state REST: 1 if the modem transmits this packet without a pause; a register, to shorten
     // the path
     reg       whole;
@@ -76,8 +79,8 @@ module modem_tx (
             end
         endcase
         if (rd_done_i || (state == REST && tx_ready_i)) // rd_done_i is high only in state FETCH
-            count <= count + 9'd1;
-        if (begin_anew || ends || (leaves && last))
+            count <= up(count);
+        if (begin_anew || sent_o || (leaves && last))
             count <= 9'd0;
         if (begin_anew) begin
             state     <= FETCH;
@@ -133,8 +136,7 @@ module modem_tx (
         // The number of bytes is known in each state; the induction needs these invariants.
         if (past)
             case (state)
-                FETCH:   assert (sent_o ? packet_valid_i && rd_index_o == 7'd0 &&
-                                 out == packet_bytes_i :
+                FETCH:   assert (sent_o ? packet_valid_i && out == packet_bytes_i :
                                  rd_index_o == out &&
                                      (out == 7'd0 || (packet_valid_i && out < packet_bytes_i)));
                 SEND:    assert (!sent_o && packet_valid_i && rd_index_o == out + 7'd1 &&

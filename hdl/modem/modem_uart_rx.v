@@ -4,6 +4,7 @@
 // eighth of a bit time before its middle.
 
 `default_nettype none
+`include "count_up.vh"
 
 module modem_uart_rx (
     input  wire       clk_i,
@@ -20,6 +21,7 @@ module modem_uart_rx (
     wire      rxd_sync;
     cdc_bit #(.INITIAL(1'b1)) u_rxd (.clk_i(clk_i), .bit_async_i(rxd_i), .bit_sync_o(rxd_sync));
     reg [2:0] ticks;
+    `COUNT_UP(up, 3)
     // bits received so far. They enter at the top and shift down; a 1 below them reaches the
     // bottom with the eighth bit
     reg [8:0] bits;
@@ -37,7 +39,7 @@ module modem_uart_rx (
         valid_o         <= 1'b0;
         framing_error_o <= 1'b0;
         if (tick_i)
-            ticks <= ticks + 3'd1;
+            ticks <= up(ticks);
         if (idle) begin
             armed  <= armed || line;
             started <= 1'b0;

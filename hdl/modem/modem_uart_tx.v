@@ -3,6 +3,7 @@
 // modem_uart_tx: UART transmitter, 8N1, eight ticks per bit.
 
 `default_nettype none
+`include "count_up.vh"
 
 module modem_uart_tx (
     input  wire       clk_i,
@@ -17,30 +18,34 @@ module modem_uart_tx (
     output wire       txd_o
 );
     reg [2:0] ticks;
+    `COUNT_UP(up, 3)
     // bits that are still to be sent; the 1 of the stop bit is above the data and marks the end
     reg [8:0] bits;
+    reg       last; // `bits` is 0 (while busy)
     reg       line;
     reg       busy;
 
     // Bytes follow each other without a gap, because an additional tick per byte would cost 1.2 %
     // of the rate.
-    wire ends = busy && ticks == 3'd7 && bits == 9'd0;
+    wire ends = busy && ticks == 3'd7 && last;
     assign ready_o = tick_i && (!busy || ends);
     assign txd_o   = line;
 
     always @(posedge clk_i) begin
         if (tick_i)
-            ticks <= ticks + 3'd1;
+            ticks <= up(ticks);
         if (ready_o) begin
             ticks <= 3'd0;
             busy  <= valid_i;
             if (valid_i) begin
                 line <= 1'b0;
+                last <= 1'b0;
                 bits <= {1'b1, data_i};
             end
         end else if (tick_i && ticks == 3'd7) begin
             bits <= {1'b0, bits[8:1]};
             line <= bits[0];
+            last <= bits[8:1] == 8'd0;
         end
         if (rst_i) begin
             line  <= 1'b1;
@@ -70,14 +75,16 @@ module modem_uart_tx (
         end
         if (past) begin
             assert (ready_o == (tick_i && age >= 7'd79));
+            assert (!busy || last == (bits == 9'd0));
             assert (txd_o == (age == 7'd80 ? 1'b1 : frame[age[6:3]]));
             // A tick within a bit changes only `ticks`, so the simulator may skip it.
             if (!$past(rst_i) && $past(busy && ticks != 3'd7))
-                assert ({busy, bits, line} == $past({busy, bits, line}) &&
+                assert ({busy, bits, line, last} == $past({busy, bits, line, last}) &&
                         ticks == $past(ticks) + {2'd0, $past(tick_i)});
             // Without a tick nothing changes.
             if (!$past(rst_i) && !$past(tick_i))
-                assert ({busy, bits, line, ticks} == $past({busy, bits, line, ticks}));
+                assert ({busy, bits, line, last, ticks} ==
+                        $past({busy, bits, line, last, ticks}));
         end
         cover (past && age == 7'd80 && $past(age) == 7'd79 && sent == 8'hA5);
         // reaches a byte that follows without a gap

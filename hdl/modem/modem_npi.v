@@ -44,6 +44,7 @@ module modem_npi (
 );
     localparam [1:0] IDLE = 2'd0, WRITE = 2'd1, READ = 2'd2, WAIT_WORD = 2'd3;
 
+    (* fsm_encoding = "none" *) // one-hot states would take more flip-flops and LUTs
     reg [1:0]  state;
     reg [31:3] addr;
     reg        wanted; // rd_valid_i has been high since the read began

@@ -83,17 +83,18 @@ def sites_of_map(f):
 
 def paper_table(plan, row):
     f = row.figures
-    lines = [("flip-flops", "ff", f["ff"]), ("LUTs of the netlist", "lut", f["lut"]),
-             ("LUTs and route-throughs, before map pairs them", "lut", f["lut"] + f["through"]),
+    # name, key of the paper's figure, key of the limit, value
+    lines = [("flip-flops", "ff", "ff", f["ff"]), ("LUTs of the netlist", "lut", "lut", f["lut"]),
+             ("LUTs and route-throughs, before map pairs them", "lut", "", f["lut"] + f["through"]),
              (f"LUT sites, map's average pairing (estimate; as mapped "
-              f"{slices.SITES_OF_MAP.of(sites_of_map(f))})", "lut", sites_of_map(f)),
+              f"{slices.SITES_OF_MAP.of(sites_of_map(f))})", "lut", "", sites_of_map(f)),
              (f"LUT sites, pairs found individually (estimate; as mapped "
-              f"{slices.SITES_OF_MAP.of(f['sites'])})", "lut", f["sites"]),
-             (f"slices (estimate; as mapped {slices.MAPPED.of(f['slices'])})", "slices",
+              f"{slices.SITES_OF_MAP.of(f['sites'])})", "lut", "sites", f["sites"]),
+             (f"slices (estimate; as mapped {slices.MAPPED.of(f['slices'])})", "slices", "slices",
               f["slices"])]
     table = []
-    for name, key, value in lines:
-        chip, paper, limit = plan.chip[key], plan.paper[key], row.design.limits.get(key)
+    for name, key, limited, value in lines:
+        chip, paper, limit = plan.chip[key], plan.paper[key], row.design.limits.get(limited)
         table.append([name, value, percent(value, chip), f"{paper} ({percent(paper, chip)})",
                       f"{value / paper:.2f}", "" if limit is None else limit,
                       "" if limit is None else "ok" if value <= limit else f"{value - limit} over"])

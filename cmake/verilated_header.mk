@@ -19,3 +19,5 @@ $(TO): $(header)
 	rm $@.text
 
 include $(VERILATOR_ROOT)/include/verilated.mk
+# lists of headers would be written to the current folder
+CPPFLAGS := $(filter-out -MMD,$(CPPFLAGS))

@@ -89,7 +89,8 @@ class Cases(Script):
             check_chip(values, BuildFolder(work / "built", values))
         write(work / "built/CMakeCache.txt", f"CORES:FILEPATH={list_}\n"
               f"CORE_FOLDERS:STRING={mine}/first\n")
-        self.assertEqual(folders(""), ([mine / "first"], None))
+        for not_given in None, "":
+            self.assertEqual(folders(not_given), ([mine / "first"], None))
         self.assertEqual(folders("none"), ([], Path("ip/cores.list").absolute()))
 
     def test_repository_published(self):

@@ -61,7 +61,7 @@ class BuildFolder:
     def __init__(self, folder, values):
         self.folder, self.jobs, self.built = Path(folder), values.jobs, values.built
         self.ucos2 = getattr(values, "ucos2", "")
-        self.core_folders = getattr(values, "core_folders", "")
+        self.core_folders = getattr(values, "core_folders", None) or ""
 
     def __truediv__(self, name):
         return self.folder / name

@@ -120,7 +120,7 @@ class Cases(Project):
             '<a href="../../hdl/fifo/fifo.v">hdl/fifo/fifo.v:40</a>',
             'at <a href="../../x.cpp">x.cpp:12</a>; '
             'log <a href="failures/test_b.Bad-1.log"',
-            'to have passed: <a href="../../tests/room/CMakeLists.txt">'
+            'run has passed[)]: <a href="../../tests/room/CMakeLists.txt">'
             r"tests/room/CMakeLists.txt:8</a> \(2 lines\)")
         # no table of seeds exists, because all these failures have the same seed and are listed
         # above

@@ -10,8 +10,12 @@ class Line:
     texts shown with `keep`."""
 
     def __init__(self, stream=None):
-        """stream: default sys.stdout"""
-        self.stream, self.is_shown, self.lock = stream or sys.stdout, False, threading.Lock()
+        """stream: default sys.stdout, also if that is replaced later"""
+        self.given, self.is_shown, self.lock = stream, False, threading.Lock()
+
+    @property
+    def stream(self):
+        return self.given or sys.stdout
 
     @property
     def moves(self):

@@ -7,7 +7,7 @@
 
 // COUNT_UP declares the function up(from), which returns the next number; 0 follows the greatest.
 `define COUNT_UP(up, BITS) \
-    function [(BITS)-1:0] up; \
+    function automatic [(BITS)-1:0] up; \
         input [(BITS)-1:0] from; \
         integer i; \
         reg carry; \

@@ -57,7 +57,7 @@ module fsmc_post #(
 
     // Returns the next or the previous number. The function has no carry chain, in which each bit
     // takes a LUT site.
-    function [LOG2-1:0] stepped;
+    function automatic [LOG2-1:0] stepped;
         input [LOG2-1:0] from;
         input            down;
         integer i;

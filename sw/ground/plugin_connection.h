@@ -17,6 +17,8 @@
 #include <Ice/Network.h>
 #include <Ice/Transceiver.h>
 #include <cerrno>
+#include <chrono>
+#include <deque>
 #include <mutex>
 #include <set>
 #include <string>
@@ -104,8 +106,25 @@ public:
             throw Ice::ConnectFailedException(__FILE__, __LINE__, EACCES);
         }
     }
-    void destroy() {
+    // Keeps a closed connection of Ice for a minute. Ice 3.7 does not count the reference of a
+    // time-out to its connection (TimeoutCallback in ConnectionI.cpp). If a time-out expires at the
+    // moment at which its connection is closed for another reason, Ice's timer thread would
+    // otherwise use a freed connection. `connection` is the callback of Ice's thread pool, which
+    // has a counted reference to the connection.
+    void keep(const IceInternal::ReadyCallbackPtr& connection) {
+        std::deque<Closed> expired; // freed after the lock is released
         std::lock_guard<std::mutex> lock(mutex_);
+        const auto now = std::chrono::steady_clock::now();
+        for (; !closed_.empty() && now - closed_.front().at > closedFor; closed_.pop_front())
+            expired.push_back(closed_.front());
+        if (communicator_ && connection)
+            closed_.push_back({now, connection});
+    }
+    // Ice has ended its timer when it calls this function.
+    void destroy() {
+        std::deque<Closed> closed; // freed after the lock is released
+        std::lock_guard<std::mutex> lock(mutex_);
+        closed.swap(closed_);
         for (const auto& peer : peers_)
             if (statistics_)
                 communicator_->getLogger()->print("xbee-at: " + peer->statistics());
@@ -114,7 +133,13 @@ public:
     }
 
 private:
-    std::mutex mutex_; // guards communicator_ and peers_
+    static constexpr std::chrono::minutes closedFor{1};
+    struct Closed {
+        std::chrono::steady_clock::time_point at;
+        IceInternal::ReadyCallbackPtr connection;
+    };
+
+    std::mutex mutex_; // guards communicator_, peers_ and closed_
     Ice::CommunicatorPtr communicator_;
     EndpointOptions defaults_;
     KeyFile keys_;
@@ -122,13 +147,14 @@ private:
     bool statistics_ = false;
     // peers stay until the communicator is destroyed, because setting up a modem takes time
     std::set<std::shared_ptr<Peer>> peers_;
+    std::deque<Closed> closed_; // the connection that was closed first comes first
 };
 typedef IceUtil::Handle<Instance> InstancePtr;
 
 class Transceiver : public IceInternal::Transceiver, public IceInternal::NativeInfo {
 public:
-    Transceiver(const std::shared_ptr<Peer>& peer, int fd)
-        : IceInternal::NativeInfo(fd), peer_(peer) {}
+    Transceiver(const InstancePtr& instance, const std::shared_ptr<Peer>& peer, int fd)
+        : IceInternal::NativeInfo(fd), instance_(instance), peer_(peer) {}
     IceInternal::NativeInfoPtr getNativeInfo() override { return this; }
     IceInternal::SocketOperation initialize(IceInternal::Buffer&, IceInternal::Buffer&) override {
         // Ice waits for the first message of the peer, at most for the connect time-out. This
@@ -141,6 +167,7 @@ public:
     void close() override {
         ::close(_fd);
         _fd = INVALID_SOCKET;
+        instance_->keep(_readyCallback);
     }
     IceInternal::SocketOperation write(IceInternal::Buffer& buf) override {
         while (buf.i != buf.b.end()) {
@@ -188,6 +215,7 @@ private:
             throw Ice::ConnectionLostException(__FILE__, __LINE__, 0);
         throw Ice::ConnectFailedException(__FILE__, __LINE__, ENOLINK);
     }
+    InstancePtr instance_;
     std::shared_ptr<Peer> peer_;
     bool heard_ = false;
 };
@@ -203,7 +231,7 @@ public:
         int fd = peer->connect(options_.channel == 255 ? -1 : options_.channel, options_.timeoutMs);
         if (fd < 0) // no descriptor is left
             throw Ice::ConnectFailedException(__FILE__, __LINE__, errno);
-        return new Transceiver(peer, fd);
+        return new Transceiver(instance_, peer, fd);
     }
     Ice::Short type() const override { return endpointType; }
     std::string toString() const override { return options_.serial.device; }
@@ -230,7 +258,7 @@ class Acceptor : public IceInternal::Acceptor, public IceInternal::NativeInfo {
 public:
     Acceptor(const InstancePtr& instance, const EndpointOptions& options,
              const EndpointIPtr& endpoint)
-        : peer_(instance->peer(options)), endpoint_(endpoint) {}
+        : instance_(instance), peer_(instance->peer(options)), endpoint_(endpoint) {}
     IceInternal::NativeInfoPtr getNativeInfo() override { return this; }
     void close() override {
         if (_fd != INVALID_SOCKET)
@@ -247,13 +275,14 @@ public:
         int fd = peer_->accept();
         if (fd < 0)
             throw Ice::SocketException(__FILE__, __LINE__, EAGAIN);
-        return new Transceiver(peer_, fd);
+        return new Transceiver(instance_, peer_, fd);
     }
     std::string protocol() const override { return protocolName; }
     std::string toString() const override { return protocolName + " " + peer_->device(); }
     std::string toDetailedString() const override { return toString(); }
 
 private:
+    InstancePtr instance_;
     std::shared_ptr<Peer> peer_;
     EndpointIPtr endpoint_;
 };

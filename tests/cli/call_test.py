@@ -12,6 +12,7 @@ import json
 import os
 import re
 import resource
+import socket
 import subprocess
 import sys
 import tempfile
@@ -211,6 +212,19 @@ class Call(unittest.TestCase):
             "text": "Trial.Overflow: why = too large, code = 42, colour = green"}))
         status, _, err = self.ask("other.add 1 2", operation=False)
         self.assertEqual((status, "has no object 'other'" in err), (5, True), err)
+
+    def test_silent(self):
+        """Only the call has a time-out, not the connection. Ice 3.7 may use freed memory if both
+        expire at the same time."""
+        with socket.create_server(("127.0.0.1", 0)) as silent:
+            where = f"127.0.0.1:{silent.getsockname()[1]}"
+            status, _, err = self.ask(f"add 1 2 --gateway {where} --timeout 0.2 --repeat 3")
+            self.assertEqual(status, 4)
+            self.assertIn(f"no answer from {where} within 0.2 s", err)
+            silent.setblocking(False)
+            silent.accept()[0].close()
+            with self.assertRaises(BlockingIOError, msg="a call has opened another connection"):
+                silent.accept()
 
     def test_repeat(self):
         out = json.loads(self.ask("add 1 2 --repeat 20", "--json")[1])

@@ -98,8 +98,10 @@ class Client:
     def connect(self):
         import plugged
         milliseconds = str(int(1000 * self.options.timeout))
+        # The time-out of a call includes connecting. A time-out of the connection would expire at
+        # nearly the same time; if the communicator is then destroyed, Ice 3.7 may use freed memory.
         settings = {"Ice.Default.InvocationTimeout": milliseconds,
-                    "Ice.Override.ConnectTimeout": milliseconds, "Ice.RetryIntervals": "-1",
+                    "Ice.Override.ConnectTimeout": "-1", "Ice.RetryIntervals": "-1",
                     "Ice.Warn.Connections": "0", "Ice.Warn.Dispatch": "0", "Ice.ACM.Close": "0",
                     "Ice.Default.EncodingVersion": self.options.encoding,
                     **self.target.properties}

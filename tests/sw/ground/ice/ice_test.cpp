@@ -4,6 +4,7 @@
 // test_chip_soak tests many calls from threads with several proxies, in bad conditions, and calls
 // from the UAV to the ground.
 
+#include "held_timer.h"
 #include "world.h"
 #include <future>
 #include <gtest/gtest.h>
@@ -101,6 +102,28 @@ TEST_F(StockIce, ACallThatHasTimedOutIsNeverCarriedOut) {
     EXPECT_TRUE(world_.rig.until([&] { return world_.rig.uav.sessions() == 2; }));
     world_.rig.with([&] { world_.rig.uav.taking = take; });
     EXPECT_EQ(world_.proxy(ic.communicator())->noted(), 0);
+}
+
+// Ice 3.7 does not count the reference of its timer to a connection. If the connection ended
+// otherwise while its time-out expired, the timer used freed memory, which aborted the program.
+TEST_F(StockIce, AConnectionOutlivesItsTimeoutThatExpiresWhileItEnds) {
+    HeldTimer timer;
+    auto ic = world_.client({{"Ice.Override.CloseTimeout", "50"}, {"Ice.ACM.Timeout", "0"}},
+                            timer.data());
+    auto connection = world_.proxy(ic)->ice_getConnection();
+    const std::weak_ptr<Ice::Connection> ended = connection;
+    world_.rig.with([&] { world_.rig.uav.runs = false; });
+    timer.hold();
+    auto end = std::async(std::launch::async, [&] { ic->destroy(); });
+    timer.waitUntilHeld(); // the UAV does not reply, so the time-out for closing expires
+    connection->close(Ice::ConnectionClose::Forcefully);
+    connection = nullptr;
+    timer.waitUntilPoolsHaveEnded(); // these threads have no reference to the connection any more
+    EXPECT_FALSE(ended.expired()) << "Ice's timer uses a connection that has been freed";
+    timer.release();
+    end.get();
+    world_.rig.with([&] { world_.rig.uav.runs = true; });
+    EXPECT_TRUE(ended.expired()) << "the connection is kept after the end of the communicator";
 }
 
 TEST_F(StockIce, WhatCannotGoToAllVehiclesIsRefusedInTheCaller) {

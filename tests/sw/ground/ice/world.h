@@ -22,8 +22,8 @@
 #include <unistd.h>
 
 // Returns the communicator of a program with these properties.
-inline Ice::CommunicatorPtr program(const std::map<std::string, std::string>& properties) {
-    Ice::InitializationData data;
+inline Ice::CommunicatorPtr program(const std::map<std::string, std::string>& properties,
+                                    Ice::InitializationData data = {}) {
     data.properties = Ice::createProperties();
     for (const auto& [name, value] : properties)
         data.properties->setProperty(name, value);
@@ -309,7 +309,8 @@ public:
 
     // Returns the communicator of a program on the ground. Several communicators share the engine
     // of the serial port.
-    Ice::CommunicatorPtr client(std::map<std::string, std::string> more = {}) {
+    Ice::CommunicatorPtr client(std::map<std::string, std::string> more = {},
+                                const Ice::InitializationData& data = {}) {
         more.insert({{"Ice.Plugin.XBeeAT", PLUGIN_FOLDER "/xbeeat:createXBeeAT"},
                      {"Ice.Default.InvocationTimeout", "1800000"},
                      {"Ice.RetryIntervals", "-1"}, // a call is made only once, even if it fails
@@ -317,7 +318,7 @@ public:
                      {"Ice.Warn.Connections", "0"},
                      {"XBeeAT.Guard", std::to_string(Rig::guardMs)},
                      {"XBeeAT.Down", "1"}});
-        return program(more);
+        return program(more, data);
     }
     std::string endpoint() const { return "xbee-at -t 1800000 -d " + rig.pty.path(); }
     std::shared_ptr<RadioTest::UavPrx> proxy(const Ice::CommunicatorPtr& ic,

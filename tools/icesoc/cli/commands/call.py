@@ -81,7 +81,7 @@ OPTIONS = [
     Option("events", COUNT, "with --watch: end after this number of events"),
     Option("page", SWITCH, "with --gateway: serve a page with forms for all operations"),
     Option("repeat", COUNT, "call this number of times, and print latency statistics", None),
-    Option("timeout", number(0.001, 3600, "s", float), "time-out for connecting and for each call",
+    Option("timeout", number(0.001, 3600, "s", float), "time-out of each call, with connecting",
            30.0),
     Option("facet", TEXT, "facet of the object", ""),
     Option("context", TEXT, "context of the call: NAME=VALUE pairs, separated by spaces", ""),

@@ -35,7 +35,7 @@ z3 solver of the proofs
 cadical solver of their induction steps
 libgtest-dev test framework
 libgmock-dev test framework
-nlohmann-json3-dev register descriptions, reports
+nlohmann-json3-dev reports
 libfmt-dev text formatting
 libcli11-dev command lines
 libsodium-dev signatures of firmware (Ed25519)

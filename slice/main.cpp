@@ -3,10 +3,9 @@
 // slice2c: compiles Slice files into C90 stubs and skeletons for IceC.
 
 #include "c/context.h"
-#include "front/front.h"
-#include "hw/generator.h"
+#include "options.h"
 #include "text/description.h"
-#include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -15,42 +14,6 @@
 namespace fs = std::filesystem;
 
 namespace {
-
-// An option that names a folder for generated files, and the functions that make these files: one
-// or two files for each [":hw"] interface.
-struct HardwareOutput {
-    const char *option, *help;
-    GeneratedFile (*makes[2])(const hw::Block&);
-};
-const HardwareOutput hardwareOutputs[] = {
-    {"--hw-verilog",
-     "folder for the wrappers of [\":hw\"] interfaces in Verilog (docs/hw-mapping.md)",
-     {hw::verilogFile}},
-    {"--hw-vhdl", "folder for the wrappers of [\":hw\"] interfaces in VHDL", {hw::vhdlFile}},
-    {"--hw-regs",
-     "folder for the register descriptions of [\":hw\"] interfaces, *.regs.json",
-     {hw::registersFile}},
-    {"--hw-c",
-     "folder for the servants of [\":hw\"] interfaces in C90",
-     {hw::servantHeader, hw::servantSource}},
-    {"--hw-cpp",
-     "folder for the C++ proxies of [\":hw\"] interfaces, for test benches",
-     {hw::proxyFile}},
-    {"--hw-new-verilog",
-     "folder for a first version of each core in Verilog, and its test",
-     {hw::verilogSkeleton, hw::testSkeleton}},
-    {"--hw-new-vhdl",
-     "folder for a first version of each core in VHDL, and its test",
-     {hw::vhdlSkeleton, hw::testSkeleton}}};
-
-struct Options {
-    std::vector<std::string> files, includes, defines, undefines;
-    std::string outputDir = ".", includeDir, headerExtension = "h", sourceExtension = "c",
-                dependFile, hardware[std::size(hardwareOutputs)];
-    bool oneProgram = false, preprocessOnly = false, depend = false, describe = false,
-         validate = false, hwOwnClock = false;
-    NameRules rules;
-};
 
 std::vector<std::string> preprocessorOptions(const Options& o) {
     std::vector<std::string> list;
@@ -197,9 +160,9 @@ private:
 
 // Data that all files of a command line share.
 struct Collected {
-    std::string rules; // --depend
-    Program program;   // definitions for the option --one-program
-    nlohmann::ordered_json described = nlohmann::ordered_json::object(); // --describe
+    std::string rules;               // --depend
+    Program program;                 // definitions for the option --one-program
+    Json described = Json::object(); // --describe
 };
 
 // Compiles a file. With --depend or --describe, only adds the file's dependencies or its
@@ -251,62 +214,12 @@ bool compile(const std::string& file, const Options& o, Collected& all) {
     return o.oneProgram || (save(generateC(unit, names), o.outputDir) && saveHardware(blocks, o));
 }
 
-void addOptions(CLI::App& app, Options& o) {
-    app.add_option("files", o.files, "Slice files");
-    app.add_option("-I", o.includes, "folder to search for included files; can be repeated")
-        ->allow_extra_args(false);
-    app.add_option("-D", o.defines, "define a preprocessor symbol: NAME or NAME=VALUE")
-        ->allow_extra_args(false);
-    app.add_option("-U", o.undefines, "undefine a preprocessor symbol")->allow_extra_args(false);
-    app.add_flag("-E", o.preprocessOnly, "print the preprocessor's output, generate nothing");
-    app.add_option("--output-dir", o.outputDir,
-                   "folder for generated files (default: current folder)");
-    app.add_option("--header-ext", o.headerExtension,
-                   "extension of headers, without the dot (default: h)");
-    app.add_option("--source-ext", o.sourceExtension,
-                   "extension of sources, without the dot (default: c)");
-    app.add_option("--include-dir", o.includeDir,
-                   "folder in front of the header's name in the sources' #include");
-    for (size_t i = 0; i < std::size(hardwareOutputs); ++i)
-        app.add_option(hardwareOutputs[i].option, o.hardware[i], hardwareOutputs[i].help);
-    app.add_flag("--hw-own-clock", o.hwOwnClock,
-                 "make servants check that the core has answered, because its clock may stop");
-    app.add_flag("--describe", o.describe,
-                 "print the declarations as JSON, generate nothing (docs/call.md)");
-    app.add_flag("--depend", o.depend, "print make dependencies, generate nothing");
-    app.add_option("--depend-file", o.dependFile, "write dependencies to this file");
-    app.add_flag("--one-program", o.oneProgram,
-                 "generate nothing; report C names that two of the files define");
-    app.add_flag("--validate", o.validate, "check the command line only");
-    app.add_flag("--underscore", o.rules.underscore, "allow underscores in names");
-    app.add_flag("--ice", o.rules.icePrefix, "allow names that start with 'ice'");
-    app.set_version_flag("-v,--version", "slice2c 1.0, Slice of Ice 3.7");
-    app.footer("The exit status is 1 if a file has errors or the command line is wrong.\n"
-               "\n"
-               "examples:\n"
-               "  slice2c --output-dir gen Mesh.ice\n"
-               "  slice2c -I slice -I /usr/share/ice/slice --output-dir gen slice/Mesh.ice\n"
-               "  slice2c --hw-verilog gen --hw-regs gen --hw-c gen Filter.ice");
-}
-
 } // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{
-        "Generates C90 proxies and servants for IceC from Slice files, and hardware wrappers "
-        "for interfaces\nwith metadata [\":hw\"].",
-        "slice2c"};
     Options o;
-    addOptions(app, o);
-    try {
-        app.parse(argc, argv);
-        if (o.files.empty() && !o.validate)
-            throw CLI::RequiredError("a Slice file");
-    } catch (const CLI::ParseError& e) {
-        return app.exit(e) ? 1 : 0;
-    }
-    if (o.validate)
-        return 0;
+    if (std::optional<int> status = readOptions(argc, argv, o))
+        return *status;
     o.depend = o.depend || !o.dependFile.empty();
     Collected all;
     int failures = 0;
@@ -315,7 +228,6 @@ int main(int argc, char** argv) {
     if (o.depend && failures == 0)
         failures += !(o.dependFile.empty() ? print(all.rules) : write(o.dependFile, all.rules));
     if (o.describe && failures == 0)
-        failures += !print(
-            all.described.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+        failures += !print(all.described.print() + "\n");
     return failures ? 1 : 0;
 }

@@ -6,13 +6,11 @@
 #include "c/context.h"
 #include "hw/generator.h"
 #include "text/doc_comment.h"
+#include "text/json.h"
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 namespace hw {
 namespace {
-
-using json = nlohmann::ordered_json;
 
 // Returns the first line of a doc comment, with any end of a C comment removed; returns `otherwise`
 // if the doc comment is missing.
@@ -21,21 +19,21 @@ std::string firstLine(const std::string& doc, const std::string& otherwise) {
     return lines.empty() ? otherwise : lines.front();
 }
 
-json field(const std::string& name, unsigned lsb, unsigned width, const std::string& doc) {
-    return {{"name", name}, {"lsb", lsb}, {"width", width}, {"doc", doc}};
+Json field(const std::string& name, unsigned lsb, unsigned width, const std::string& doc) {
+    return Json::object({{"name", name}, {"lsb", lsb}, {"width", width}, {"doc", doc}});
 }
 
-json registerOf(const Block& b, unsigned number, const std::string& name, const char* access,
-                const char* doc, const json& fields) {
-    json r = {{"word", number % slotWords}};
+Json registerOf(const Block& b, unsigned number, const std::string& name, const char* access,
+                const char* doc, const Json& fields) {
+    Json r = Json::object({{"word", number % slotWords}});
     if (b.isPaged(number))
-        r["page"] = number / slotWords * 32;
-    r.update({{"name", name}, {"access", access}, {"doc", doc}, {"fields", fields}});
+        r.set("page", number / slotWords * 32);
+    r.set({{"name", name}, {"access", access}, {"doc", doc}, {"fields", fields}});
     return r;
 }
 
-json fieldsOf(const Word& word) {
-    json fields = json::array();
+Json fieldsOf(const Word& word) {
+    Json fields = Json::array();
     for (const Piece& p : word.pieces) {
         std::string half = p.portWidth <= 32 ? "" : p.portLsb ? "_HIGH" : "_LOW", doc = p.name;
         if (p.isCode)
@@ -43,43 +41,44 @@ json fieldsOf(const Word& word) {
         if (p.isCount)
             doc = "number of elements, at most " + std::to_string(p.most) +
                   ", in the buffer at byte " + std::to_string(p.offset);
-        fields.push_back(field(upperCase(p.name) + half, p.lsb, p.width, doc));
+        fields.add(field(upperCase(p.name) + half, p.lsb, p.width, doc));
     }
     return fields;
 }
 
-json registers(const Block& b) {
-    json act = json::array(), busy = json::array(), refused = json::array(), list = json::array();
+Json registers(const Block& b) {
+    Json act = Json::array(), states = Json::array(), list = Json::array();
     std::string reset = "RESET"; // the name is changed below if an operation is called reset
     for (const Call& c : b.calls) {
         std::string name = upperCase(c.name);
         std::string what = (c.isEvent ? "acknowledges the event " : "starts ") + c.operation->name;
-        act.push_back(field(name, c.bit, 1, c.isEvent ? what : firstLine(c.operation->doc, what)));
+        act.add(field(name, c.bit, 1, c.isEvent ? what : firstLine(c.operation->doc, what)));
         if (c.isLong)
-            busy.push_back(field(name + "_BUSY", c.bit, 1, "in progress"));
-        if (c.isLong)
-            refused.push_back(
-                field(name + "_REFUSED", refusedLsb + c.bit, 1, "the core refused the last call"));
+            states.add(field(name + "_BUSY", c.bit, 1, "in progress"));
     }
-    while (std::any_of(act.begin(), act.end(), [&](const json& f) { return f["name"] == reset; }))
+    for (const Call& c : b.calls)
+        if (c.isLong)
+            states.add(field(upperCase(c.name) + "_REFUSED", refusedLsb + c.bit, 1,
+                             "the core refused the last call"));
+    while (std::any_of(b.calls.begin(), b.calls.end(),
+                       [&](const Call& c) { return upperCase(c.name) == reset; }))
         reset = "CORE_" + reset;
-    act.push_back(field(reset, resetBit, 1, "resets the core and ends all operations"));
-    busy.insert(busy.end(), refused.begin(), refused.end());
+    act.add(field(reset, resetBit, 1, "resets the core and ends all operations"));
     auto add = [&](unsigned number, const std::string& name, const char* access, const char* doc,
-                   const json& fields) {
-        list.push_back(registerOf(b, number, name, access, doc, fields));
+                   const Json& fields) {
+        list.add(registerOf(b, number, name, access, doc, fields));
     };
     add(control, "CONTROL", "ws", "writing 1 to a bit starts the operation", act);
     if (b.hasLong())
-        add(status, "STATUS", "ro", "state of operations that take time", busy);
+        add(status, "STATUS", "ro", "state of operations that take time", states);
     if (b.pageBits)
         add(page, "PAGE", "rw", "selects the page that words 8 to 15 show",
-            json::array({field("ADDRESS", 0, pageLsb + b.pageBits,
+            Json::array({field("ADDRESS", 0, pageLsb + b.pageBits,
                                "byte address in the core, a multiple of 32")}));
     unsigned lsb = b.memoryLsb();
     if (b.memoryWord)
         add(b.memoryWord, "MEMORY", "rw", "place of the buffers in DDR3",
-            json::array({field("ADDRESS", 0, 32 - lsb,
+            Json::array({field("ADDRESS", 0, 32 - lsb,
                                "byte address, bits " + std::to_string(lsb) + " and up")}));
     for (const Word* w : b.words())
         add(w->number, w->name, w->isOut ? "ro" : "rw", w->isOut ? "results" : "parameters",
@@ -87,33 +86,37 @@ json registers(const Block& b) {
     return list;
 }
 
-json eventsOf(const Block& b) {
-    json events = json::array();
+Json eventsOf(const Block& b) {
+    Json events = Json::array();
     for (const Call& c : b.calls)
         if (c.isEvent || c.isLong)
-            events.push_back(
+            events.add(Json::object(
                 {{"name", upperCase(c.name) + (c.isEvent ? "" : "_DONE")},
                  {"bit", c.bit},
                  {"doc", c.isEvent ? firstLine(c.operation->doc, "event " + c.operation->name)
-                                   : c.operation->name + " has ended or was refused"}});
+                                   : c.operation->name + " has ended or was refused"}}));
     return events;
 }
 
 } // namespace
 
 GeneratedFile registersFile(const Block& b) {
-    json file = {{"block", b.name},
-                 {"doc", firstLine(b.interface->doc, "Registers of " + b.interface->id() + ".")},
-                 {"type", "0x" + hexDigits(b.type, 4)},
-                 {"version", "0x" + hexDigits(b.version, 4)}};
+    Json file = Json::object(
+        {{"block", b.name},
+         {"doc", firstLine(b.interface->doc, "Registers of " + b.interface->id() + ".")},
+         {"type", "0x" + hexDigits(b.type, 4)},
+         {"version", "0x" + hexDigits(b.version, 4)}});
     if (b.memoryBytes)
-        file.update({{"memory_port", true}, {"memory_bytes", b.memoryBytes}});
+        file.set({{"memory_port", true}, {"memory_bytes", b.memoryBytes}});
+    Json pins = Json::array();
     for (const Pin& p : b.pins)
-        file["pins"].push_back({{"name", p.name}, {"width", p.width}});
-    file["servant"] = {{"type", coreType(b)}, {"header", b.name + "_servant.h"}};
-    file["registers"] = registers(b);
-    file["events"] = eventsOf(b);
-    return {b.name + ".regs.json", file.dump(1, ' ', false, json::error_handler_t::replace) + "\n"};
+        pins.add(Json::object({{"name", p.name}, {"width", p.width}}));
+    if (!b.pins.empty())
+        file.set("pins", pins);
+    file.set("servant", Json::object({{"type", coreType(b)}, {"header", b.name + "_servant.h"}}));
+    file.set("registers", registers(b));
+    file.set("events", eventsOf(b));
+    return {b.name + ".regs.json", file.print() + "\n"};
 }
 
 } // namespace hw

@@ -7,8 +7,6 @@
 
 namespace {
 
-using json = nlohmann::ordered_json;
-
 std::string typeName(const Type& type) {
     switch (type.kind) {
     case Type::Kind::Void:
@@ -48,17 +46,17 @@ const char* kindName(Declaration::Kind kind) {
 }
 
 // Adds the documentation and the metadata, if there are any.
-void annotate(json& target, const std::string& doc, const std::vector<std::string>& metadata) {
+void annotate(Json& target, const std::string& doc, const std::vector<std::string>& metadata) {
     std::string text;
     for (const std::string& line : docLines(doc))
         text += (text.empty() ? "" : "\n") + line;
     if (!text.empty())
-        target["doc"] = text;
+        target.set("doc", text);
     if (!metadata.empty())
-        target["metadata"] = metadata;
+        target.set("metadata", metadata);
 }
 
-json valueOf(const Literal& value) {
+Json valueOf(const Literal& value) {
     switch (value.kind) {
     case Literal::Kind::Bool:
         return value.integer != 0;
@@ -71,82 +69,84 @@ json valueOf(const Literal& value) {
     }
 }
 
-json fieldOf(const Field& f) {
-    json field = {{"name", f.name}, {"type", typeName(f.type)}};
+Json fieldOf(const Field& f) {
+    Json field = Json::object({{"name", f.name}, {"type", typeName(f.type)}});
     if (f.isOut)
-        field["out"] = true;
+        field.set("out", true);
     if (f.isOptional)
-        field["tag"] = f.tag;
+        field.set("tag", f.tag);
     if (f.value.kind != Literal::Kind::None)
-        field["default"] = valueOf(f.value);
+        field.set("default", valueOf(f.value));
     annotate(field, f.doc, f.metadata);
     return field;
 }
 
-json fieldsOf(const std::vector<Field>& fields) {
-    json list = json::array();
+Json fieldsOf(const std::vector<Field>& fields) {
+    Json list = Json::array();
     for (const Field& f : fields)
-        list.push_back(fieldOf(f));
+        list.add(fieldOf(f));
     return list;
 }
 
-json namesOf(const std::vector<const Declaration*>& declarations) {
-    json list = json::array();
+Json namesOf(const std::vector<const Declaration*>& declarations) {
+    Json list = Json::array();
     for (const Declaration* d : declarations)
-        list.push_back(d->id());
+        list.add(d->id());
     return list;
 }
 
-json operationOf(const Operation& o) {
-    json operation = {{"name", o.name}, {"result", typeName(o.result)}};
+Json operationOf(const Operation& o) {
+    Json operation = Json::object({{"name", o.name}, {"result", typeName(o.result)}});
     if (o.isResultOptional)
-        operation["tag"] = o.resultTag;
+        operation.set("tag", o.resultTag);
     if (o.idempotent)
-        operation["idempotent"] = true;
-    operation["parameters"] = fieldsOf(o.parameters);
+        operation.set("idempotent", true);
+    operation.set("parameters", fieldsOf(o.parameters));
     if (!o.throws.empty())
-        operation["throws"] = namesOf(o.throws);
+        operation.set("throws", namesOf(o.throws));
     annotate(operation, o.doc, o.metadata);
     return operation;
 }
 
-json declarationOf(const Declaration& d) {
-    json made = {{"kind", kindName(d.kind)}, {"file", d.at.file}};
+Json declarationOf(const Declaration& d) {
+    Json made = Json::object({{"kind", kindName(d.kind)}, {"file", std::string(d.at.file)}});
     annotate(made, d.doc, d.metadata);
     if (!d.bases.empty())
-        made["bases"] = namesOf(d.bases);
+        made.set("bases", namesOf(d.bases));
     if (!d.implemented.empty())
-        made["implements"] = namesOf(d.implemented);
+        made.set("implements", namesOf(d.implemented));
     if (d.kind == Declaration::Kind::Enum) {
-        made["enumerators"] = json::array();
+        Json list = Json::array();
         for (const Enumerator& e : d.enumerators) {
-            json one = {{"name", e.name}, {"value", e.value}};
+            Json one = Json::object({{"name", e.name}, {"value", e.value}});
             annotate(one, e.doc, {});
-            made["enumerators"].push_back(one);
+            list.add(one);
         }
+        made.set("enumerators", list);
     }
     if (d.kind == Declaration::Kind::Struct || d.kind == Declaration::Kind::Class ||
         d.kind == Declaration::Kind::Exception)
-        made["fields"] = fieldsOf(d.fields);
+        made.set("fields", fieldsOf(d.fields));
     if (d.kind == Declaration::Kind::Dictionary)
-        made["key"] = typeName(d.key);
+        made.set("key", typeName(d.key));
     if (d.kind == Declaration::Kind::Sequence || d.kind == Declaration::Kind::Dictionary ||
         d.kind == Declaration::Kind::Constant)
-        made["element"] = typeName(d.element);
+        made.set("element", typeName(d.element));
     if (d.kind == Declaration::Kind::Constant)
-        made["value"] = valueOf(d.value);
+        made.set("value", valueOf(d.value));
     if (d.kind == Declaration::Kind::Interface || !d.operations.empty()) {
-        made["operations"] = json::array();
+        Json list = Json::array();
         for (const Operation& o : d.operations)
-            made["operations"].push_back(operationOf(o));
+            list.add(operationOf(o));
+        made.set("operations", list);
     }
     return made;
 }
 
 } // namespace
 
-void describeUnit(const Unit& unit, json& declarations) {
+void describeUnit(const Unit& unit, Json& declarations) {
     for (const auto& d : unit.declarations)
         if (!d->isForward && !d->isLocal && !d->ofClass)
-            declarations[d->id()] = declarationOf(*d);
+            declarations.set(d->id(), declarationOf(*d));
 }

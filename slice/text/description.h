@@ -6,7 +6,7 @@
 #pragma once
 
 #include "front/ast.h"
-#include <nlohmann/json.hpp>
+#include "text/json.h"
 
 // Adds the declarations of the unit and of included files, each under its full name:
 //
@@ -15,4 +15,4 @@
 //
 // A type is written as text: "short", "::Cores::Samples"; a proxy as "::Demo::Watcher*" or
 // "Object*".
-void describeUnit(const Unit& unit, nlohmann::ordered_json& declarations);
+void describeUnit(const Unit& unit, Json& declarations);

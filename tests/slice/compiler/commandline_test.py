@@ -56,6 +56,9 @@ module Top {
     "crlf.ice": "module L {\r\n struct S { int a; };\r\n};",
     "without.ice": "#include <crlf.ice>\nmodule M { struct T { L::S a; }; };",
     "twice.ice": "#include <crlf.ice>\n#include <crlf.ice>\n",
+    "described.ice": 'module D {\n/** "quoted" \\ back\ttab */\nstruct S { double a = 100000; '
+                     'double b = 1e300; float c = 0.1; long d = -9223372036854775808; '
+                     'bool e = true; string f = "a\\"\\\\\\n\\xff\\u00e9\\001"; }; };',
     "text.ice": f'module L {{ const string T = "{509 * "0"}"; '
                 f'struct S {{ string a = "{510 * "0"}"; }}; }};',
     # Files next to the including file and in the folder above it are found, in whichever folder the
@@ -88,6 +91,9 @@ class Cases(Script):
             ("no-such-file.ice", 1, "cannot read"), ("slice", 1, "cannot read"),
             ("slice/Top.ice", 1, "Middle.ice"),  # no -I
             ("-I slice slice/Lib/Base.ice --output-dir file/sub", 1, "cannot write"),
+            ("slice/Top.ice --output-dir", 1, "'--output-dir' requires an argument"),
+            ("--describe=1 slice/Top.ice", 1, "'--describe' doesn't allow an argument"),
+            ("-I", 1, "option requires an argument -- 'I'"), ("-- --validate", 1, "cannot read"),
             ("--validate", 0, ""), ("-E -I slice slice/Top.ice", 0, "struct Point_ty")):
             self.slice2c(words, status, said)
         self.assertFalse(Path("Top.h").exists())
@@ -126,6 +132,12 @@ class Cases(Script):
                 {"name": "leaf", "type": "::Top::Leaf"}],
              "throws": ["::Top::Worse"]}])
         self.assertIn("::Cores::Fir", described)
+        # The description is valid JSON for each text and each number.
+        self.slice2c("--describe described.ice")
+        described = json.loads(self.said)["::D::S"]
+        self.assertEqual(described["doc"], '"quoted" \\ back\ttab')
+        self.assertEqual([field["default"] for field in described["fields"]], [
+            1e5, 1e300, 0.1, -2 ** 63, True, 'a"\\\n\N{REPLACEMENT CHARACTER}é\x01'])
         # An exception causes a warning if no operation throws it or an exception derived from
         # it.
         Path("thrown.ice").write_text(

@@ -101,6 +101,21 @@ class Boards(unittest.TestCase):
             Path(folder, "CMakeCache.txt").write_text("")
             self.assertIs(build.for_vehicle("nucleo-qmtech", "async"), build)
 
+    def test_a_folder_for_tests_of_cores_is_completed_by_the_next_other_command(self):
+        with tempfile.TemporaryDirectory() as folder, mock.patch("icesoc.cli.build_folder.run"), \
+                mock.patch.multiple(BuildFolder, configure=mock.DEFAULT, set=mock.DEFAULT) as made:
+            build = BuildFolder(folder, argparse.Namespace(jobs=1, built=False))
+            build.prepare(core_tests=True)
+            made["configure"].assert_called_with("-DCORE_TESTS_ONLY=ON")
+            build.prepare()
+            made["configure"].assert_called_with()
+            made["set"].assert_not_called()  # the folder was complete
+            Path(folder, "CMakeCache.txt").write_text("CORE_TESTS_ONLY:BOOL=ON\n")
+            build.prepare(core_tests=True)
+            made["set"].assert_not_called()
+            build.prepare(tests=True)
+            made["set"].assert_called_once_with(CORE_TESTS_ONLY="OFF")
+
     def test_each_pair_of_board_and_bridge_has_its_own_folder(self):
         kit = "boards/nucleo-qmtech-muxed/board.toml"
         with tempfile.TemporaryDirectory() as folder, mock.patch.multiple(

@@ -203,11 +203,12 @@ def new(values):
                f"chip; make run CORES={name} calls it by radio")
 
 
-def known(values):
-    """Returns the build folder that contains the core."""
+def known(values, core_tests=False):
+    """Returns the build folder that contains the core. With `core_tests`, a new folder is
+    configured for the tests of cores only."""
     if not values.ip:
         raise Stop("expected the name of a core: ./icesoc core test fir (make ip-test IP=fir)", 2)
-    build = BuildFolder(values.build, values).prepare()
+    build = BuildFolder(values.build, values).prepare(core_tests=core_tests)
     cores = build.known_cores()
     if not values.built and (values.ip not in cores or
                              not (build.core(values.ip) / "core.toml").is_file()):
@@ -230,7 +231,7 @@ def test(values):
     Builds only the targets that the tests of this core need. The core need not be in the chip.
     Exit status 8: a test failed.
     """
-    core, build = values.ip, known(values)
+    core, build = values.ip, known(values, core_tests=True)
     build.ninja(f"tests_of_{core}")
     if core not in build.cached("TESTED_CORES").split(";"):
         raise Stop(f"{core} has no test: {core}_test.cpp not found in the core's folder")

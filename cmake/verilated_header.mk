@@ -4,11 +4,6 @@
 # Verilator's makefiles. TO is the result; CXX, OPT_FAST and USER_CPPFLAGS are those of the models.
 # The result contains the path of its folder, so ccache compares TO.sum instead, which is the same
 # in all clones.
-VM_COVERAGE = 0
-VM_SC = 0
-VM_TRACE = 0
-VM_TRACE_FST = 0
-VM_TRACE_VCD = 0
 header := $(VERILATOR_ROOT)/include/verilated.h
 
 $(TO): $(header)
@@ -19,5 +14,8 @@ $(TO): $(header)
 	rm $@.text
 
 include $(VERILATOR_ROOT)/include/verilated.mk
-# lists of headers would be written to the current folder
-CPPFLAGS := $(filter-out -MMD,$(CPPFLAGS))
+# The makefile of a model sets all variables VM_* that define a macro, to 0 for a model without
+# traces and coverage. Which variables these are depends on Verilator's version. The macros must be
+# the same here, because clang rejects a precompiled header with other macros. MMD is left out,
+# because lists of headers would be written to the current folder.
+CPPFLAGS := $(patsubst -DVM_%=,-DVM_%=0,$(filter-out -MMD,$(CPPFLAGS)))

@@ -25,71 +25,71 @@ g++ C and C++ compiler
 make drives Verilator models
 cmake build description
 ninja-build runs the build
-ccache makes a second build quick
+ccache caches compiled files, which makes later builds faster
 pkg-config finds libraries
-zlib1g-dev waveforms (FST)
+zlib1g-dev compresses waveforms (FST)
 verilator turns the Verilog into a C++ model
-iverilog second opinion in lint
-yosys synthesis, latch check, proofs
-z3 solver of the proofs
-cadical solver of their induction steps
+iverilog checks the Verilog in addition to Verilator
+yosys synthesis, search for latches, proofs
+z3 solver for the proofs
+cadical solver for the induction steps of the proofs
 libgtest-dev test framework
 libgmock-dev test framework
 nlohmann-json3-dev reports
 libfmt-dev text formatting
 libcli11-dev command lines
 libsodium-dev signatures of firmware (Ed25519)
-liblz4-dev unpacks firmware that comes by radio
-python3-lz4 packs it
+liblz4-dev decompresses firmware updates that arrive by radio
+python3-lz4 compresses firmware updates
 python3-jinja2 templates of register blocks, headers and pages
-libssl-dev AES of the modem model
-openssl certificates of the gateway and its clients
-git finds what changed
+libssl-dev AES for the model of the modem
+openssl makes certificates for the gateway and its clients
+git lists changed files
 libstb-dev reads and writes pictures
-libmcpp-dev preprocessor of the Slice compiler
+libmcpp-dev preprocessor for the Slice compiler
 libzeroc-ice-dev ZeroC Ice for C++
 zeroc-ice-compilers slice2cpp, for tests and the C++ client
 zeroc-ice-slice Slice files of ZeroC Ice
 python3-zeroc-ice ZeroC Ice for Python: the ground station
 python3-jsonschema checks the manifests of cores
-python3-pil draws the features over the picture
-xplanet-images the default picture
-gcc-arm-none-eabi the firmware for the Cortex-M3
-libunicorn-dev executes its instructions in the simulator
-libnewlib-arm-none-eabi C library for it
-clang fuzzers of the link layer (libFuzzer)
-libclang-rt-dev their run time, which clang only recommends
+python3-pil draws the corners into the picture of a flight
+xplanet-images default picture of the camera
+gcc-arm-none-eabi compiles the firmware for the Cortex-M3
+libunicorn-dev executes Cortex-M3 instructions in the simulator
+libnewlib-arm-none-eabi C library of the firmware
+clang compiles models of the RTL, and fuzzers (libFuzzer)
+libclang-rt-dev run-time libraries of fuzzers and sanitizers
 '
 # additional packages for `./icesoc package`, which makes and checks Debian packages
 deb='
 dpkg-dev finds the dependencies of the Debian packages
-file finds the programs in them
-lintian checks them
+file finds the programs in the Debian packages
+lintian checks the Debian packages
 '
 # additional packages for tests, reports and debuggers
 rest='
-clang-format-19 holds the source to .clang-format
+clang-format-19 checks the format of the sources
 mypy checks the types of the tools in Python
 libxml2-utils checks the generated SVD file and pages
 lcov coverage pages
 chromium opens the report pages in tests
-libnss3-tools gives it certificates
-zeroc-icebridge a forwarder; a test compares the gateway with it
-zeroc-glacier2 a router, in front of the gateway in a test
-tshark reads the messages on the wire in tests
-strace sees which files a proof reads, so that its verdict holds until one changes
-python3-yaml reads the workflows in tests
-ca-certificates checks whom what pages sort and draw with, and foreign cores, are fetched from
-gdb-multiarch debugs it there
-qemu-system-arm runs the examples of porting
+libnss3-tools installs certificates in the browser of tests
+zeroc-icebridge forwarder of ZeroC Ice, which a test compares with the gateway
+zeroc-glacier2 router of ZeroC Ice, which a test connects to the gateway
+tshark decodes network messages in tests
+strace records which files a proof reads; its result is cached until one of them changes
+python3-yaml reads the CI workflows in tests
+ca-certificates verifies the servers of downloads: scripts of the pages, third-party cores
+gdb-multiarch debugs the firmware in the simulator
+qemu-system-arm runs the examples of docs/porting.md
 gtkwave shows waveforms, and converts waveforms of failures for the page
 python3-sphinx renders the documentation site
 python3-myst-parser reads its Markdown pages
-furo style of the documentation site
-python3-breathe C reference of the documentation site
-doxygen reads the C headers for it
+furo theme of the documentation site
+python3-breathe adds the C reference to the documentation site
+doxygen reads C headers for the documentation site
 man-db shows and checks the manual pages
-groff-base formats them
+groff-base formats the manual pages
 '
 [ -z "$packaging" ] || packages="$packages$deb"
 [ -z "$tests" ] || packages="$packages$rest"
@@ -125,7 +125,7 @@ echo "$list" | sed 's/^/    /'
 sudo='' missing=$(echo "$list" | sed 's/:.*//')
 if [ "$(id -u)" != 0 ]; then
     command -v sudo >/dev/null 2>&1 || {
-        echo "setup: not root, and sudo is not there. As root, run:" >&2
+        echo "setup: installing packages needs root, and sudo is not installed. As root, run:" >&2
         echo "    apt-get update && apt-get install" $missing >&2
         exit 1
     }
@@ -133,7 +133,7 @@ if [ "$(id -u)" != 0 ]; then
     if [ -t 0 ]; then
         printf 'Install them with sudo apt-get? [Y/n] '
         read -r answer
-        case $answer in [Nn]*) echo "setup: nothing is installed" >&2 && exit 1 ;; esac
+        case $answer in [Nn]*) echo "setup: stopped; nothing was installed" >&2 && exit 1 ;; esac
     fi
 fi
 echo "Installing them with apt-get (a minute or two) ..."

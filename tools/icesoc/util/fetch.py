@@ -223,8 +223,9 @@ def ice(target):
     try:
         archive = ice_source(version)
     except (KeyError, Unreachable) as error:
-        print(f"fetch: no source of ZeroC Ice {version} ({error}): using the headers of 3.7.8, "
-              "because the transports have not changed since", file=sys.stderr)
+        print(f"fetch: the source of ZeroC Ice {version} is not available ({error}); the build "
+              "continues with the headers of 3.7.8, because Ice's transport classes have not "
+              "changed since 3.7.8", file=sys.stderr)
         archive, version = ice_source("3.7.8"), "3.7.8"
     unpack(archive, f"ice-{version}/cpp/src/Ice/", target / "Ice", ".h")
 

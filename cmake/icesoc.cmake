@@ -9,7 +9,7 @@
 function(icesoc_needs package variable kind name)
   cmake_language(CALL find_${kind} ${variable} ${name})
   if(NOT ${variable})
-    message(FATAL_ERROR "${name} is missing (Debian: ${package}): run 'make setup'")
+    message(FATAL_ERROR "${name} is missing (Debian: ${package}): run './icesoc setup'")
   endif()
 endfunction()
 # CMake configures again after packages were installed, removed or upgraded.

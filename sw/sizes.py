@@ -104,7 +104,7 @@ def layers(source, generated, build, output):
 
     def entry(name, size, limit=0):
         entries.append({"name": name, "value": size, "unit": "bytes",
-                        **({"limit": limit} if limit else {}), "command": "make size"})
+                        **({"limit": limit} if limit else {}), "command": "./icesoc build size"})
 
     print("%-10s %8s %8s %8s %8s %9s %s" % ("layer", "minimal", "paper's", "full", "RAM min",
                                             "RAM full", "largest frame (minimal)"))
@@ -173,7 +173,7 @@ def packages(build):
           "flash of the layers above, as\nlinked; the rest is the application, servants, "
           "generated code, kernel, board and C library.")
     return [{"name": f"vehicle.{name}.{what}", "value": size, "unit": "bytes",
-             "command": "make size"} for name, sizes in rows
+             "command": "./icesoc build size"} for name, sizes in rows
             for what, size in zip(("flash", "ram", "layers"), sizes)]
 
 
@@ -190,7 +190,7 @@ def firmware(path, output):
           ("all", sum(flash.values()), sum(ram.values())))
     stacks(path)
     written(output, [{"name": f"{what}: {layer}", "value": table[layer], "unit": "bytes",
-                      "command": "make firmware"}
+                      "command": "./icesoc build firmware"}
                      for layer in flash for what, table in (("flash", flash), ("RAM", ram))])
 
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// figures: collects the figures of a bench, and writes them to the JSON file of `make bench`.
+// figures: collects the figures of a bench, and writes them to the JSON file of `./icesoc bench`.
 //
 //   int main(int argc, char** argv) {
 //       Figures figures("Speed of the FSMC bridge.");
@@ -34,7 +34,7 @@ public:
     nlohmann::json& add(const std::string& name, double value, const std::string& unit,
                         double limit = 0) {
         nlohmann::json entry = {
-            {"name", name}, {"value", value}, {"unit", unit}, {"command", "make bench"}};
+            {"name", name}, {"value", value}, {"unit", unit}, {"command", "./icesoc bench"}};
         std::printf("%-80s %10.4g %s", name.c_str(), value, unit.c_str());
         if (limit > 0) {
             entry["limit"] = limit;

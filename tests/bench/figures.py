@@ -53,7 +53,7 @@ def figure(name, value, unit, limit=None, peer=None, ratio=None):
     """Returns the entry of a figure for the JSON file. The figure is compared with `limit` if it is
     given. `peer` is a text about another system with which the figure was compared, and `ratio` is
     the result of this comparison."""
-    entry = {"name": name, "value": value, "unit": unit, "command": "make bench"}
+    entry = {"name": name, "value": value, "unit": unit, "command": "./icesoc bench"}
     if limit:
         entry.update(limit=limit, share=round(value / limit, 3))
     if peer:

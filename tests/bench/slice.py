@@ -36,7 +36,7 @@ def entry(name, ours, theirs):
 
 def main(slice2c, output, brief=""):
     if not shutil.which("slice2cpp"):
-        sys.exit("slice: slice2cpp is missing; run 'make setup'")
+        sys.exit("slice: slice2cpp is missing; run './icesoc setup'")
     largest = sorted(SLICES.rglob("*.ice"), key=lambda f: -f.stat().st_size)[:1 if brief else 5]
     print("%-28s %12s %12s %8s" % ("file", "slice2cpp", "slice2c", "ratio"))
     entries, sums = [], [0, 0]

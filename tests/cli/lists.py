@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """lists: tests the list of commands, the help and the manual page, and the output to files and
 terminals."""
-import contextlib, io, json, re, shlex, shutil, subprocess, sys, tempfile, unittest
+import ast, contextlib, io, json, re, shlex, shutil, subprocess, sys, tempfile, unittest
 from pathlib import Path
 
 from doors import TREE, ask
@@ -12,6 +12,15 @@ from icesoc.cli.commands.tree import manual
 from icesoc.util.errors import Stop
 from icesoc.util.ninja import run_ninja
 from icesoc.util.table import Table
+
+
+def strings_of(text):
+    """Returns the strings of a Python program, without its comments."""
+    nodes = list(ast.walk(ast.parse(text)))
+    comments = {ast.get_docstring(node, False) for node in nodes
+                if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef))}
+    return [node.value for node in nodes if isinstance(node, ast.Constant) and
+            isinstance(node.value, str) and node.value not in comments]
 
 
 class Lists(unittest.TestCase):
@@ -42,6 +51,27 @@ class Lists(unittest.TestCase):
                     self.assertNotRegex(
                         text, r"^(of|that|in|from|by|which|whose|what|where|as) ",
                         f"{name} --{option.name}: a noun or a verb comes first")
+
+    def test_messages_and_pages_name_one_form_of_each_command(self):
+        """Messages and pages name `make` for the commands with which a user may begin, because
+        make first installs Python, and ./icesoc for all others."""
+        goals = {each.make for each in command.COMMANDS.values() if each.make}
+        goals |= set(command.ALIASES)
+        other = "|".join(sorted(goals - {"run", "test", "synth", "regress", "package"}))
+        named = re.compile(rf"(?<!board )\bmake (?:{other})(?![\w-])")
+        allowed = {"docs/recipes.md": "make new-ip"}  # the page explains both forms
+        wrong = []
+        for file in subprocess.run(["git", "ls-files", "sw", "slice", "testbench", "tools", "cmake",
+                                    "docs", "README.md"], cwd=TREE, text=True, check=True,
+                                   capture_output=True).stdout.split():
+            if file.endswith((".png", ".pdf")):
+                continue
+            text = (TREE / file).read_text()
+            texts = strings_of(text) if file.endswith(".py") else [
+                line for line in text.split("\n") if not re.match(r"\s*(//|#|/?\*)", line)]
+            found = {name for each in texts for name in named.findall(each)}
+            wrong += [f"{file}: {name}" for name in found - {allowed.get(file)}]
+        self.assertEqual(wrong, [])
 
     def test_pages_name_commands_that_there_are(self):
         value = r"""[A-Z][A-Z0-9_]*=(?:'[^']*'|"[^"]*"|[^\s`'"]*)"""

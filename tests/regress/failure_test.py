@@ -110,7 +110,7 @@ icesoc-sim: Cortex-M3: 748300 instructions; asleep 99.5 % of the time
 icesoc-sim: 2.0 s simulated, 37 packets on the air
 The mission failed (exit status 1).
 To write a waveform of its end: make run REPLAY='fly' FROM=1.500 TO=2.000
-To debug it backwards from its end: make gdb REPLAY='fly'
+To debug it backwards from its end: ./icesoc gdb --replay 'fly'
 """
 SIMULATOR = """#!/bin/sh
 echo "$@" >asked

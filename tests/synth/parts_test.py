@@ -394,7 +394,7 @@ class Cores(unittest.TestCase):
     def test_only_those_asked_for_are_told(self):
         self.assertEqual(len(self.rows("plain")), 2)
         # ip/cores.list contains "gone", but this chip has not been measured yet
-        for name, advice in ("gone", "make ip-synth IP=gone CHIP=1 measures"), ("none", "add the"):
+        for name, advice in ("gone", "./icesoc core synth gone --chip"), ("none", "add the"):
             with self.assertRaisesRegex(cores.NotInChip,
                                         f"{name} is not in the chip of here: {advice}"):
                 self.rows("plain", name)

@@ -165,7 +165,7 @@ class Cases(Script):
                  "^The chip: 9 LUT, 9 FF, 1.5 block RAMs, 2 DSP")
         self.run_program("--core", "high")
         self.has("high is not in the chip of synth/baseline.json: add the line 'high' to "
-                 "ip/cores.list, then run make ip-synth IP=high CHIP=1")
+                 "ip/cores.list, then run ./icesoc core synth high --chip")
         shutil.rmtree(KEPT, ignore_errors=True)
         shutil.copytree("out/cache", KEPT)
 

@@ -88,7 +88,7 @@ def main():
 
     poor = links(work / "poor", {"yosys", "ccache"})
     said = configure(source, work / "without", work, poor)
-    word = "yosys is missing (Debian: yosys): run 'make setup'"
+    word = "yosys is missing (Debian: yosys): run './icesoc setup'"
     if not said.returncode or word not in said.stdout:
         fail(f"no word of a missing yosys:\n{said.stdout}")
     if "ccache is missing" not in said.stdout:

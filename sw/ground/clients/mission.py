@@ -194,8 +194,8 @@ def explain(communicator, args, failure):
             "chip:" + args.endpoint)))
         if found:
             text += "; ".join(["", *found]) + (
-                ": rebuild both from the same ip/cores.list, the firmware with make firmware, the "
-                "chip with make synth-edif (docs/utilisation.md)")
+                ": rebuild both from the same ip/cores.list, the firmware with ./icesoc build "
+                "firmware, the chip with ./icesoc synth edif (docs/utilisation.md)")
     return text
 
 
@@ -325,8 +325,8 @@ class Mission:
             raise
         self.log.note("the result equals the C++ reference, bit by bit")
         if result.found < ENOUGH and not places.IS_INSTALLED:
-            self.log.note(f"{result.found} corners test only a part of the core: make ip-test "
-                          "IP=vision tests all of it")
+            self.log.note(f"{result.found} corners test only a part of the core: ./icesoc core "
+                          "test vision tests all of it")
 
     def fly(self):
         self.serve()

@@ -49,7 +49,8 @@ std::vector<uint8_t> readBytes(const std::string& what, const std::string& path)
 
 ElfImage::ElfImage(const std::string& path) : path_(path) {
     if (!std::filesystem::exists(path))
-        throw std::runtime_error("cannot read firmware '" + path + "'; make firmware builds it");
+        throw std::runtime_error("cannot read firmware '" + path +
+                                 "'; ./icesoc build firmware builds it");
     const std::vector<uint8_t> file = readBytes("firmware", path);
     try {
         auto header = at<Elf32_Ehdr>(file, 0);

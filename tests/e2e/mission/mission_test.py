@@ -82,7 +82,7 @@ class Cases(Script):
         key."""
         self.make("run", f"IMAGE={IMAGE}", "SIZE=96x64", f"OUT={self.out}", build=BUILD)
         self.flew(self.out)
-        self.has("121 corners test only a part of the core: make ip-test IP=vision")
+        self.has("121 corners test only a part of the core: ./icesoc core test vision")
         # The ground first waits until the modem is set up, then for the vehicle.
         steps = re.findall("modem ready on .* after [0-9]* ms|link connecting|link up, secure|"
                            "the UAV has .* s to answer", self.said)

@@ -27,8 +27,8 @@ refused() { # message, arguments
         exit 1; }
     [ "$(ls "$work/ip")" = "$before" ] || { echo "files were written: $*" && exit 1; }
 }
-refused 'make new-ip NAME=low_pass'
-refused 'make new-ip NAME=low_pass' '' --lang verilog
+refused './icesoc core new low_pass'
+refused './icesoc core new low_pass' '' --lang verilog
 refused 'expected verilog or vhdl (LANG=' fir
 refused "got 'c'" fir --lang c
 refused 'small letters' Fir --lang verilog
@@ -107,7 +107,7 @@ for wrong in '' missing template ../bus; do
 done
 # A core with uncommitted changes is not removed, unless this is forced.
 (cd "$work" && git init -q . && new fir --lang verilog >"$work/log")
-grep -q 'make ip-test IP=fir' "$work/log" && [ -f "$work/ip/fir/fir.v" ] &&
+grep -q './icesoc core test fir' "$work/log" && [ -f "$work/ip/fir/fir.v" ] &&
     ! grep -rq '@[A-Z]*@' "$work/ip/fir" || { echo 'ip/fir is not what it should be' && exit 1; }
 ! remove fir 2>"$work/log" && grep -q 'uncommitted' "$work/log" && [ -d "$work/ip/fir" ] ||
     { echo 'rm-ip loses work' && exit 1; }

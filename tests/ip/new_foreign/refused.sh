@@ -33,7 +33,7 @@ echo 'module wide(input clk, clk_en, we, input [1:0] a, input [63:0] my_wide, ou
 endmodule' >wide.v
 echo 'module odd(input clk, input type_t [1:0] a); endmodule' >odd.sv
 echo 'module broken(input clk;' >broken.v
-refused 'usage: make new-foreign' wb_port wishbone
+refused 'usage: ./icesoc core foreign' wb_port wishbone
 refused "got 'spi'" wb_port spi wb_port.v
 mkdir out
 ! new my_port wb_port wishbone out wb_port.v >log 2>&1 && grep -q 'already exists' log ||

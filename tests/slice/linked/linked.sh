@@ -8,7 +8,7 @@ set -eu
 slice2c=$1 sw=$2 work=$3
 here=$(cd "$(dirname "$0")" && pwd)
 command -v arm-none-eabi-gcc >/dev/null ||
-    { echo "linked: arm-none-eabi-gcc is missing; run 'make setup'" && exit 1; }
+    { echo "linked: arm-none-eabi-gcc is missing; run './icesoc setup'" && exit 1; }
 rm -rf "$work"
 mkdir -p "$work"
 for file in Lent Linked; do "$slice2c" "$here/$file.ice" --output-dir "$work"; done

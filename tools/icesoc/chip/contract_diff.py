@@ -110,7 +110,7 @@ def compare(old, new):
 
 def main(words):
     if len(words) != 3:
-        sys.exit("usage: make contract-diff BASE=commit")
+        sys.exit("usage: ./icesoc contract diff --base COMMIT")
     slice2c, tree, base = words
     with tempfile.TemporaryDirectory() as work:
         if os.path.isdir(base):

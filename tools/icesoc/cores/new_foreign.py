@@ -37,8 +37,8 @@ from icesoc.cores.foreign_ports import copies_for_verilator, read_module
 from icesoc.cores.foreign_roles import NEEDED, roles_of, with_members
 
 HEAD = "# SPDX-License-Identifier: MIT\n"
-USAGE = ("usage: make new-foreign NAME=my_uart TOP=module "
-         "BUS=wishbone|axil|apb|avalon|memory|own|axis FILES='a.v b.v' [PORTS='write=we ...']")
+USAGE = ("usage: ./icesoc core foreign my_uart --top MODULE "
+         "--bus wishbone|axil|apb|avalon|memory|own|axis --files a.v b.v [--ports write=we ...]")
 
 
 # Words in the name of an output that may be an interrupt.
@@ -260,7 +260,7 @@ def main(words):
         print(f"  sv2v --top={asked.top} {' '.join('-I ' + d for d in folders_of(asked.headers))} "
               f"{' '.join('-D ' + d for d in asked.defines)} {' '.join(asked.files)} "
               f">{asked.top}.v")
-    print(f"Next: check the list above; run make ip-test IP={asked.name}; add the line "
+    print(f"Next: check the list above; run ./icesoc core test {asked.name}; add the line "
           f"{asked.name} to ip/cores.list; run make run CORES={asked.name}")
 
 

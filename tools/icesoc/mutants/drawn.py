@@ -298,7 +298,7 @@ def main():
                             rf"^formal\.({options.block})"], stdout=subprocess.PIPE)
     if shown.returncode:
         sys.exit(f"mutants: --build: expected a build folder, got '{options.build}'; run "
-                 "`make build` first")
+                 "`./icesoc build` first")
     proofs = [Proof(test, out / "drawn") for test in json.loads(shown.stdout)["tests"]
               if any(word.endswith("/prove.sh") for word in test["command"])]
     # Proofs of several modules together, and proofs of generated modules, are left out.

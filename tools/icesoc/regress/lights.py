@@ -48,7 +48,7 @@ def of_mutants(rows, drawn, source):
             return judge("mutants", "",
                          "modules with drawn mutants that proofs and tests miss", bad)
     if not rows:
-        return missing("mutants", "make mutants")
+        return missing("mutants", "./icesoc check mutants")
     return judge("mutants", f"{len(rows)} of {len(rows)} caught", f"of {len(rows)} not caught",
                  [row[0] for row in rows if row[1] != "caught"])
 
@@ -61,7 +61,7 @@ def below_gate(f):
 
 def of_coverage(coverage):
     if not coverage:
-        return missing("coverage", "make coverage")
+        return missing("coverage", "./icesoc check coverage")
     bad = [f["name"] for f in coverage["entries"] if below_gate(f)]
     return judge("coverage", f"{coverage['total']:.1f} % of lines, "
                  f"{coverage.get('toggles', 0):.1f} % of toggles, "
@@ -113,7 +113,8 @@ def lights_of(data, source):
     """Returns the status lights for the data of report.py: [{name, state, text}]."""
     measured = [of_mutants(data["mutants"], data.get("drawn", {}), source),
                 of_coverage(data.get("coverage")), of_size(data.get("utilisation")),
-                of_entries("speed", data.get("speed", {"entries": []})["entries"], "make bench")]
+                of_entries("speed", data.get("speed", {"entries": []})["entries"],
+                           "./icesoc bench")]
     for each in measured:  # a measurement records the state of the tree in which it was made
         tree = data["trees"].get(each["name"], "")
         if each["state"] != "grey" and tree_state(source, tree.split(":")[0]) != tree:

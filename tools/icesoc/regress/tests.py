@@ -131,9 +131,10 @@ def list_tests(build):
     """Returns all tests of a build folder."""
     status, text = collect(["ctest", "--test-dir", build, "--show-only=json-v1"])
     if status:
-        raise Stop(f"ctest cannot list the tests of {build}; run `make build` first\n{text[:2000]}")
+        raise Stop(f"ctest cannot list the tests of {build}; run `./icesoc build` first\n"
+                   f"{text[:2000]}")
     if "{" not in text:
-        raise Stop(f"ctest lists no tests in {build}; run `make build` first")
+        raise Stop(f"ctest lists no tests in {build}; run `./icesoc build` first")
     below, source = f"{build.resolve()}/tests/", cached(build, "CMAKE_HOME_DIRECTORY")
     tests = []
     for number, entry in enumerate(json.loads(text[text.index("{"):])["tests"], 1):

@@ -30,8 +30,8 @@ TRANSCRIPT = re.compile(r"(?<=Ice's log lines are left out here:\n\n```\n).*?(?=
 # If a figure has no source, it must be the same in all texts that contain its name.
 PLACES = {
     "README.md": [
-        "after linking (`make size`) | {minimal} |",
-        "removes as unused (`make size`) | {unlinked} |",
+        "after linking (`./icesoc build size`) | {minimal} |",
+        "removes as unused (`./icesoc build size`) | {unlinked} |",
         "| flip-flops | 1537 | {table1.ff} | {flown.ff} |",
         "| LUT sites | 1728 | {table1.sites} ({table1.low} to {table1.high}) | "
         "{flown.sites} ({flown.low} to {flown.high}) |",
@@ -42,8 +42,8 @@ PLACES = {
         "without authentication (`make test NAME=CallBytes`) | {air.clear} | "
         "MAVLink 2: {mav.clear} |",
         "| 0 of {hostile} |",
-        "a firmware update (`make bench`) | 0 of {firmware} |",
-        "a bitstream update (`make bench`) | 0 of {bitstream} |",
+        "a firmware update (`./icesoc bench`) | 0 of {firmware} |",
+        "a bitstream update (`./icesoc bench`) | 0 of {bitstream} |",
         "| FSMC | 1116 | {minimal.fsmc} | {full.fsmc} |",
         "| radio | 1795 | {minimal.radio} | {full.radio} |",
         "| link | 1307 | {minimal.link} | {full.link} |",

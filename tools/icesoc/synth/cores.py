@@ -74,9 +74,9 @@ def core_table(costs, map, slot, names, where):
     cores = [name for _, name in slots if any(cost_of(rf"u_{name}(\..*)?"))]
     for name in names:
         if name not in cores:
-            first = (f"make ip-synth IP={name} CHIP=1 measures the chip with it" if
+            first = (f"./icesoc core synth {name} --chip measures the chip with it" if
                      f"SLOT_{name.upper()}" in map else f"add the line '{name}' to ip/cores.list, "
-                     f"then run make ip-synth IP={name} CHIP=1")
+                     f"then run ./icesoc core synth {name} --chip")
             raise NotInChip(f"{name} is not in the chip of {where}: {first}")
     return report.Table(["core in the chip", "LUT", "FF", "RAM16", "DSP", "itself", "registers",
                          f"slot {map['SLOT_COUNT']}", "memory port", "arbiter"],

@@ -215,7 +215,7 @@ def show(report):
             print(line)
     fresh = [row.design.name for row in wanted if row.design.name not in accepted]
     if fresh:
-        print("No accepted figures yet (`make synth-accept` records them):", *fresh)
+        print("No accepted figures yet (`./icesoc synth accept` records them):", *fresh)
 
 
 def entries(report):

@@ -36,8 +36,7 @@ def check_name(name, room="ip"):
     """Rejects a name that is invalid, or that already exists in the tree or in the folder
     `room`."""
     if not name:
-        raise Stop("a core needs a name: ./icesoc core new low_pass --lang verilog "
-                   "(make new-ip NAME=low_pass LANG=verilog)", 2)
+        raise Stop("a core needs a name: ./icesoc core new low_pass --lang verilog", 2)
     if not re.fullmatch(r"[a-z][a-z0-9]*|[a-z][a-z0-9]+(_[a-z][a-z0-9]+)+", name):
         raise Stop(
             f"'{name}': expected words of small letters and digits, joined by _, such as "
@@ -177,7 +176,7 @@ def new(values):
         if values.repository:
             readme = folder / "README.md"
             text = readme.read_text().replace("../../docs", "../build/icesoc/docs")
-            readme.write_text(text.replace(f"make ip-test IP={name}", "make test"))
+            readme.write_text(text.replace(f"./icesoc core test {name}", "make test"))
         os.makedirs(room, exist_ok=True)
         # the folder is moved into the tree only when it is complete
         shutil.move(folder, f"{room}/{name}")
@@ -199,15 +198,15 @@ def new(values):
                 run(["cmake", build.folder], check=False, stdout=log, stderr=log)
             raise
     say(written)
-    return say(f"Next: make ip-test IP={name}; a line '{name}' in ip/cores.list puts it into the "
-               f"chip; make run CORES={name} calls it by radio")
+    return say(f"Next: ./icesoc core test {name}; a line '{name}' in ip/cores.list puts it into "
+               f"the chip; make run CORES={name} calls it by radio")
 
 
 def known(values, core_tests=False):
     """Returns the build folder that contains the core. With `core_tests`, a new folder is
     configured for the tests of cores only."""
     if not values.ip:
-        raise Stop("expected the name of a core: ./icesoc core test fir (make ip-test IP=fir)", 2)
+        raise Stop("expected the name of a core: ./icesoc core test fir", 2)
     build = BuildFolder(values.build, values).prepare(core_tests=core_tests)
     cores = build.known_cores()
     if not values.built and (values.ip not in cores or
@@ -342,7 +341,7 @@ def wave(values):
     what = values.ip
     if not what or not (values.test or what.startswith("vhdl.")):
         raise Stop("core wave: expected a core or test program, and a test: ./icesoc core "
-                   "wave fir Impulse (make wave IP=fir TEST=Impulse); or only vhdl.CORE: ./icesoc "
+                   "wave fir Impulse; or only vhdl.CORE: ./icesoc "
                    "core wave vhdl.fir", 2)
     build, words = traced(values)
     folder = Path("build/wave").absolute()
@@ -395,8 +394,7 @@ def remove(values):
     name, core = values.name, build.core(values.name or ".")
     if not re.fullmatch(r"[a-z0-9_]+", name) or name == "template":
         raise Stop(
-            f"NAME: expected the name of a core, got '{name}': ./icesoc core remove low_pass "
-            "(make rm-ip NAME=low_pass)", 2)
+            f"NAME: expected the name of a core, got '{name}': ./icesoc core remove low_pass", 2)
     if not core.is_dir():
         raise Stop(f"{core} not found{nearest(name, choices.cores(values))}", 2)
     others = build.other_cores()

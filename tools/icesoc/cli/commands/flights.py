@@ -237,7 +237,7 @@ def explain_failure(values, status, has_flown):
     if span:
         text += f"To write a waveform of its end: make run REPLAY='{out}' {span}\n"
         if values.cpu == "m3":
-            text += f"To debug it backwards from its end: make gdb REPLAY='{out}'\n"
+            text += f"To debug it backwards from its end: ./icesoc gdb --replay '{out}'\n"
     sys.stderr.write(text)
 
 

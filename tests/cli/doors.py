@@ -341,14 +341,22 @@ class Mistakes(Work):
                          (1, "icesoc: No space left on device: /dev/full\n"))
 
     def test_an_interrupt_ends_all_with_one_message(self):
+        self.interrupt("./icesoc", "build")
+
+    def test_an_interrupt_of_a_command_that_runs_another_prints_one_message(self):
+        self.interrupt("tools/python", "-c", "import sys; from icesoc.cli.main import main; "
+                       "from icesoc.util.process import run; "
+                       "sys.exit(main([], lambda _: run(['./icesoc', 'build'])))")
+
+    def interrupt(self, *words):
+        """Presses Ctrl-C while the command builds."""
         self.script("tree/cmake/setup.sh", f"echo $$ >{self.work}/child\nexec sleep 5000\n")
-        run = subprocess.Popen(["./icesoc", "build"], cwd=TREE,
-                               env=clean(ICESOC_TREE=str(self.work / "tree")),
-                               stderr=subprocess.PIPE, text=True)
+        run = subprocess.Popen(words, cwd=TREE, env=clean(ICESOC_TREE=str(self.work / "tree")),
+                               stderr=subprocess.PIPE, text=True, start_new_session=True)
         child = self.work / "child"
         while not child.exists() or not child.read_text():
             time.sleep(0.01)
-        run.send_signal(2)
+        os.killpg(run.pid, 2)
         self.assertEqual(run.communicate()[1], "icesoc: stopped\n")
         self.assertEqual(run.returncode, 130)
         # If the child had just been started, it may end a little later than its parent.

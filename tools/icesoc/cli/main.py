@@ -14,7 +14,7 @@ from icesoc import TREE
 from icesoc.cli import command
 from icesoc.util.console import say, warn
 from icesoc.util.errors import Interrupted, Stop
-from icesoc.util.process import hear_signals
+from icesoc.util.process import hear_signals, is_part
 
 
 def surroundings():
@@ -90,6 +90,7 @@ def main(words, function=act):
     """Runs a function with the words of the command line; prints its error and returns its exit
     status."""
     hear_signals()
+    is_reported = is_part()  # read now, because the other command may end before this one
     try:
         return function(words) or 0
     except Stop as stop:
@@ -97,7 +98,8 @@ def main(words, function=act):
             warn(stop.text)
         return stop.status
     except Interrupted as interrupted:
-        warn("stopped")
+        if not is_reported:
+            warn("stopped")
         return interrupted.status
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -21,7 +21,14 @@ from icesoc.util.errors import Interrupted, Stop
 ICESOC = [sys.executable, "-m", "icesoc"]  # the words that start a command of ./icesoc
 
 
+# environment variable with the process that has started this program
+STARTED_BY = "ICESOC_STARTED_BY"
 INTERRUPTS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
+def is_part():
+    """Returns whether another command of ./icesoc has started this program."""
+    return os.environ.get(STARTED_BY) == str(os.getppid())
 
 
 def hear_signals():
@@ -56,7 +63,8 @@ def start(words, env=None, **more):
         raise Stop(
             f"program '{words[0]}' not found: ./icesoc setup --tests installs missing packages",
             127)
-    more["env"] = {**os.environ, **{name: str(value) for name, value in (env or {}).items()}}
+    more["env"] = {**os.environ, STARTED_BY: str(os.getpid()),
+                   **{name: str(value) for name, value in (env or {}).items()}}
     return subprocess.Popen(["setpriv", "--pdeathsig", "TERM", "--", *words], **more)
 
 

@@ -62,13 +62,26 @@ class Failure:
             if (value := getattr(self, key)))
 
 
+def elements(text):
+    """Returns the elements of a list that GoogleTest has printed: "{ 1, 2 }". An element may
+    contain commas: a text, a character, or a pair or list in parentheses or braces."""
+    found, depth = [""], 0
+    for word in re.findall(r'"(?:\\.|[^"\\])*"|\'(?:\\.|[^\'\\])*\'|, |.', text[1:-1].strip()):
+        depth += (word in ("{", "(")) - (word in ("}", ")"))
+        if word == ", " and not depth:
+            found.append("")
+        else:
+            found[-1] += word
+    return found if found != [""] else []
+
+
 def comparison(match):
     """Returns the difference in a GoogleTest message, such as "status is 5, not ICE_OK, which is
     0". For two lists, returns the first different element: "list differs at [2]: expected 5, got
     4". If GoogleTest has cut the lists off before this element, returns the last known index."""
     a, of_a, b, of_b = match.groups()
     if of_a and of_b and of_a[0] == of_b[0] == "{":
-        got, expected = (text.strip("{ }").split(", ") for text in (of_a, of_b))
+        got, expected = elements(of_a), elements(of_b)
         for index, (x, y) in enumerate(zip([*got, "its end"], [*expected, "its end"])):
             if "..." in (x, y):  # GoogleTest prints 32 elements
                 return (f"{a} differs beyond [{index - 1}], where its text was cut off; "

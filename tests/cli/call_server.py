@@ -15,6 +15,8 @@ import Trial  # noqa: E402
 
 class Try(Trial.Try):
     def add(self, left, threshold, current=None):
+        if left == 32766:
+            raise Ice.UnknownException("::Ice::UnknownException: the servant failed")
         return left + threshold
 
     def big(self, small, middle, large, current=None):

@@ -125,7 +125,10 @@ FAILURES = {
     "sleep 2000 --timeout 0.2": (4, "no answer from 127.0.0.1:"),
     "nothing --gateway 127.0.0.1:1": (4, "cannot reach 127.0.0.1:1: Connection refused"),
     "nothing --facet none": (5, "'try' has no facet 'none'"),
-    "refuse": (6, "the call was refused: ValueError: no reason"),
+    "refuse": (6, "try.refuse: the call was refused: ValueError: no reason"),
+    # the reply of a servant of IceC that gives no reason
+    "add 32766 17": (6, "try.add: the vehicle refused the call and gave no reason; check the "
+                        "arguments: add(left: short, threshold: short 0..255 grey levels) -> int"),
     "unreachable": (4, "cannot reach the vehicle: the modem is lost; see the log\n")}
 
 

@@ -182,10 +182,10 @@ class Client:
             # A gateway that cannot reach the vehicle answers "icesoc-gateway: " and the reason.
             gateway, _, reason = reason_of(error).partition("icesoc-gateway: ")
             if gateway or not reason:
-                raise self.refused(error) from None
+                raise self.refused(error, operation) from None
             raise Failure(reason, SILENT, "Ice.UnknownLocalException") from None
         except Ice.UnknownException as error:
-            raise self.refused(error) from None
+            raise self.refused(error, operation) from None
         except Ice.NotRegisteredException as error:
             raise Failure(f"IceGrid has no vehicle '{error.id}'; check that its gateway is running "
                           "and the vehicle is in reach", SILENT,
@@ -199,10 +199,14 @@ class Client:
                           f"{reason_of(error, connecting='')}", SILENT,
                           error.ice_id().lstrip(":").replace("::", ".")) from None
 
-    @staticmethod
-    def refused(error):
+    def refused(self, error, operation):
         """Returns the Failure for an exception that Slice does not declare."""
-        return Failure(f"the call was refused: {reason_of(error)}", REFUSED,
+        text = f"the call was refused: {reason_of(error)}"
+        if reason_of(error).endswith(": the servant failed"):  # IceC's reply without a reason
+            text = "the vehicle refused the call and gave no reason"
+            if operation and any(not p.get("out") for p in operation["parameters"]):
+                text += f"; check the arguments: {self.slices.signature(operation)}"
+        return Failure(text, REFUSED,
                        error.ice_id().lstrip(":").replace("::", "."))
 
     def thrown(self, error):

@@ -283,16 +283,15 @@ sigset_t endings() {
 
 // Ends Ice. Ice first waits until each request that it has read has a reply, but it never replies
 // to a message with an absurd length, because it cannot allocate the memory. If Ice has not ended
-// after `longestEnd`, this function ends the process.
-void destroy(const std::shared_ptr<Ice::Communicator>& ic) {
-    constexpr std::chrono::seconds longestEnd{20};
+// after `longest`, this function ends the process.
+void destroy(const std::shared_ptr<Ice::Communicator>& ic, std::chrono::seconds longest) {
     std::promise<void> ended;
     std::thread thread([&] {
         ic->destroy();
         ended.set_value();
     });
-    if (ended.get_future().wait_for(longestEnd) == std::future_status::timeout) {
-        std::cerr << "gateway: the connection of a client did not end within " << longestEnd.count()
+    if (ended.get_future().wait_for(longest) == std::future_status::timeout) {
+        std::cerr << "gateway: the connection of a client did not end within " << longest.count()
                   << " s" << std::endl;
         _exit(0);
     }
@@ -339,7 +338,8 @@ void serve(const std::shared_ptr<Ice::Communicator>& ic, const Options& o) {
     for (Vehicle& vehicle : vehicles)
         vehicle.forwarder.stop();
     pages.stop();
-    destroy(ic); // here, while the objects that Ice's callbacks use still exist
+    destroy(ic, std::chrono::seconds(
+                    o.end)); // here, while the objects that Ice's callbacks use still exist
 }
 
 } // namespace

@@ -121,6 +121,10 @@ void addOptions(CLI::App& app, Options& o) {
            "limit of each of the two waits of a call, s (default 30): until the radio is free, and "
            "then until the vehicle has received the call")
         ->check(CLI::Range(1, 3600));
+    app.add_option("--end", o.end,
+                   "limit for the end after a signal, s (default 20), if the connection of a "
+                   "client does not end")
+        ->check(CLI::Range(1, 3600));
     app.add_option(
            "-t,--trace", o.trace,
            "messages to print: 0 errors (default); 1 also messages about link and connections; "

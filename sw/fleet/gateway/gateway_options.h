@@ -20,7 +20,7 @@ struct Options {
     std::vector<std::string> origins;
     std::string listen = "127.0.0.1:10000";
     int baud = 115200, target = 1, source = 0, rfChannel = 0x0C, pan = 0x3332, guardMs = 1000;
-    int trace = 0, wait = 30;
+    int trace = 0, wait = 30, end = 20;
     bool setUp = true, isApi = true, isWire = false;
 };
 

@@ -117,9 +117,10 @@ private:
 
 class HostileClients : public Gateway {
 protected:
-    void startWithoutVehicle(const std::string& wait) {
+    void startWithoutVehicle(const std::string& wait, std::vector<std::string> more = {}) {
         world_.rig.with([&] { world_.rig.uav.modem->power(false, world_.rig.ns()); });
-        start({"--wait", wait});
+        more.insert(more.end(), {"--wait", wait});
+        start(more);
     }
     // Checks that a text for users contains no name of a source file or of an exception.
     static void expectWords(const std::string& text) {
@@ -152,13 +153,14 @@ TEST_F(HostileClients, AClientThatLeavesItsCallLetsTheGatewayEnd) {
 
 // Ice has no memory for the facets that this message claims to contain, and never replies to it.
 TEST_F(HostileClients, AMessageWithoutAReplyLetsTheGatewayEnd) {
-    startWithoutVehicle("2");
+    startWithoutVehicle("2", {"--end", "1"});
     Parts senseless;
     senseless.facets = 0x7FFFFFFF;
     RawClient client(port_);
     client.write(request(senseless));
     expectRefusal([&] { echo_->ice_ping(); }, "waited 2 s for the radio");
     EXPECT_EQ(stopOrKill(), 0) << "the gateway did not end";
+    EXPECT_TRUE(hasPrinted("the connection of a client did not end within 1 s"));
 }
 
 // A subject may queue 256 KiB of requests. Names and contexts also count, and each request counts

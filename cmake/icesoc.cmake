@@ -235,8 +235,7 @@ endmacro()
 # COVERAGE, a FAST model has coverage counters only in soc.v and platform.v, because the other
 # blocks are counted by their own tests. With counters in all modules, a few simulated seconds of
 # flight take minutes. EDITED is for a model that is compiled after each edit: the header of
-# Verilator's run-time library, which takes half of the compile time of a small model, is
-# precompiled.
+# Verilator's run-time library, which takes half of the compile time of a model, is precompiled.
 #
 # Clang compiles the model. Compared with g++, compiling takes 0.6 of the time (measured with fir),
 # and the compiled model is 1.18 times as fast (measured with the chip).
@@ -275,37 +274,48 @@ function(icesoc_verilate name)
   if(NOT COVERAGE AND NOT SANITIZE)
     set(compiler ${CLANGXX})
   endif()
-  set(fast -O3 ${TUNE})
+  set(fast ${MODEL_fast})
+  set(slow ${MODEL_slow})
   set(environment)
+  set(headers)
   icesoc_verilator_runtime()
-  if(A_EDITED AND TARGET verilated_header)
+  if(A_EDITED AND TARGET verilated_headers)
     set(environment CCACHE_PCH_EXTSUM=1 CCACHE_SLOPPINESS=pch_defines,time_macros)
-    list(APPEND fast -include-pch ${VERILATED_HEADER} -Xclang -fno-pch-timestamp)
-    list(APPEND deps ${VERILATED_HEADER} verilated_header)
+    foreach(kind fast slow)
+      set(header ${CMAKE_BINARY_DIR}/verilated_${kind}.pch)
+      list(APPEND ${kind} -include-pch ${header} -Xclang -fno-pch-timestamp)
+      list(APPEND headers ${header})
+    endforeach()
+    list(APPEND headers verilated_headers)
   endif()
   list(JOIN fast " " fast)
+  list(JOIN slow " " slow)
   # The simulator is installed, so its messages must not contain the path of this tree.
   set(without_tree)
   if(A_FAST)
     set(without_tree COMMAND find ${dir} -name "*.cpp" -exec sed -i
       "s|MT(\"${CMAKE_SOURCE_DIR}/|MT(\"|" {} +)
   endif()
-  # Verilator's makefile appends -Os; OPT_FAST overrides it, which doubles the measured speed. Code
-  # that runs only once (OPT_SLOW) is not optimised; -O1 took half of an edit's compile time, and
-  # minutes with coverage counters. The headers are declared as by-products, so that ninja compiles
-  # the files that include them in the same run, not in the next one. After each change of the RTL,
-  # Verilator writes all files again. Files with the same content keep their time, so that what
+  # The headers are declared as by-products, so that ninja compiles the files that include them in
+  # the same run, not in the next one, and at the same time as the model. After each change of the
+  # RTL, Verilator writes all files again. Files with the same content keep their time, so that what
   # includes them is not compiled again.
-  add_custom_command(OUTPUT ${lib} BYPRODUCTS ${dir}/${class}.h ${dir}/${class}___024root.h
+  set(written ${dir}/${class}__ver.d)
+  add_custom_command(OUTPUT ${written} BYPRODUCTS ${dir}/${class}.h ${dir}/${class}___024root.h
     COMMAND ${unchanged} save ${dir}
     COMMAND ${VERILATOR} ${flags} ${A_PARAMS} ${sources}
     ${without_tree}
     COMMAND ${unchanged} restore ${dir}
+    DEPENDS ${deps} ${unchanged} VERBATIM COMMENT "Verilating ${A_TOP} as ${name}")
+  # Verilator's makefile appends -Os; OPT_FAST overrides it, which doubles the measured speed. Code
+  # that runs only once (OPT_SLOW) is not optimised; -O1 took half of an edit's compile time, and
+  # minutes with coverage counters.
+  add_custom_command(OUTPUT ${lib}
     COMMAND ${CMAKE_COMMAND} -E env --unset=MAKEFLAGS CCACHE_DIR=$ENV{CCACHE_DIR}
             ${environment} make -s -j2 -C ${dir} -f ${class}.mk ${class}__ALL.a
             "CXX=${CCACHE} ${compiler}" "OPT_FAST=${fast}" OPT_GLOBAL=-O2
-            OPT_SLOW=-O0 "USER_CPPFLAGS=-fPIC" ARCHIVE=1
-    DEPENDS ${deps} ${unchanged} VERBATIM COMMENT "Verilating ${A_TOP} as ${name}")
+            "OPT_SLOW=${slow}" "USER_CPPFLAGS=-fPIC" ARCHIVE=1
+    DEPENDS ${written} ${headers} VERBATIM COMMENT "Compiling the model ${name}")
   set(defines ${A_FLAGS})
   list(FILTER defines INCLUDE REGEX "^-D")
   list(TRANSFORM defines REPLACE "^-D" "+define+")
@@ -313,8 +323,9 @@ function(icesoc_verilate name)
   add_custom_command(OUTPUT ${files}
     COMMAND ${CMAKE_COMMAND} -DREAD=${dir}/${class}__ver.d -DTO=${files} -DTOP=${A_TOP}
             "-DDEFINES=${defines}" -P ${CMAKE_SOURCE_DIR}/cmake/files.cmake
-    DEPENDS ${lib} ${CMAKE_SOURCE_DIR}/cmake/files.cmake VERBATIM COMMENT "Files of ${name}")
-  add_custom_target(verilated_${name} DEPENDS ${lib} ${files})
+    DEPENDS ${written} ${CMAKE_SOURCE_DIR}/cmake/files.cmake VERBATIM COMMENT "Files of ${name}")
+  add_custom_target(verilated_${name} DEPENDS ${written} ${files})
+  add_custom_target(compiled_${name} DEPENDS ${lib})
   add_library(${name} INTERFACE)
   add_dependencies(${name} verilated_${name})
   target_include_directories(${name} SYSTEM INTERFACE ${dir})
@@ -355,8 +366,10 @@ function(icesoc_netlist name)
     CLASS ${A_CLASS} FLAGS ${A_FLAGS} -Wno-lint -Wno-style -Wno-UNOPTFLAT)
 endfunction()
 
-# Verilator's run-time library, compiled once for all models, and its precompiled header.
-set(VERILATED_HEADER ${CMAKE_BINARY_DIR}/verilated.pch)
+# Verilator's run-time library, compiled once for all models, and its precompiled headers:
+# verilated_fast.pch for optimised code, verilated_slow.pch for code that runs only once.
+set(MODEL_fast -O3 ${TUNE})
+set(MODEL_slow -O0)
 function(icesoc_verilator_runtime)
   if(TARGET verilator_runtime)
     return()
@@ -385,14 +398,19 @@ function(icesoc_verilator_runtime)
   if(NOT TRACE AND NOT COVERAGE AND NOT SANITIZE)
     set(makefile ${CMAKE_SOURCE_DIR}/cmake/verilated_header.mk)
     get_filename_component(compiler ${CLANGXX} REALPATH)
-    add_custom_command(OUTPUT ${VERILATED_HEADER}
-      COMMAND ${CMAKE_COMMAND} -E env --unset=MAKEFLAGS
-              make -s -B -f ${makefile} VERILATOR_ROOT=${root} TO=${VERILATED_HEADER}
-              CXX=${CLANGXX} "OPT_FAST=-O3 ${TUNE} -Xclang -fno-pch-timestamp"
-              USER_CPPFLAGS=-fPIC
-      DEPENDS ${makefile} ${root}/include/verilated.h ${compiler}
-      VERBATIM COMMENT "Precompiled header of Verilator's run-time library")
-    add_custom_target(verilated_header DEPENDS ${VERILATED_HEADER})
+    foreach(kind fast slow)
+      set(header ${CMAKE_BINARY_DIR}/verilated_${kind}.pch)
+      list(JOIN MODEL_${kind} " " options)
+      add_custom_command(OUTPUT ${header}
+        COMMAND ${CMAKE_COMMAND} -E env --unset=MAKEFLAGS
+                make -s -B -f ${makefile} VERILATOR_ROOT=${root} TO=${header}
+                CXX=${CLANGXX} "OPT_FAST=${options} -Xclang -fno-pch-timestamp"
+                USER_CPPFLAGS=-fPIC
+        DEPENDS ${makefile} ${root}/include/verilated.h ${compiler}
+        VERBATIM COMMENT "Precompiled header of Verilator's run-time library, ${kind} code")
+      list(APPEND headers ${header})
+    endforeach()
+    add_custom_target(verilated_headers DEPENDS ${headers})
   endif()
 endfunction()
 include(vhdl)

@@ -184,7 +184,7 @@ def by_tests(rows, copy, pool):
     results.write(copy / "build/drawn.xml", rows)
     needed = sorted({name for row in rows for name in programs(row)})
     environment = {**run.environment(copy), "DRAWN": str(copy / "build/drawn.xml")}
-    for old in copy.glob("build/main/**/V*__ALL.a"):
+    for old in copy.glob("build/main/**/V*__ver.d"):  # so that each model is written with mutants
         old.unlink()
     with open(copy / "build/log", "w") as log:
         if subprocess.run(["ninja", "-C", "build/main", *needed], cwd=copy, env=environment,

@@ -207,6 +207,7 @@ class Cases(Script):
                  "wishbone", "--files", mine / "others/wb_port.v", "--repository", mine, *built)
         self.has(f"^Next: make -C {mine} test")
         self.has("^third$", file=mine / "cores.list")
+        self.lacks("ip/cores.list")  # that hint is for a core in this tree
         self.has('"@FOLDER@/../others/wb_port.v"', file=mine / "third/core.toml")
         self.lacks(str(mine), file=mine / "third/core.toml")
         # The workflow clones the origin of this tree at this commit; it removes a clone that lacks

@@ -196,6 +196,24 @@ TEST_P(TasksThatServe, LetOthersCallAtOnce) {
 }
 INSTANTIATE_TEST_SUITE_P(Tasks, TasksThatServe, ::testing::Values(0, 1, 2));
 
+// In POSIX, the hook for the end of a task is the destructor of a thread key.
+TEST_F(Tasks, AThreadKeyReleasesTheSlotOfAThreadThatEnds) {
+    pthread_key_t ending;
+    ASSERT_EQ(pthread_key_create(&ending,
+                                 [](void* ic) {
+                                     Ice_Communicator_endTask(static_cast<Ice_Communicator*>(ic),
+                                                              Threads::os()->task(nullptr));
+                                 }),
+              0);
+    for (int i = 0; i < ICE_CALLS + 2; ++i)
+        std::thread([&] {
+            pthread_setspecific(ending, &client_->ic);
+            Ice_ObjectPrx prx = proxy();
+            EXPECT_EQ(ask(prx, "op", i), 2 * i);
+        }).join();
+    pthread_key_delete(ending);
+}
+
 // Tasks make calls, one task after the other. IceC stores the result of a call until its task ends.
 TEST_F(Tasks, OneThatHasEndedLeavesItsPlaceToOthers) {
     for (int i = 0; i < ICE_CALLS + 2; ++i)

@@ -9,6 +9,7 @@ from icesoc.cli.command import command
 from icesoc.cli.commands.core import NAME, REPOSITORY, put_into_repository
 from icesoc.cli.flight import FIELDS
 from icesoc.cli.options import BUILD, COUNT, FILES, JOBS, SEED, SWITCH, TEXT, WORDS, Option, one_of
+from icesoc.util.console import say
 from icesoc.util.errors import Stop
 from icesoc.util.lock import lock
 from icesoc.util.process import run, tool
@@ -59,8 +60,12 @@ def foreign_core(values):
         build.ninja("ghdl")
     status = run([*tool("cores.new_foreign"), *foreign_words(values),
                   f"GHDL={build / 'ghdl/ghdl'}"], check=False)
-    return status or (put_into_repository(values.repository, values.name) if values.repository
-                      else 0)
+    if status:
+        return status
+    if values.repository:
+        return put_into_repository(values.repository, values.name)
+    return say(f"Next: ./icesoc core test {values.name}; a line '{values.name}' in ip/cores.list "
+               f"puts it into the chip; make run CORES={values.name} calls it by radio")
 
 
 def into_slot(source, slot, words, folder, ghdl):

@@ -5,6 +5,7 @@ editors.
 
 Usage: tree_test.py CASE WORK-FOLDER BUILD-FOLDER
 """
+import json
 import os
 import re
 import shutil
@@ -123,7 +124,12 @@ class Cases(Script):
             top = files.read_text().partition("// top: ")[2].split()[0]
             self.ask("verilator", "--lint-only", "--no-timing", "-Wno-lint", "-Wno-style",
                      "-Wno-fatal", "-f", files, "--top-module", top)
-        self.has("sw/icec", file=BUILD / "compile_commands.json")
+        commands = BUILD / "compile_commands.json"
+        self.has("sw/icec", file=commands)
+        # files that are compiled together are listed one by one, so that editors know their options
+        listed = {entry["file"] for entry in json.loads(commands.read_text())}
+        self.assertEqual([str(file) for file in (TREE / "slice").glob("**/*.cpp")
+                          if str(file) not in listed], [])
 
 
 main(Cases)

@@ -153,6 +153,8 @@ macro(icesoc_core_test)
       COMMAND awk -v top=${top}__DOT__ -v class=V${name}_slot___024root -f ${STATE_MEMBERS}
         ${state}___024root.h > ${state}_state.h
       DEPENDS ${STATE_MEMBERS} ${state}___024root.h VERBATIM)
+    # As a part of the test program only, this command would wait for all libraries of the program.
+    add_custom_target(${name}_slot_state DEPENDS ${state}_state.h)
     set(labels rtl)
     if(A_VHDL)
       list(APPEND labels vhdl)

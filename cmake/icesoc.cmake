@@ -41,7 +41,7 @@ include(GoogleTest)
 set(PYTHON ${CMAKE_SOURCE_DIR}/tools/python)
 set(TOOLS ${CMAKE_SOURCE_DIR}/tools/icesoc)
 set(FETCH ${PYTHON} -m icesoc.util.fetch)
-set(FETCH_FILES ${TOOLS}/__init__.py ${TOOLS}/util/fetch.py)
+set(FETCH_FILES ${TOOLS}/__init__.py ${TOOLS}/util/fetch.py ${TOOLS}/util/download.py)
 
 # Code is compiled for the CPU of this machine or, with PORTABLE (for packages), for any CPU of this
 # architecture.

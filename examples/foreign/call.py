@@ -1,21 +1,22 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Calls third-party cores and two cores of this project by radio. Usage:
-call.py DEVICE GUARD STATUS PLUGIN "NAME ..." cores.json Registers.ice File.ice ...
+call.py DEVICE GUARD STATUS PLUGIN "NAME ..." Registers.ice File.ice ...
 
-It makes the "calls" of each core in cores.json. It also encrypts blocks of FIPS 197 with the AES
-cores, sends packets through the COBS encoder's AXI-Streams, computes the CRC-32 of buffers in
-DDR3, and sets a servo's pulses, which orders.sh measures at the pins. It uses stock ZeroC Ice."""
+It makes the calls of each core in tools/icesoc/cores/examples.py. It also encrypts blocks of FIPS
+197 with the AES cores, sends packets through the COBS encoder's AXI-Streams, computes the CRC-32 of
+buffers in DDR3, and sets a servo's pulses, which orders.sh measures at the pins. It uses stock
+ZeroC Ice."""
 import ast
-import json
 import re
 import sys
 import zlib
-from pathlib import Path
 
 import Ice
 
-device, guard, status, plugin, names, cores, *files = sys.argv[1:]
+from icesoc.cores import examples
+
+device, guard, status, plugin, names, *files = sys.argv[1:]
 names = names.split()
 for file in files:
     Ice.loadSlice("", [file])
@@ -107,14 +108,13 @@ with Ice.initialize(data) as ic:
     servo = proxy(Demo.ServoPrx, "servo") if "servo" in names else None
     if servo:
         servo.setPulse(2, 1500)
-    calls = {n: c.get("calls", "") for its in json.loads(Path(cores).read_text()).values()
-             for n, c in its["cores"].items()}
     for name in names:
+        calls = examples.cores()[name].calls
         kind = getattr(Cores, camel(name) + "Prx", Hw.RegistersPrx)
-        if name == "servo" or not calls[name] and kind is not Hw.RegistersPrx:
+        if name == "servo" or not calls and kind is not Hw.RegistersPrx:
             continue
         core = proxy(kind, name)
-        for word in calls[name].split():
+        for word in calls.split():
             call(core, word)
         print(f"{name}: " + (f"{len(core.list())} registers and fields, "
                              if kind is Hw.RegistersPrx else "") + "called by radio: as expected")

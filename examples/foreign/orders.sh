@@ -46,7 +46,7 @@ for order in ${ORDERS:-listed}; do
     "$build/testbench/sim/icesoc-sim" --size 96x64 --image "$IMAGE" --seed "$seed" --guard 20 \
         $pins --out "$build/flight" -- /usr/bin/python3 "$here/call.py" \
         '{device}' '{guard}' '{status}' "$build/ground/xbeeat:createXBeeAT" "$names" \
-        "$here/cores.json" sw/hw/registers/Registers.ice $slices
+        sw/hw/registers/Registers.ice $slices
     [ "$pins" ] || continue
     # Measures the servo's signal at the pins: frames of 20 ms, with pulses of 1.5 ms on pin 2.
     awk '$2 != "servo.pwm_o" { next }

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 from icesoc import TREE
 from icesoc.cli import command, everything, flight  # noqa: F401
-from icesoc.cli.commands import core, regression
+from icesoc.cli.commands import core_folder, regression
 from icesoc.cli.options import FLIGHT, SWITCH
 from icesoc.regress import regress
 from icesoc.util.lock import lock
@@ -91,7 +91,7 @@ class Values(Work):
         os.chdir(TREE)
         (self.work / "cores.list").write_text("\ufefffir")
         with contextlib.redirect_stdout(io.StringIO()):
-            core.put_into_repository(self.work, "low_pass")
+            core_folder.put_into_repository(self.work, "low_pass")
         self.assertEqual((self.work / "cores.list").read_text(), "fir\nlow_pass\n")
 
     def test_both_doors_give_the_same_values(self):

@@ -45,15 +45,15 @@ def limits(tree=TREE):
             for text, name, value in found]
 
 
-def targets(tree=TREE):
+def targets():
     """Returns the components that do not need a POSIX system."""
-    return [its for its in components.read(tree).values() if not its.host]
+    return [its for its in components.COMPONENTS.values() if not its.host]
 
 
 def kconfig(tree=TREE):
     """Returns Zephyr's Kconfig file: an option for each component and each limit."""
     lines = ["# SPDX-License-Identifier: MIT", "", "menu \"IceC\"", ""]
-    for its in targets(tree):
+    for its in targets():
         lines += [f"config {its.name.upper()}", f"\tbool \"{its.title}\""]
         lines += [f"\tselect {other.upper()}" for other in its.needs] + [""]
     lines += ["if ICEC", ""]
@@ -67,12 +67,12 @@ def kconfig(tree=TREE):
 
 def zephyr_cmake(tree=TREE):
     """Returns the CMakeLists.txt of the Zephyr module."""
-    switches = [its.name.upper() for its in targets(tree)]
+    switches = [its.name.upper() for its in targets()]
     lines = ["# SPDX-License-Identifier: MIT", "",
              f"if({' OR '.join('CONFIG_' + name for name in switches)})",
              "  zephyr_library_named(icec)",
              "  zephyr_include_directories(${CMAKE_CURRENT_LIST_DIR}/../src)"]
-    for its in targets(tree):
+    for its in targets():
         lines += [f"  zephyr_library_sources_ifdef(CONFIG_{its.name.upper()}",
                   f"    ${{CMAKE_CURRENT_LIST_DIR}}/../src/{its.name}.c)"]
     lines += ["endif()", "", "# The program has to see the same limits as the library.",
@@ -89,7 +89,7 @@ def sources(version, tree=TREE):
     files = {f"src/{name}": text for name, text in single_file.files(None, tree, version).items()}
     rows = "\n".join(f"| `src/{its.name}.c`, `src/{its.name}.h` | {its.title}"
                      + (f"; needs {', '.join(its.needs)}" if its.needs else "") + " |"
-                     for its in components.read(tree).values())
+                     for its in components.COMPONENTS.values())
     files["README.md"] = README.format(version=version, description=DESCRIPTION, rows=rows)
     files["LICENSE"] = (tree / "LICENSE").read_text(encoding="utf-8")
     return files
@@ -97,11 +97,11 @@ def sources(version, tree=TREE):
 
 def library(version, tree=TREE):
     """Returns the files of the folder for PlatformIO and Zephyr, name to text."""
-    hosted = [f"-<{its.name}.c>" for its in components.read(tree).values() if its.host]
+    hosted = [f"-<{its.name}.c>" for its in components.COMPONENTS.values() if its.host]
     manifest = {
         "name": PACK, "version": version, "description": DESCRIPTION, "keywords": KEYWORDS,
         "license": "MIT", "frameworks": "*", "platforms": "*",
-        "headers": [f"{its.name}.h" for its in components.read(tree).values()],
+        "headers": [f"{its.name}.h" for its in components.COMPONENTS.values()],
         "build": {"srcDir": "src", "includeDir": "src", "srcFilter": ["+<*.c>", *hosted]}}
     return sources(version, tree) | {
         "library.json": json.dumps(manifest, indent=2) + "\n",
@@ -130,7 +130,7 @@ def pdsc(version, date, changes, tree=TREE):
     words = add(package, "keywords")
     for word in KEYWORDS:
         add(words, "keyword", word)
-    known = {its.name: its for its in targets(tree)}
+    known = {its.name: its for its in targets()}
     conditions = add(package, "conditions")
     for its in known.values():
         if its.needs:
@@ -155,7 +155,7 @@ def pdsc(version, date, changes, tree=TREE):
 
 def cmsis(version, date, changes, tree=TREE):
     """Returns the files of the CMSIS-Pack, name to text."""
-    hosted = tuple(f"src/{its.name}." for its in components.read(tree).values() if its.host)
+    hosted = tuple(f"src/{its.name}." for its in components.COMPONENTS.values() if its.host)
     files = {name: text for name, text in sources(version, tree).items()
              if not name.startswith(hosted)}
     return files | {f"{VENDOR}.{PACK}.pdsc": pdsc(version, date, changes, tree)}

@@ -236,7 +236,7 @@ class Joiner:
 
 def files(names=None, tree=TREE, number=None):
     """Returns the files of these components, or of all: name to text. `number` is their version."""
-    known, made = components.read(tree), {}
+    known, made = components.COMPONENTS, {}
     for name in names or known:
         if name not in known:
             raise Stop(f"components: '{name}' does not exist; {components.LIST} lists "

@@ -4,35 +4,23 @@ changing the system.
 
     fetch.py THING FOLDER    puts THING into FOLDER; `fetch.py --help` lists the things
 
-A download is rejected if its checksum differs from the checksum that is listed here. Downloads are
-kept in ${XDG_CACHE_HOME:-~/.cache}/icesoc, so that a second build needs no network. ICESOC_NPM is a
-mirror of registry.npmjs.org, ICESOC_RAW a mirror of raw.githubusercontent.com. Exit status 77:
-the network is missing, and only optional parts need this thing.
+A download is rejected if its checksum differs from the checksum that is listed here; a second build
+needs no network (download.py). Exit status 77: the network is missing, and only optional parts need
+this thing.
 """
 
 import argparse
-import fcntl
-import hashlib
-import json
 import os
 import pathlib
 import platform
 import re
 import shlex
 import shutil
-import subprocess
 import sys
 import tarfile
-import tempfile
 
-from icesoc import TREE
-from icesoc.util.errors import reason_of
-
-CACHE = pathlib.Path(os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache") / "icesoc"
-LIST = TREE / "examples/foreign/cores.json"
-GITHUB = os.environ.get("ICESOC_RAW") or "https://raw.githubusercontent.com"
-NPM = os.environ.get("ICESOC_NPM") or "https://registry.npmjs.org"
-KEYRING = "/usr/share/keyrings/debian-archive-keyring.gpg"
+from icesoc.util.download import (GITHUB, NPM, Unreachable, kept, locked, output, packages,
+                                  released, unpack)
 
 # (path in Debian's pool, or below GITHUB or NPM; SHA-256)
 LZ4 = ("l/lz4/lz4_1.9.4.orig.tar.gz",
@@ -86,101 +74,9 @@ GHDL = ["ghdl-mcode", "ghdl-common", "libgnat-14", "libc6", "libgcc-s1", "libstd
         "gcc-14-base"]
 
 
-class Unreachable(Exception):
-    """The file cannot be downloaded: no network, or the mirror does not have it."""
-
-
 def fail(text, status=1):
     print(f"fetch: {text}", file=sys.stderr)
     sys.exit(status)
-
-
-def output(*words):
-    """Returns the output of a program; "" if the program does not exist."""
-    if not shutil.which(words[0]):
-        return ""
-    return subprocess.run(words, text=True, capture_output=True).stdout
-
-
-def mirror():
-    """Returns the Debian mirror that this machine uses."""
-    found = output("apt-get", "indextargets", "--format", "$(REPO_URI)", "Created-By: Packages")
-    debian = [uri.rstrip("/") for uri in found.split() if uri.rstrip("/").endswith("/debian")]
-    return debian[0] if debian else "http://deb.debian.org/debian"
-
-
-def kept(url, checksum, part=None):
-    """Returns the path of a download in the cache, after downloading it if necessary. `part` is a
-    regular expression: if it is given, only the text that its group matches is checked and
-    stored."""
-    file = CACHE / "foreign" / checksum
-    if not file.exists():
-        # imported only when needed, because the import takes a fifth of the time in which a command
-        # starts
-        import urllib.request
-        print(f"Fetching {url.rsplit('/', 1)[1]} ...", flush=True)
-        try:
-            with urllib.request.urlopen(url, timeout=60) as answer:
-                data = answer.read()
-        except OSError as error:
-            reason = getattr(error, "reason", error)
-            raise Unreachable(f"{url}: " + (str(error) if hasattr(error, "code") else
-                                            reason_of(reason)))
-        if part:
-            found = re.search(part.encode(), data, re.S)
-            data = found[1] if found else b""
-        if hashlib.sha256(data).hexdigest() != checksum:
-            raise Unreachable(f"{url} has another SHA-256 than the file that was tested")
-        file.parent.mkdir(parents=True, exist_ok=True)
-        partial = file.with_suffix(".part")
-        partial.write_bytes(data)
-        partial.rename(file)
-    return file
-
-
-def released(path, checksum):
-    """Returns the path of a released source, downloaded from Debian's archive."""
-    return kept(f"{mirror()}/pool/main/{path}", checksum)
-
-
-def unpack(archive, folder, target, suffix=""):
-    """Extracts from an archive the files that are below a folder and have names that end with
-    `suffix`."""
-    with tarfile.open(archive) as tar:
-        for member in tar:
-            if member.isfile() and member.name.startswith(folder) and member.name.endswith(suffix):
-                file = target / member.name[len(folder):]
-                file.parent.mkdir(parents=True, exist_ok=True)
-                file.write_bytes(tar.extractfile(member).read())
-
-
-def packages(name, wanted, release="trixie"):
-    """Returns the folder with these packages of a Debian release, unpacked in the cache."""
-    folder = CACHE / name
-    if not (folder / "done").exists():
-        print(f"Fetching {name} from Debian's {release}, stored apart from the installed packages "
-              "...",
-              flush=True)
-        with tempfile.TemporaryDirectory(dir=CACHE) as work:
-            os.makedirs(f"{work}/lists/partial")
-            os.makedirs(f"{work}/archives/partial")
-            pathlib.Path(work, "private.sources").write_text(
-                f"Types: deb\nURIs: {mirror()}\nSuites: {release}\nComponents: main\n"
-                f"Signed-By: {KEYRING}\n")
-            own = [f"Dir::Etc::sourcelist={work}/private.sources",
-                   "Dir::Etc::sourceparts=/dev/null", f"Dir::State::lists={work}/lists",
-                   f"Dir::Cache::archives={work}/archives",
-                   "Dir::Cache::pkgcache=", "Dir::Cache::srcpkgcache=", "APT::Sandbox::User=root",
-                   "APT::Get::List-Cleanup=0"]
-            options = [word for option in own for word in ("-o", option)]
-            for words in (["update"], ["download", *wanted]):
-                if subprocess.call(["apt-get", "-qq", *options, *words], cwd=work):
-                    raise Unreachable(f"apt-get {words[0]}: {name} from {mirror()}")
-            (folder / "root").mkdir(parents=True, exist_ok=True)
-            for package in pathlib.Path(work).glob("*.deb"):
-                subprocess.check_call(["dpkg", "-x", package, folder / "root"])
-        (folder / "done").touch()
-    return folder / "root"
 
 
 def program(target, text):
@@ -245,39 +141,6 @@ def lz4(target):
 def sodium(target):
     """the sources of libsodium that check a signature, for the chip"""
     unpack(released(*SODIUM), "libsodium-1.0.18/src/libsodium/", target)
-
-
-def source_of_cores(its, target):
-    """Downloads one source of examples/foreign/cores.json: an archive in Debian, or single
-    files."""
-    if "debian" in its:
-        return unpack(released(its["debian"], its["sha256"]), its["folder"], target)
-    target.mkdir(parents=True)
-    for path, checksum in its["files"].items():
-        shutil.copyfile(kept(f"{GITHUB}/{its['github']}/{path}", checksum),
-                        target / os.path.basename(path))
-
-
-def foreign(target):
-    """the third-party cores that examples/foreign/cores.json names; those that cannot be downloaded
-    are left out"""
-    reached = 0
-    for name, its in json.loads(LIST.read_text()).items():
-        folder, sums = target / name, json.dumps({n: its[n] for n in its if n != "cores"})
-        note = target / f"{name}.done"  # already present
-        if its.keys() == {"cores"} or (note.exists() and note.read_text() == sums):
-            reached += its.keys() != {"cores"}
-            continue
-        shutil.rmtree(folder, ignore_errors=True)
-        note.unlink(missing_ok=True)
-        try:
-            source_of_cores(its, folder)
-            note.write_text(sums)
-            reached += 1
-        except Unreachable as error:
-            print(f"fetch: left out {', '.join(its['cores'])}: {error}", file=sys.stderr)
-    if not reached:
-        raise Unreachable("no source of a third-party core")
 
 
 def svd(target):
@@ -373,14 +236,13 @@ def icejs(target):
 
 # Things that only optional parts need -> text that names the part
 OPTIONAL = {zeroc: "Only these suites need it", svd: "Only the check of icesoc.svd needs it",
-            foreign: "Only the examples of foreign cores need it",
             pack: "Only the check of the CMSIS-Pack needs it",
             platformio: "Only the check of PlatformIO's manifest needs it",
             zephyr: "Only the check of Zephyr's module needs it",
             spdx: "Only the check of the bill of materials needs it",
             freertos: "Only the porting example for this kernel needs it"}
 THINGS = {thing.__name__: thing
-          for thing in (ice, ghdl, icegrid, icejs, lz4, sodium, page, foreign, svd, zeroc, pack,
+          for thing in (ice, ghdl, icegrid, icejs, lz4, sodium, page, svd, zeroc, pack,
                         platformio, zephyr, spdx, freertos)}
 
 
@@ -392,9 +254,7 @@ def main():
     parser.add_argument("folder", type=pathlib.Path, metavar="FOLDER")
     options = parser.parse_args()
     thing = THINGS[options.thing]
-    CACHE.mkdir(parents=True, exist_ok=True)
-    with open(CACHE / "lock", "w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)  # two builds may need the same download
+    with locked():
         try:
             thing(options.folder.absolute())
         except Unreachable as error:

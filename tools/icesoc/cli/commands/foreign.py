@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: MIT
 """foreign: puts third-party cores into slots (docs/guides/foreign-core.md)."""
-import json
 import shutil
 from pathlib import Path
 
 from icesoc.cli.build_folder import BuildFolder, fetch
 from icesoc.cli.command import command
-from icesoc.cli.commands.core import NAME, REPOSITORY, put_into_repository
+from icesoc.cli.commands.core_folder import NAME, REPOSITORY, put_into_repository
 from icesoc.cli.flight import FIELDS
 from icesoc.cli.options import BUILD, COUNT, FILES, JOBS, SEED, SWITCH, TEXT, WORDS, Option, one_of
-from icesoc.util.console import say
-from icesoc.util.errors import Stop
+from icesoc.cores import examples
+from icesoc.util.console import say, warn
+from icesoc.util.errors import SKIPPED, Stop
 from icesoc.util.lock import lock
 from icesoc.util.process import run, tool
 
@@ -79,42 +79,42 @@ def into_slot(source, slot, words, folder, ghdl):
     return folder / slot
 
 
-def put_and_fly(values, listed, known):
+def put_and_fly(values):
     """Puts the chosen cores into slots, then tests and flies them. Returns the exit status."""
     folder = Path("build/foreign-cores").absolute()
-    missing = fetch("foreign", folder, check=False)
-    if not missing:
+    missing = 0
+    if examples.fetch(folder):
         fetch("ghdl", folder / "ghdl5")
+    else:
+        warn("cannot get any third-party core: is there a network?")
+        missing = SKIPPED
     shutil.rmtree(folder / "slots", ignore_errors=True)
-    chips = {}  # number of a chip -> {name: (core, folder of its slot)}
-    for source, its in listed.items():
-        for name, core in its["cores"].items():
-            if name not in (values.cores or known) or not (
-                    (folder / f"{source}.done").exists() or its.keys() == {"cores"}):
-                continue
-            chips.setdefault(core.get("chip", 1), {})[name] = core, core.get("folder") or into_slot(
-                folder / source, name, core["new"], folder / "slots", folder / "ghdl5/ghdl")
-    if set(values.cores) - {name for cores in chips.values() for name in cores}:
-        missing = missing or 77
+    chips = {}  # number of a chip -> {core: folder of its slot}
+    for source in examples.SOURCES:
+        for core in source.cores:
+            if source.is_in(folder) and core.name in (values.cores or examples.cores()):
+                chips.setdefault(core.chip, {})[core] = core.folder or into_slot(
+                    folder / source.name, core.name, core.new, folder / "slots",
+                    folder / "ghdl5/ghdl")
+    if set(values.cores) - {core.name for cores in chips.values() for core in cores}:
+        missing = SKIPPED
     status = 0
     for number, cores in sorted(chips.items()):
         names = folder / f"chip{number}.list"
-        names.write_text("".join(f"{name} {core.get('list', '')}\n"
-                                 for name, (core, _) in cores.items()))
-        status = run(["examples/foreign/orders.sh", names, *(where for _, where in cores.values())],
-                     check=False, env={
-                         "IMAGE": values.image, "JOBS": values.jobs, "SEED": values.seed,
-                         "ORDERS": "backwards shuffled listed" if len(cores) > 1
-                                   and not values.cores else "listed",
-                         "CHIP": "1" if values.chip and all(
-                             core.get("netlist", True) for core, _ in cores.values()) else ""
-                     }) or status
+        names.write_text("".join(f"{core.name} {core.list}\n" for core in cores))
+        status = run(["examples/foreign/orders.sh", names, *cores.values()], check=False, env={
+            "IMAGE": values.image, "JOBS": values.jobs, "SEED": values.seed,
+            "ORDERS": "backwards shuffled listed" if len(cores) > 1 and not values.cores
+                      else "listed",
+            "CHIP": "1" if values.chip and all(core.netlist for core in cores) else ""
+        }) or status
     return status or missing
 
 
 @command("core examples", [
-    Option("cores", WORDS, "names of the cores to use, from examples/foreign/cores.json (default: "
-                           "all); the chip is then built only once, with the cores in this order"),
+    Option("cores", WORDS, "names of the cores to use, from tools/icesoc/cores/examples.py "
+                           "(default: all); the chip is then built only once, with the cores in "
+                           "this order"),
     Option("chip", SWITCH, "also print the cost of each core in the chip"), SEED,
     *(o for o in FIELDS if o.name == "image"), BUILD, JOBS], make="foreign",
          brief="core examples --cores foreign_i2c foreign_arbiter foreign_queue",
@@ -123,7 +123,7 @@ def put_and_fly(values, listed, known):
              "core examples",
              "core examples --cores aes",
              "core examples --chip --seed 7"])
-def examples(values):
+def core_examples(values):
     """download public cores, put them into slots and call them by radio
 
     The cores have Wishbone, Avalon-MM, AXI4-Lite, AXI-Stream and plain buses, and are written
@@ -133,13 +133,11 @@ def examples(values):
     SystemVerilog that Yosys cannot read fly in a second chip, which is not synthesised. Exit
     status 77: no core could be downloaded, or a core given by --cores could not be downloaded.
     """
-    listed = json.loads(Path("examples/foreign/cores.json").read_text())
-    known = {name for source in listed.values() for name in source["cores"]}
-    if unknown := set(values.cores) - known:
+    if unknown := set(values.cores) - examples.cores().keys():
         raise Stop(f"CORES: unknown core '{sorted(unknown)[0]}': expected one of "
-                   f"{' '.join(sorted(known))}", 2)
+                   f"{' '.join(sorted(examples.cores()))}", 2)
     if not values.built:
         run(["cmake/setup.sh", "--tests"])
     with lock("build/foreign.lock", refuse="core examples: another one runs in this folder; wait "
                                            "until it ends"):
-        return put_and_fly(values, listed, known)
+        return put_and_fly(values)

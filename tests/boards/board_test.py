@@ -136,6 +136,11 @@ class Boards(unittest.TestCase):
             shows("", "sync", "board_xynergy_sync", "-DBRIDGE=sync", "-DBOARD=xynergy")
             shows("nucleo-qmtech", "", "board_nucleo-qmtech", "-DBRIDGE=async",
                   "-DBOARD=nucleo-qmtech")
+            # Descriptions in two folders with the same name share a build folder, which is
+            # configured for the one that flies.
+            for kit in "/a/mine/board.toml", "/b/mine/board.toml":
+                build.for_vehicle(kit, "")
+                self.assertEqual(made["follow"].call_args.kwargs.get("BOARD"), kit)
 
     def test_a_recording_names_board_and_bridge(self):
         head = {"flight": {"board": "b"}, "clkHz": 2, "bridge": "sync"}

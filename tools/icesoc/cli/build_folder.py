@@ -180,16 +180,18 @@ class BuildFolder:
         if board in ("", own) and bridge in ("", self.cached("BRIDGE") or DEFAULT_BRIDGE):
             return self
         board, bridge = board or own, bridge or DEFAULT_BRIDGE
-        path, words, variables = Path(board), [], [f"-DBRIDGE={bridge}"]
+        path, words, variables = Path(board), [], {"BRIDGE": bridge}
         if board != DEFAULT_BOARD or bridge == DEFAULT_BRIDGE:
             is_file = path.suffix == ".toml"
             words.append(f"board_{path.absolute().parent.name if is_file else board}")
-            variables.append(f"-DBOARD={path.absolute() if is_file else board}")
+            variables["BOARD"] = str(path.absolute()) if is_file else board
         name = "_".join([*words, *[bridge] * (bridge != DEFAULT_BRIDGE)])
         other = BuildFolder(f"build/{name}", self)
         other.built = False
-        other.configure(*variables, f"-DROOMS={ROOMS_OF_PROGRAMS}")
-        other.follow(self, CLK_HZ=self.cached("CLK_HZ") or "100000000")
+        other.configure(*(f"-D{name}={value}" for name, value in variables.items()),
+                        f"-DROOMS={ROOMS_OF_PROGRAMS}")
+        # the folder may be configured for a file board.toml in another folder with this name
+        other.follow(self, CLK_HZ=self.cached("CLK_HZ") or "100000000", **variables)
         return other
 
     def alone(self):

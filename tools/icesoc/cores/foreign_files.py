@@ -260,9 +260,22 @@ def environment():
                                  overrides=overrides)
 
 
+def folded(text):
+    """Returns Verilog in which lines of more than 100 columns are broken after a comma."""
+    lines = []
+    for line in text.split("\n"):
+        indent = " " * (len(line) - len(line.lstrip()) + 4)
+        while len(line) > 100 and (at := line.rfind(", ", len(indent), 100)) > 0:
+            lines.append(line[:at + 1])
+            line = indent + line[at + 2:]
+        lines.append(line)
+    return "\n".join(lines)
+
+
 def render(template, **values):
     """Returns the text of a file for the folder of a slot."""
-    return environment().get_template(template).render(**values)
+    text = environment().get_template(template).render(**values)
+    return folded(text) if template.endswith(".v.j2") else text
 
 
 # usage: foreign_files.py FILE..., the Verilog files of all cores of a chip

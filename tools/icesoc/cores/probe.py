@@ -18,15 +18,11 @@ import time
 
 from icesoc import TREE
 from icesoc.util import chip
-from icesoc.util.errors import reason_of
+from icesoc.util.errors import Stop, reason_of
 
 RING_BYTES, READ_BYTES = 1 << 18, 4096  # probe.regs.json, probe_servant.h
 # gap: 1 if changes directly before this change were lost, otherwise 0
 Change = collections.namedtuple("Change", "clock gap value")
-
-
-class Failed(Exception):
-    """The capture failed; the text is the reason."""
 
 
 class Signals:
@@ -36,10 +32,10 @@ class Signals:
         try:
             probes = {probe.core: probe for probe in chip.read(path).probes}
         except (OSError, ValueError) as e:
-            raise Failed("--map: expected gen/chip.json of the build folder of the vehicle's chip, "
+            raise Stop("--map: expected gen/chip.json of the build folder of the vehicle's chip, "
                          "got '%s': %s" % (path, getattr(e, "strerror", None) or reason_of(e)))
         if name not in probes:
-            raise Failed("--map %s: expected a probe '%s', found %s" %
+            raise Stop("--map %s: expected a probe '%s', found %s" %
                          (path, name, ", ".join(probes) or "none"))
         self.names = probes[name].names
         self.identity = probes[name].identity
@@ -47,7 +43,7 @@ class Signals:
 
     def check(self, state):
         if state.names & 0xFFFFFFFF != self.names:
-            raise Failed("--map: expected signals with the hash 0x%08X (in the chip), got 0x%08X; "
+            raise Stop("--map: expected signals with the hash 0x%08X (in the chip), got 0x%08X; "
                          "give the chip.json of the build of this chip" %
                          (state.names & 0xFFFFFFFF, self.names))
 
@@ -62,18 +58,18 @@ class Signals:
                     break
                 lsb += width
             else:
-                raise Failed("--trigger: unknown signal '%s': expected one of %s" %
+                raise Stop("--trigger: unknown signal '%s': expected one of %s" %
                              (name, ", ".join(s for s, _ in self.list)))
             try:
                 value = int(number, 0)
             except ValueError:
-                raise Failed("--trigger: expected a signal and a value such as u_fir.count=0x10, "
+                raise Stop("--trigger: expected a signal and a value such as u_fir.count=0x10, "
                              "got '%s'" % word)
             if not 0 <= value < 1 << width:
-                raise Failed("--trigger: %s: expected 0 to %d, got %s" %
+                raise Stop("--trigger: %s: expected 0 to %d, got %s" %
                              (name, (1 << width) - 1, number))
             if lsb + width > 31:
-                raise Failed("--trigger: %s is at bits %d to %d of the list, and only bits below "
+                raise Stop("--trigger: %s is at bits %d to %d of the list, and only bits below "
                              "31 can trigger; list it earlier in signals=" %
                              (name, lsb, lsb + width - 1))
             mask |= (1 << width) - 1 << lsb
@@ -157,7 +153,7 @@ def save(path, signals, probe, state, before, after):
     """Writes the capture into a file; returns messages about the capture."""
     changes = read(probe, state, before, after)
     if not changes:
-        raise Failed("expected recorded changes in the probe, got none; run the recorded core "
+        raise Stop("expected recorded changes in the probe, got none; run the recorded core "
                      "during the capture")
     write_vcd(path, signals, changes, state.clkHz)
     lost = sum(c.gap for c in changes)
@@ -172,7 +168,7 @@ def capture(probe, signals, args, say):
     mask, value = signals.trigger(args.trigger)
     ring = RING_BYTES // (8 * state.words)
     if args.before < 0 or args.after < 0 or args.before + args.after >= ring:
-        raise Failed("--before and --after: expected fewer than %d changes together, the size of "
+        raise Stop("--before and --after: expected fewer than %d changes together, the size of "
                      "the ring" % ring)
     probe.arm(signed(mask), signed(value), bool(args.trigger) and not args.level, args.after)
     say("armed; waiting for %s" % (args.trigger or "changes; the capture begins at once"))
@@ -239,7 +235,7 @@ def main():
     except Ice.ObjectNotExistException:
         sys.exit("probe: the vehicle has no probe '%s': add its line to ip/cores.list, and build "
                  "the chip and the firmware" % signals.identity)
-    except (Failed, Ice.Exception, OSError) as e:
+    except (Stop, Ice.Exception, OSError) as e:
         sys.exit("probe: %s" % e)
     finally:
         if communicator:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // skeleton: generates a first version of a core in Verilog or VHDL, which answers every call with
-// zeros, and a test that makes all calls. `make new-ip` uses it; afterwards the author edits the
-// files.
+// zeros, and a test that makes all calls. `./icesoc core new` uses it; afterwards the author edits
+// the files.
 
 #include "c/context.h"
 #include "hw/generator.h"

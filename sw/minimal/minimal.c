@@ -3,11 +3,11 @@
  * minimal: the smallest program that uses all layers: a server and a client in one loop, without
  * tasks.
  *
- * `make size` measures this program (docs/icec.md), and `make run CPU=m3 APP=minimal` runs it in a
- * simulated flight. It implements the Slice interfaces of the paper's Figure 3, with the engine's
- * servant of Figure 5. It calls the ground station, two-way and one-way, over the xbee-at endpoint,
- * the link, the modem and the FSMC. Its only interrupt is a tick of 1 kHz; everything else is
- * polled.
+ * `./icesoc build size` measures this program (docs/icec.md), and `make run CPU=m3 APP=minimal`
+ * runs it in a simulated flight. It implements the Slice interfaces of the paper's Figure 3, with
+ * the engine's servant of Figure 5. It calls the ground station, two-way and one-way, over the
+ * xbee-at endpoint, the link, the modem and the FSMC. Its only interrupt is a tick of 1 kHz;
+ * everything else is polled.
  */
 #include "Autopilot.h"
 #include "board.h"

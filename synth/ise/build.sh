@@ -5,7 +5,7 @@
 # par, trce, bitgen.
 # Usage: synth/ise/build.sh [--xst] [--part xc6slx16-2-csg324] soc.edf mig-folder output-folder
 # core_pins.ucf board.ucf
-#   soc.edf      from `make synth-edif`
+#   soc.edf      from `./icesoc synth edif`
 #   mig-folder   user_design of a MIG core called "mig": its rtl/*.v and par/mig.ucf are used
 #   *.ucf        build/main/gen/core_pins.ucf, and your board's (./icesoc board make NAME)
 #   --xst        XST also synthesises soc, from the folder `verilog` (soc.edf is unused); needed for

@@ -104,7 +104,7 @@ class Cases(Script):
             self.assertNotEqual(browser.run("document.body.dataset.theme"), before)
             self.assertEqual(browser.errors, [])
         write(tree / "docs/bus.md", "# Bus\n\n[lost](no_such_page.md)\n")
-        with self.assertRaisesRegex(build.SiteError, "no_such_page.md"):
+        with self.assertRaisesRegex(Stop, "no_such_page.md"):
             build.build(tree, WORK / "site", {"run": "help"})
 
 

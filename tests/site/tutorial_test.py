@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 from icesoc.site import tutorial
+from icesoc.util.errors import Stop
 from script import TREE, Script, fresh, main, write
 
 WORK = Path(sys.argv[2])
@@ -81,7 +82,7 @@ class Cases(Script):
                 ("$ cd icesoc", "$ ls", "expected the command 'cd icesoc'")):
             old, new = old.replace("\\n", "\n"), new.replace("\\n", "\n")
             self.assertIn(old, PAGE)
-            with self.assertRaisesRegex(tutorial.Mismatch, message):
+            with self.assertRaisesRegex(Stop, message):
                 self.follow(PAGE.replace(old, new))
 
     def test_page(self):

@@ -84,7 +84,7 @@ def main():
     for program in ("gdb-multiarch", "xmllint", "strace", "clang-format-19", "chromium", "tshark",
                     "gtkwave"):
         if program not in hidden:
-            fail(f"{program} is in no package of make setup-tests: {sorted(of_tests)}")
+            fail(f"{program} is in no package of ./icesoc setup --tests: {sorted(of_tests)}")
 
     poor = links(work / "poor", {"yosys", "ccache"})
     said = configure(source, work / "without", work, poor)

@@ -14,6 +14,7 @@ import Ice
 import mission
 from icesoc import TREE
 from icesoc.cores import probe
+from icesoc.util.errors import Stop
 
 device, guard, status, plugin, folder, chip, *files = sys.argv[1:]
 clocked = ["my_requests"] if chip == "TRACE" else []
@@ -86,7 +87,7 @@ with Ice.initialize(data) as ic:
              for f in ("probe.vcd", "second.vcd")]
     expect("the second capture is another one", times[1][0] > times[0][-1], True)
     signals.names ^= 1
-    failed = fails(probe.Failed, signals.check, prober.getState())
+    failed = fails(Stop, signals.check, prober.getState())
     expect("another chip's names", "chip.json" in str(failed), True)
     for identity, prx in (("sample_verilog", Cores.SampleVerilogPrx),
                           ("newcomer", Cores.SampleVhdlPrx)):

@@ -7,6 +7,7 @@ import subprocess
 from pathlib import Path
 
 from icesoc.site import reference
+from icesoc.util.errors import Stop
 
 # Pages outside docs/ that are part of the site: path in the tree -> path in the site.
 ADOPTED = {"sw/ground/README.md": "ground-plugin", "CHANGELOG.md": "changelog",
@@ -31,10 +32,6 @@ QUIET = YES
 WARN_IF_UNDOCUMENTED = NO
 WARN_IF_DOC_ERROR = NO
 """
-
-
-class SiteError(Exception):
-    """Doxygen or Sphinx failed; the text is their output."""
 
 
 def adopted(tree):
@@ -91,13 +88,13 @@ def stage(tree, pages, helps):
 
 
 def run(words, what, log):
-    """Runs a program and stores its output in `log`; raises SiteError if it fails."""
+    """Runs a program and stores its output in `log`; raises Stop if it fails."""
     with open(log, "w") as file:
         status = subprocess.run(words, stdout=file, stderr=subprocess.STDOUT,
                                 check=False).returncode
     if status:
-        raise SiteError(f"{what} failed; the whole output is in {log}:\n" +
-                        "\n".join(Path(log).read_text().splitlines()[-20:]))
+        raise Stop(f"docs: {what} failed; the whole output is in {log}:\n" +
+                   "\n".join(Path(log).read_text().splitlines()[-20:]))
 
 
 def make_self_contained(html):
@@ -105,7 +102,7 @@ def make_self_contained(html):
 
     In Debian's package of the theme, the style sheet imports /javascript/normalize.css, and the
     script is a module that imports another module. A browser loads neither from files, so the menu
-    of the current page and the choice between light and dark would not work. Raises SiteError if a
+    of the current page and the choice between light and dark would not work. Raises Stop if a
     page still uses a file with an absolute path.
     """
     style = html / "_static/styles/furo.css"
@@ -122,8 +119,8 @@ def make_self_contained(html):
         if path.suffix in (".html", ".css"):
             found = re.search(r"(?:src|href)=\"(/[^\"]*)|url\([\"']?(/[^)]*)", path.read_text())
             if found:
-                raise SiteError(f"{path}: expected only relative paths, got "
-                                f"{found[1] or found[2]}: the site cannot be read from files")
+                raise Stop(f"docs: {path}: expected only relative paths, got "
+                           f"{found[1] or found[2]}: the site cannot be read from files")
 
 
 def build(tree, out, helps):

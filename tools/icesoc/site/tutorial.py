@@ -11,6 +11,8 @@ import dataclasses
 import re
 from pathlib import Path
 
+from icesoc.util.errors import Stop
+
 
 @dataclasses.dataclass
 class Step:
@@ -21,10 +23,6 @@ class Step:
     status: int = 0
     file: str = ""
     long: bool = False
-
-
-class Mismatch(Exception):
-    """The program's output differs from the page; the text names the line of the page."""
 
 
 def steps(text):
@@ -58,7 +56,8 @@ def _block(number, language, lines, before):
         elif found:
             found[-1].expected.append(line)
         else:
-            raise Mismatch(f"line {at}: expected '$ command' at the start of a block, got '{line}'")
+            raise Stop(f"check tutorial: line {at}: expected '$ command' at the start of a block, "
+                       f"got '{line}'")
     for step in found:
         step.long = before == "<!-- long -->"
     status = re.fullmatch(r"<!-- exit status (\d+) -->", before)
@@ -95,7 +94,7 @@ def follow(page, folder, execute, begin="", brief=False):
     if begin:
         at = next((n for n, step in enumerate(todo) if step.command == begin), None)
         if at is None:
-            raise Mismatch(f"{page}: expected the command '{begin}'")
+            raise Stop(f"check tutorial: {page}: expected the command '{begin}'")
         todo = todo[at + 1:]
     for step in todo:
         if step.long and brief:
@@ -107,9 +106,9 @@ def follow(page, folder, execute, begin="", brief=False):
         lines = [line.rstrip() for line in output.splitlines()]
         place = f"{page}:{step.line}: {step.command}"
         if status != step.status:
-            raise Mismatch(f"{place}: expected exit status {step.status}, got {status}:\n" +
-                           "\n".join(lines[-40:]))
+            raise Stop(f"check tutorial: {place}: expected exit status {step.status}, got {status}:"
+                       "\n" + "\n".join(lines[-40:]))
         missing = compare(step.expected, lines)
         if missing is not None:
-            raise Mismatch(f"{place}: expected {missing}\nin the output:\n" +
-                           "\n".join(lines[-60:]))
+            raise Stop(f"check tutorial: {place}: expected {missing}\nin the output:\n" +
+                       "\n".join(lines[-60:]))

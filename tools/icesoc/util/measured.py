@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""measured: reads the measurements that benches, `make size`, `make firmware`, `make synth` and
-`make coverage` write as JSON.
+"""measured: reads the measurements that benches, coverage, synthesis and builds of the firmware
+write as JSON.
 
 A file is a list of entries, or an object, which usually has this list in "entries". An entry has
 name, value and unit. It may also have limit and share (value / limit), gross (value / a limit that

@@ -97,6 +97,7 @@ def make_station(Autopilot, log, timeout):
         def __init__(self):
             self.called = threading.Event()
             self.alive = None
+            self.error = None  # exception of the call to the vehicle
             self.params = {}
 
         def vehicleState(self, uav, params, current):
@@ -108,6 +109,8 @@ def make_station(Autopilot, log, timeout):
             uav = uav.ice_timeout(timeout)
             try:
                 self.alive = log.call("ground -> UAV", "uav.isAlive(7)", lambda: uav.isAlive(7))
+            except Ice.Exception as e:
+                self.error = e  # Mission.hear raises it in the main thread
             finally:
                 self.called.set()
 
@@ -312,6 +315,8 @@ class Mission:
             if patience.is_over():
                 raise RuntimeError("the UAV did not call Station.vehicleState within "
                                    f"{self.args.patience} s")
+        if self.station.error:
+            raise self.station.error
         if not self.station.alive:
             raise RuntimeError(f"uav.isAlive: expected True, got {self.station.alive!r}")
 

@@ -23,7 +23,9 @@ def reason_of(error, connecting="cannot connect: "):
         return "%s: host not found" % error.host
     for field in ("unknown", "reason", "str"):
         if getattr(error, field, ""):
-            return getattr(error, field).strip().rpartition("\n")[2]
+            text = getattr(error, field).strip().rpartition("\n")[2]
+            # IceC sends the name of its status, such as "::Ice::TimeoutException".
+            return "the servant reported " + text if text.startswith("::Ice::") else text
     if getattr(error, "error", 0):
         prefix = connecting if isinstance(error, Ice.ConnectFailedException) else ""
         # the plugin uses ENOLINK, "Link has been severed", for a modem that it cannot use

@@ -29,6 +29,10 @@ class Reasons(unittest.TestCase):
     def test_an_exception_without_text_is_named_in_words(self):
         self.assertEqual(reason_of(Ice.ConnectTimeoutException()), "Connect timeout")
 
+    def test_an_exception_of_the_vehicle_is_not_mistaken_for_one_of_the_ground(self):
+        self.assertEqual(reason_of(Ice.UnknownException("::Ice::TimeoutException")),
+                         "the servant reported ::Ice::TimeoutException")
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -376,6 +376,7 @@ def fly(args):
 
 
 def main():
+    plugged.interrupt_once()
     args = parse_arguments()
     return fly(args) or (stay.serve(args) if stay.is_wanted(args) else 0)
 

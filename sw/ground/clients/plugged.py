@@ -2,8 +2,20 @@
 """plugged: creates an Ice communicator with the radio plugin, for unmodified ZeroC Ice."""
 
 import os
+import signal
 
 import Ice
+
+
+def interrupt_once():
+    """Lets only the first SIGINT raise KeyboardInterrupt. After Ctrl-C, a program that the
+    simulator has started gets a second SIGINT from the simulator, while it is ending."""
+    def interrupt(number, frame):
+        signal.signal(number, signal.SIG_IGN)
+        raise KeyboardInterrupt
+    # a shell ignores SIGINT for programs in the background
+    if signal.getsignal(signal.SIGINT) == signal.default_int_handler:
+        signal.signal(signal.SIGINT, interrupt)
 
 
 def use_second_clock():

@@ -255,6 +255,7 @@ def update(vehicle, images, say, air, rehearses):
 
 
 def main():
+    plugged.interrupt_once()
     parser = argparse.ArgumentParser(
         description=__doc__.split("\n\n")[0],
         formatter_class=argparse.RawDescriptionHelpFormatter,

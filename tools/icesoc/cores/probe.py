@@ -186,6 +186,7 @@ def capture(probe, signals, args, say):
 
 
 def main():
+    plugged.interrupt_once()
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", help="output file for the waveform (VCD)")

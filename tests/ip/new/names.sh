@@ -57,7 +57,11 @@ refused 'no core could be generated because of the errors above' fir --lang veri
 echo 'module M { [":hw"] interface Fir { void f(string s); }; };' >"$work/a.ice"
 refused "^$work/a.ice:1:" fir --lang verilog --ice "$work/a.ice"
 echo 'module M { [":hw"] interface Iir { void f(); }; };' >"$work/a.ice"
-refused 'expected one interface with \[":hw"\], named fir; got iir' fir --lang verilog \
+refused 'core fir: expected the interface Fir, got the interface of a core iir; rename' fir \
+    --lang verilog --ice "$work/a.ice"
+echo 'module M { [":hw"] interface Fir {void f();}; [":hw"] interface Iir {void f();}; };' \
+    >"$work/a.ice"
+refused 'expected one interface with \[":hw"\], got those of fir iir' fir --lang verilog \
     --ice "$work/a.ice"
 echo '/* [":hw"] interface X */ module M { module N { [":hw"] interface LowPass {
     ["hw:long"] int f(short a); }; }; };' >"$work/a.ice"

@@ -59,9 +59,11 @@ def write_own(build, name, lang, ice, folder):
             work / "c", "--hw-regs", work / "regs", f"--hw-new-{lang}", work / "new"], check=False):
         raise Stop(f"{ice}: no core could be generated because of the errors above")
     cores = sorted(path.name[:-len(".regs.json")] for path in (work / "regs").iterdir())
+    if len(cores) != 1:
+        raise Stop(f"{ice}: expected one interface with [\":hw\"], got those of {' '.join(cores)}")
     if cores != [name]:
-        raise Stop(f"{ice}: expected one interface with [\":hw\"], named {name}; got "
-                   f"{' '.join(cores) or 'none'}")
+        raise Stop(f"{ice}: core {name}: expected the interface {type_of(name)}, got the interface "
+                   f"of a core {cores[0]}; rename one of them")
     for path in (work / "new").iterdir():
         shutil.copy(path, folder)
     shutil.copy(ice, folder / f"{name}.ice")
@@ -83,12 +85,17 @@ def interface_of(described):
     return modules[0], ".".join(modules) + "Prx"
 
 
+def type_of(name):
+    """Returns the name of a core's interface: LowPass for low_pass."""
+    return "".join(word.capitalize() for word in name.split("_"))
+
+
 def fill(template, folder, name):
     """Writes a file from a template, with the names of the core filled in. Returns the path of the
     file."""
     text = template.read_text().replace("@NAME@", name).replace("@MODULE@", "Cores")
     path = folder / re.sub("^NAME", name, template.name[:-len(".in")])
-    path.write_text(text.replace("@TYPE@", "".join(word.capitalize() for word in name.split("_"))))
+    path.write_text(text.replace("@TYPE@", type_of(name)))
     return path
 
 
@@ -190,7 +197,7 @@ def new(values):
             raise
     say(written)
     return say(f"Next: ./icesoc core test {name}; a line '{name}' in ip/cores.list puts it into "
-               f"the chip; make run CORES={name} calls it by radio")
+               f"the chip; ./icesoc run --cores {name} calls it by radio")
 
 
 def users_of(name):

@@ -163,56 +163,19 @@ def opens(values):
 
 def mission(values, build, held):
     """Flies the mission that the README shows, with its page."""
-    out, status_file = Path(values.out), Path(values.out) / "status"
-    page = [*tool("web.live"), "--dir", out, "--port", values.port,
-            "--build", build.folder]
-
-    def flown():
-        return status_file.stat().st_ctime_ns if status_file.exists() else None
-
+    page = [*tool("web.live"), "--dir", values.out, "--port", values.port, "--build", build.folder]
     for name in VEHICLES, VIEWED:
-        (out / name).unlink(missing_ok=True)
-    before = flown()
-    trial = run([*page, "--try"], check=False)
-    if 0 < trial <= 128:
-        raise Stop(status=trial)
-    if trial:
-        warn(f"the page's trial was ended by signal {trial - 128}; the mission continues")
-    # A viewer sees the mission in real time; without one, nothing waits for the wall clock.
-    speed = [] if values.live or opens(values) else ["--speed", "viewed"]
-    sim = simulator(values, held, speed, [
-        "sw/ground/clients/mission.py", "{out}/flight.json", "--device", "{device}", "--frame",
-        "{frame}", "--status", "{status}", "--plugin", build / "ground", "--slice",
-        "sw/vehicle/Autopilot.ice", "--reference", build / "testbench/sim/vision-reference",
-        *(["--observer-device", "{device2}"] if values.vehicles > 1 else [])])
-    shown = None
-
-    def flies_on():
-        return (out / VEHICLES).exists()
-
+        Path(values.out, name).unlink(missing_ok=True)
+    before = begun(values)
+    try_page(page)
+    sim, shown = start_mission(values, build, held), None
     try:
         # Opening the page also prints its address. This is done only after the simulator has
         # accepted the options, because the address could hide an error message.
-        if until(lambda: flown() != before, sim):
+        if until(lambda: begun(values) != before, sim):
             shown = start([*page, *(["--open"] if opens(values) else [])], pass_fds=[held])
-            if not until(lambda: sim.poll() is not None or flies_on(), shown):
-                ended = shown.returncode
-                how = f"signal {-ended}" if ended < 0 else f"exit status {ended}"
-                warn(f"the page has ended ({how}); the mission continues")
-        results = f"Pictures and report: {out}/before.png {out}/after.png {out}/report.md"
-        if until(flies_on, sim):
-            say(results)
-            say(f"The page stays until {'' if values.live else 'you close it, or '}Ctrl-C, and so "
-                "does the vehicle: ./icesoc call --list")
-            try:
-                status = wait(sim)
-            except Interrupted:
-                status = 0
-            say("The flight has ended.")
-        else:
-            status = wait(sim)
-            if status == 0:
-                say(results)
+            watch_page(values, shown, sim)
+        status = finish(values, sim)
     except Interrupted:
         end(sim)
         raise
@@ -220,7 +183,67 @@ def mission(values, build, held):
         if shown:
             end(shown)
     if status:
-        explain_failure(values, status, has_flown=flown() != before)
+        explain_failure(values, status, has_flown=begun(values) != before)
+    return status
+
+
+def begun(values):
+    """Returns the time at which the last flight began, or None."""
+    status = Path(values.out, "status")
+    return status.stat().st_ctime_ns if status.exists() else None
+
+
+def flies_on(values):
+    """Returns whether the mission has ended and its vehicle stays, to be called."""
+    return Path(values.out, VEHICLES).exists()
+
+
+def try_page(page):
+    """Ends the command if the page refuses its options."""
+    trial = run([*page, "--try"], check=False)
+    if 0 < trial <= 128:
+        raise Stop(status=trial)
+    if trial:
+        warn(f"the page's trial was ended by signal {trial - 128}; the mission continues")
+
+
+def start_mission(values, build, held):
+    """Starts the simulator with the ground program of the mission."""
+    # A viewer sees the mission in real time; without one, nothing waits for the wall clock.
+    speed = [] if values.live or opens(values) else ["--speed", "viewed"]
+    return simulator(values, held, speed, [
+        "sw/ground/clients/mission.py", "{out}/flight.json", "--device", "{device}", "--frame",
+        "{frame}", "--status", "{status}", "--plugin", build / "ground", "--slice",
+        "sw/vehicle/Autopilot.ice", "--reference", build / "testbench/sim/vision-reference",
+        *(["--observer-device", "{device2}"] if values.vehicles > 1 else [])])
+
+
+def watch_page(values, shown, sim):
+    """Waits until the mission has ended or its page has failed."""
+    if not until(lambda: sim.poll() is not None or flies_on(values), shown):
+        ended = shown.returncode
+        how = f"signal {-ended}" if ended < 0 else f"exit status {ended}"
+        warn(f"the page has ended ({how}); the mission continues")
+
+
+def finish(values, sim):
+    """Waits until the flight has ended. Returns the simulator's exit status; 0 if the user has
+    ended a flight with a finished mission."""
+    out = values.out
+    results = f"Pictures and report: {out}/before.png {out}/after.png {out}/report.md"
+    if not until(lambda: flies_on(values), sim):
+        status = wait(sim)
+        if status == 0:
+            say(results)
+        return status
+    say(results)
+    say(f"The page stays until {'' if values.live else 'you close it, or '}Ctrl-C, and so does the "
+        "vehicle: ./icesoc call --list")
+    try:
+        status = wait(sim)
+    except Interrupted:
+        status = 0
+    say("The flight has ended.")
     return status
 
 

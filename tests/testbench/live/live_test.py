@@ -144,7 +144,7 @@ class Cases(Script):
             found.append(json.loads(self.said)["res"]["found"])
         self.assertGreater(found[0], found[1])
         self.ask(*call, "fir.filter", "[]", status=6)
-        self.has('{"error": "Ice.UnknownException", "text": "the call was refused: ')
+        self.has('{"error": "Ice.UnknownException", "text": "the vehicle refused the call ')
         self.ask(*call, "keys.count", status=6)
         self.has("maintenance")
         self.ask(*call, "update.getStatus", status=5)

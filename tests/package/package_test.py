@@ -326,13 +326,17 @@ cc -std=c90 -ffunction-sections -fdata-sections -o by_pkg_config -Imade \\
 
     def test_packages(self):
         """There is a Debian package for each component, with the files, scripts and dependencies
-        that the component needs."""
+        that the component needs. All users can read the folders, whatever the umask was."""
         if not shutil.which("dpkg-shlibdeps"):
             self.skipTest("dpkg-dev is missing")
-        self.ask("cpack", "-G", "DEB", "-B", self.out, "--config", BUILD / "CPackConfig.cmake")
+        self.ask("sh", "-c", 'umask 077; exec "$@"', "sh", TREE / "tools/python", "-c",
+                 "import sys; from icesoc.cli.commands.package import pack; pack(*sys.argv[1:])",
+                 BUILD, self.out)
         found = {path.name.partition("_")[0]: path for path in self.out.glob("*.deb")}
         self.assertEqual(sorted(found), sorted(COMPONENTS))
         for name, path in found.items():
+            self.ask("dpkg-deb", "--contents", path)
+            self.lacks("^[d-]......---")
             self.ask("dpkg-deb", "--info", path)
             print(name, path.stat().st_size, "bytes")
         self.ask("dpkg-deb", "--info", found["icesoc-ground"])

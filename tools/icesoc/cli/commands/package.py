@@ -41,17 +41,23 @@ def package(values):
     output.mkdir(parents=True, exist_ok=True)
     for path in output.glob("*.deb"):
         path.unlink()
-    # Files in the packages have the time of the commit, so that the same commit gives the same
-    # bytes.
-    commit = read(["git", "log", "-1", "--format=%ct"], check=False, stderr=DEVNULL).strip()
-    logged(["cpack", "-G", "DEB", "-B", output, "--config", build / "CPackConfig.cmake"],
-           build / "package.log", "CPack failed",
-           env={"SOURCE_DATE_EPOCH": commit} if commit and "SOURCE_DATE_EPOCH" not in os.environ
-           else None)
-    shutil.rmtree(output / "_CPack_Packages")
+    pack(build.folder, output)
     found = sorted(output.glob("*.deb"))
     for path in found:
         say(f"{path.stat().st_size:>9} bytes  {path}")
     if not values.check:
         return 0
     return run(["lintian", "--fail-on", "error", "--tag-display-limit", "0", *found], check=False)
+
+
+def pack(build, output):
+    """Writes the packages of a build folder to the folder `output`, with the same bytes for the
+    same commit: files have the time of the commit, and the modes of folders do not depend on the
+    user's umask. With a umask of 077, only root could use the installed packages."""
+    commit = read(["git", "log", "-1", "--format=%ct"], check=False, stderr=DEVNULL).strip()
+    os.umask(0o022)
+    logged(["cpack", "-G", "DEB", "-B", output, "--config", Path(build, "CPackConfig.cmake")],
+           Path(build, "package.log"), "CPack failed",
+           env={"SOURCE_DATE_EPOCH": commit} if commit and "SOURCE_DATE_EPOCH" not in os.environ
+           else None)
+    shutil.rmtree(Path(output, "_CPack_Packages"))

@@ -19,6 +19,14 @@ bool QuietSpan::stirs() const {
 
 void QuietSpan::rest(bool) {}
 
+void QuietSpan::refuseCamera() {}
+
+void QuietSpan::replaced() {}
+
+uint64_t QuietSpan::untilCarry(uint64_t) const {
+    return 0;
+}
+
 uint64_t QuietSpan::pass(uint64_t clocks) {
     return clocks;
 }

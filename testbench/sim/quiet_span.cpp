@@ -33,6 +33,11 @@ constexpr uint64_t margin = 2; // number of clocks before an event that are alwa
 constexpr uint64_t settling = 8;
 // initial number of clocks for which only the platform is skipped; the number grows later
 constexpr uint64_t least = 8;
+// smallest number of clocks for which the camera works alone; copying its state takes as long as
+// some tens of clocks
+constexpr uint64_t worthAlone = 256;
+constexpr unsigned longestOthers =
+    4096;                        // largest number of looks between two trials for the camera
 constexpr unsigned longest = 32; // largest number of clocks between two comparisons of a busy chip
 // number of comparisons of a busy chip between two records of the cores that have changed
 constexpr uint64_t blameEvery = 256;
@@ -41,6 +46,22 @@ const std::set<std::string> platform = {"u_platform", "u_modem", "u_system_slot"
 // blocks with their clock stopped while the platform is quiet (testbench/sim/CMakeLists.txt)
 const char* const resting[] = {"u_platform.u_fsmc_bridge.", "u_platform.u_bus_decoder.", "u_modem.",
                                "u_system_slot."};
+// blocks that the model of the camera contains
+const char* const alone[] = {"u_camera.", "u_platform.u_memory."};
+
+template <size_t count> bool isIn(const char* path, const char* const (&blocks)[count]) {
+    return std::any_of(std::begin(blocks), std::end(blocks), [path](const char* block) {
+        return std::string(path).rfind(block, 0) == 0;
+    });
+}
+
+// Adds a member to a list of ranges. `joins` is true if the member before was in the list.
+void add(std::vector<std::pair<size_t, size_t>>& ranges, size_t offset, size_t size, bool joins) {
+    if (joins)
+        ranges.back().second = offset + size;
+    else
+        ranges.emplace_back(offset, offset + size);
+}
 
 #define PHASE sim_soc__DOT__soc__DOT__u_modem__DOT__u_baud__DOT__phase
 #define PRESCALER sim_soc__DOT__soc__DOT__u_modem__DOT__u_baud__DOT__count
@@ -84,17 +105,20 @@ std::vector<std::string> SocState::differences(const Image& a, const Image& b) {
     return paths;
 }
 
-QuietSpan::QuietSpan(VSoc& top) : top_(top), image_(sizeof(VSoc___024root)) {
-    bool joins = false; // true if the previous member also belongs to the platform
+QuietSpan::QuietSpan(VSoc& top)
+    : top_(top), image_(sizeof(VSoc___024root)), othersImage_(image_.size()) {
+    bool wasResting = false, wasOther = false; // true if the previous member is in the list
     for (const Member& m : members) {
-        const bool is = std::any_of(std::begin(resting), std::end(resting), [&](const char* block) {
-            return std::string(m.path).rfind(block, 0) == 0;
-        });
-        if (is && joins)
-            platform_.back().second = m.offset + m.size;
-        else if (is)
-            platform_.emplace_back(m.offset, m.offset + m.size);
-        joins = is;
+        const bool isResting = isIn(m.path, resting);
+        // All registers are in instances of soc.v, except for the output of the interrupt.
+        const bool isOther =
+            !isResting && std::string(m.path).rfind("u_", 0) == 0 && !isIn(m.path, alone);
+        if (isResting)
+            add(platform_, m.offset, m.size, wasResting);
+        if (isOther)
+            add(others_, m.offset, m.size, wasOther);
+        wasResting = isResting;
+        wasOther = isOther;
     }
 }
 
@@ -209,6 +233,7 @@ bool QuietSpan::learn(const Counters& now) {
 void QuietSpan::sample() {
     ticks_ += top_.rootp->TICK;
     ++since_;
+    ++samples_;
     stirred_ = stirs_;
     stirs_ = top_.stirs_o;
 }
@@ -240,9 +265,13 @@ QuietSpan::Clocks QuietSpan::look(Clocks most) {
     before_ = now;
     ticks_ = 0;
     Clocks clocks = {untilEvent(now, most.chip, true),
-                     isCalm_ ? untilEvent(now, most.platform, false) : 0};
-    if (clocks.chip < worth)
-        return {0, clocks.platform};
+                     isCalm_ ? untilEvent(now, most.platform, false) : 0, 0};
+    if (clocks.chip < worth) {
+        clocks.chip = 0;
+        if (isCalm_ && most.camera)
+            lookAtOthers(clocks, now, most.camera);
+        return clocks;
+    }
     const bool isLike = std::memcmp(image_.data(), top_.rootp, image_.size()) == 0;
     isAllFixed_ = isLike && (isAllFixed_ || since_ == 1);
     since_ = 0;
@@ -254,7 +283,55 @@ QuietSpan::Clocks QuietSpan::look(Clocks most) {
     blame();
     std::memcpy(image_.data(), top_.rootp, image_.size());
     rest_ = std::min(2 * rest_, 8 * uint64_t(longest));
-    return {0, std::min(clocks.platform, rest_)};
+    return {0, std::min(clocks.platform, rest_), 0};
+}
+
+// Finds out in two successive clocks whether anything except counters, the camera and the memory
+// changes. look() has compared the platform in both clocks.
+void QuietSpan::lookAtOthers(Clocks& clocks, const Counters& now, uint64_t most) {
+    if (othersPause_) {
+        --othersPause_;
+        return;
+    }
+    const uint64_t until = untilEvent(now, most, true);
+    if (until < worthAlone)
+        return;
+    const auto* state = reinterpret_cast<const unsigned char*>(top_.rootp);
+    const bool isNext = hasOthers_ && samples_ == othersAt_ + 1;
+    if (!isNext) {
+        for (const auto& [from, to] : others_)
+            std::memcpy(othersImage_.data() + from, state + from, to - from);
+        othersIrq_ = top_.irq_o;
+        hasOthers_ = clocks.begins = true;
+        othersAt_ = samples_;
+        clocks.platform = 0; // the next clock is evaluated
+        return;
+    }
+    hasOthers_ = false;
+    const auto isLike = [&](const auto& range) {
+        const auto [from, to] = range;
+        return std::memcmp(othersImage_.data() + from, state + from, to - from) == 0;
+    };
+    if (othersIrq_ == (top_.irq_o != 0) && std::all_of(others_.begin(), others_.end(), isLike))
+        clocks.camera = until;
+    else
+        refuseCamera();
+}
+
+void QuietSpan::refuseCamera() {
+    othersPatience_ = std::min(2 * othersPatience_ + 1, longestOthers);
+    othersPause_ = othersPatience_;
+}
+
+void QuietSpan::replaced() {
+    stirs_ = top_.stirs_o;
+    since_ += 2; // the image is not of the clock before
+    hasOthers_ = false;
+    othersPatience_ = 0;
+}
+
+uint64_t QuietSpan::untilCarry(uint64_t carry) const {
+    return step_ ? ((carry << 18) - 1 - (top_.rootp->PHASE & phaseMask)) / step_ : ~0ull;
 }
 
 bool QuietSpan::stirs() const {

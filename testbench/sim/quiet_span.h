@@ -50,13 +50,25 @@ public:
     void sample();
 
     // chip: number of clocks, starting now, for which the whole chip is quiet. platform: the same
-    // for the platform alone. 0 means busy, or that the state is unknown.
+    // for the platform alone. camera: the same for everything except the camera core and the
+    // memory, as long as their outputs to the rest do not change. 0 means busy, or that the state
+    // is unknown.
     struct Clocks {
-        uint64_t chip, platform;
+        uint64_t chip, platform, camera;
+        // True if the next clock will show whether the camera can work alone (camera_alone.h).
+        bool begins = false;
     };
     // Returns the number of clocks that can be skipped. `most` is the number of clocks until an
-    // input of the chip, or of the platform, may change; the result does not exceed `most`.
+    // input of the chip, of the platform, or of the chip without the camera's pins may change; the
+    // result does not exceed `most`. most.camera is 0 while the camera's pins do not change.
     Clocks look(Clocks most);
+    // The camera cannot work alone although look() said so; the next trial is later.
+    void refuseCamera();
+    // Call this after the state of camera and memory has been replaced.
+    void replaced();
+    // Returns the number of clocks until just before carry number `carry` (1, 2, ...) of the baud
+    // rate's phase.
+    uint64_t untilCarry(uint64_t carry) const;
 
     // Returns true if cores or memory may change the platform, so that it must be evaluated in the
     // next clock.
@@ -73,7 +85,7 @@ public:
     std::string mover() const;
 
     // Discards the recorded state. Call this when an input changes.
-    void forget() { hasImage_ = false; }
+    void forget() { hasImage_ = hasOthers_ = false; }
 
 private:
     struct Counters {
@@ -86,6 +98,7 @@ private:
     void takeImage();
     bool isPlatformLikeImage();
     void beginPause();
+    void lookAtOthers(Clocks& clocks, const Counters& now, uint64_t most);
     void blame();
     bool learn(const Counters& now);
     uint64_t age(uint64_t phase) const; // clocks since the last carry
@@ -108,6 +121,14 @@ private:
     uint64_t rest_ = 0;
     // parts of an image that belong to the platform: first offset and end offset
     std::vector<std::pair<size_t, size_t>> platform_;
+    // parts of the state that belong neither to the platform nor to camera and memory
+    std::vector<std::pair<size_t, size_t>> others_;
+    std::vector<unsigned char> othersImage_; // state at clock othersAt_; only others_ is valid
+    bool hasOthers_ = false, othersIrq_ = false;
+    uint64_t samples_ = 0, othersAt_ = 0; // numbers of evaluated clocks
+    // othersPatience_: number of calls of look() between two trials for the camera; othersPause_:
+    // number of calls until the next trial
+    unsigned othersPatience_ = 0, othersPause_ = 0;
     uint32_t step_ = 0; // step of the phase per clock
     bool timerRuns_ = false;
     // number of ticks of the baud rate since the last comparison with the whole image

@@ -8,6 +8,7 @@
 #include "tell_on_abort.h"
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace {
 
@@ -24,12 +25,12 @@ VerilatedContext* oneThread() {
 SocModel::SocModel(RfChannel& air, XBee::Options modemOptions, unsigned hclkPerUnit,
                    unsigned clkPerUnit)
     : context_(oneThread()), observer_(*context_), top_(new VSoc(context_.get())), span_(*top_),
-      fsmc_(pins_,
-            {[this] { tick(); }, [this] { settle(); },
-             [this](uint64_t clocks, uint64_t ns) {
-                 return passQuiet(cycles_ + std::min(clocks, ns / clkNs));
-             }},
-            hclkPerUnit, clkPerUnit),
+      camera_(*top_), fsmc_(pins_,
+                            {[this] { tick(); }, [this] { settle(); },
+                             [this](uint64_t clocks, uint64_t ns) {
+                                 return passQuiet(cycles_ + std::min(clocks, ns / clkNs));
+                             }},
+                            hclkPerUnit, clkPerUnit),
       air_(air), modem_(line_, air, std::move(modemOptions)) {
     top_->modem_rxd_i = 1;
     tellOnAbort(this, [this] {
@@ -119,8 +120,9 @@ void SocModel::standStill() {
     quiet_ = now() < nextEvent_ ? (nextEvent_ - now() - 1) / clkNs : 0;
 }
 
-// Returns two numbers of clocks: until a model outside the chip must be called, and until a model
-// at the platform pins must be called.
+// Returns three numbers of clocks: until a model outside the chip must be called, and until a model
+// at the platform pins must be called; the latter also for a camera whose pins change in each
+// clock.
 QuietSpan::Clocks SocModel::mayBeQuiet() const {
     if (!skips_ || now() >= nextEvent_)
         return {};
@@ -128,11 +130,15 @@ QuietSpan::Clocks SocModel::mayBeQuiet() const {
     uint64_t clocks = std::min(platform, memory_.untilEvent());
     if (drive_)
         clocks = std::min(clocks, std::max(driveAt_, cycles_) - cycles_);
-    return {clocks, platform};
+    const bool isSensed = drive_ && driveAt_ <= cycles_ + 1 && camera_.exists();
+    return {clocks, platform, isSensed ? platform : 0};
 }
 
 // Adds the clocks that have passed without evaluation to the chip's counters.
 void SocModel::pay() {
+    if (ahead_)
+        endAlone();
+    alone_ = 0;
     if (rested_)
         (void)span_.pass(rested_); // these clocks contain no tick of the baud rate
     rested_ = 0;
@@ -154,6 +160,79 @@ void SocModel::wake() {
     pay();
     quiet_ = resting_ = 0;
     span_.forget();
+}
+
+// Computes up to `clocks` clocks with the camera alone; returns their number.
+uint64_t SocModel::workAlone(uint64_t clocks) {
+    uint64_t done = 0;
+    for (bool goesOn = true; goesOn && alone_ && done < clocks;) {
+        if (isDriven()) {
+            driveAt_ = drive_();
+            if (!alone_) // the function has looked at the chip, or has changed it
+                break;
+            if (driveAt_ > cycles_ + 1) { // the sensor sends nothing
+                pay();
+                break;
+            }
+        }
+        if (ahead_ == markAt_) {
+            camera_.mark();
+            markAt_ = span_.untilCarry(++carry_);
+        }
+        goesOn = camera_.clock(memory_);
+        ++cycles_;
+        ++ahead_;
+        ++done;
+        --alone_;
+        observedClock = cycles_;
+        if (!goesOn)
+            pay();
+    }
+    evaluated_ += done;
+    evaluatedAlone_ += done;
+    return done;
+}
+
+// Brings the chip to the state that the camera has reached alone.
+void SocModel::endAlone() {
+    const uint64_t left = span_.pass(ahead_);
+    const uint32_t pins = top_->core_pins_i; // the pins for the next clock
+    ahead_ = 0;
+    if (!left) {
+        camera_.store();
+    } else {
+        // A tick of the baud rate has begun after the mark; the clocks since then are evaluated.
+        if (camera_.storeMarked() != left)
+            throw std::logic_error("the camera's state was not marked before the tick");
+        for (uint64_t number = 0; number < left; ++number) {
+            camera_.repeat(number);
+            span_.rest(false);
+            top_->tick_i = !top_->tick_i;
+            top_->eval();
+            span_.sample();
+        }
+    }
+    top_->core_pins_i = pins;
+    span_.replaced();
+}
+
+// Finds out what need not be evaluated in the next clocks.
+void SocModel::look() {
+    const QuietSpan::Clocks clocks = span_.look(mayBeQuiet());
+    quiet_ = clocks.chip;
+    resting_ = quiet_ ? 0 : clocks.platform;
+    if (clocks.begins)
+        camera_.load();
+    if (!clocks.camera)
+        return;
+    if (!camera_.follows()) {
+        span_.refuseCamera();
+        return;
+    }
+    alone_ = clocks.camera;
+    resting_ = 0;
+    carry_ = 1;
+    markAt_ = span_.untilCarry(carry_);
 }
 
 // Updates the design after a change of the processor pins between two clock edges.
@@ -195,6 +274,8 @@ void SocModel::tick() {
         (void)passQuiet(cycles_ + 1);
         return;
     }
+    if (alone_ && workAlone(1))
+        return;
     if (!hasClock_) {
         standStill();
         return;
@@ -203,7 +284,7 @@ void SocModel::tick() {
         resting_ = 0;
     if (!resting_)
         pay();
-    if (drive_ && cycles_ >= driveAt_)
+    if (isDriven())
         driveAt_ = drive_();
     if (resting_) {
         --resting_;
@@ -212,9 +293,7 @@ void SocModel::tick() {
         return;
     }
     evaluate();
-    const QuietSpan::Clocks clocks = span_.look(mayBeQuiet());
-    quiet_ = clocks.chip;
-    resting_ = quiet_ ? 0 : clocks.platform;
+    look();
 }
 
 // Passes the levels of the chip's outputs, except the outputs of the FSMC, to the modem and the

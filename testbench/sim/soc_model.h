@@ -9,6 +9,7 @@
 
 #include "VSoc.h"
 #include "board_wires.h"
+#include "camera_alone.h"
 #include "fsmc_master.h"
 #include "mcb_model.h"
 #include "observer.h"
@@ -39,9 +40,11 @@ public:
     void reset(bool memoryStarts = false);
     void tick(); // computes one clock cycle
 
-    // Skips clocks while the chip is quiet, but not beyond clock `until`. Returns the number of
-    // skipped clocks.
+    // Skips clocks while the chip is quiet, or computes clocks in which only the camera works, but
+    // not beyond clock `until`. Returns the number of these clocks.
     uint64_t passQuiet(uint64_t until) {
+        if (alone_ && until > cycles_)
+            return workAlone(until - cycles_);
         const uint64_t clocks = until > cycles_ ? std::min(quiet_, until - cycles_) : 0;
         quiet_ -= clocks;
         owed_ += clocks;
@@ -59,7 +62,10 @@ public:
         wake();
         skips_ = !all;
     }
-    uint64_t evaluated() const { return evaluated_; } // number of clocks that were evaluated
+    // Returns the number of clocks that were evaluated, and how many of them only for the camera.
+    uint64_t evaluated() const { return evaluated_; }
+    uint64_t evaluatedAlone() const { return evaluatedAlone_; }
+    CameraAlone& camera() { return camera_; } // for tests
     // Returns the name of the core that changed in most of the evaluated clocks; empty if there is
     // no such core.
     std::string mover() const { return span_.mover(); }
@@ -80,7 +86,7 @@ public:
     void setCorePins(uint32_t value, bool sampled = false) {
         if (!sampled) {
             wake();
-        } else if (!resting_) {
+        } else if (!resting_ && !alone_) {
             pay();
             quiet_ = 0;
         }
@@ -140,6 +146,11 @@ private:
     void evaluate(bool rests = false);
     void pay();
     void wake();
+    void look();
+    uint64_t workAlone(uint64_t clocks);
+    // Returns true if drive_ must be called before the next clock.
+    bool isDriven() const { return drive_ && cycles_ >= driveAt_; }
+    void endAlone();
     QuietSpan::Clocks mayBeQuiet() const;
 
     std::unique_ptr<VerilatedContext> context_;
@@ -153,7 +164,14 @@ private:
     uint64_t resting_ = 0; // number of future clocks in which the platform need not be evaluated
     // number of skipped clocks of the platform that are not yet added to the platform's counters
     uint64_t rested_ = 0;
-    uint64_t evaluated_ = 0;
+    uint64_t evaluated_ = 0, evaluatedAlone_ = 0;
+    CameraAlone camera_;
+    uint64_t alone_ = 0; // number of future clocks in which only the camera need be evaluated
+    // number of clocks that the camera has computed alone and that the chip does not have yet
+    uint64_t ahead_ = 0;
+    // clock at which the camera's state must be marked, as a value of ahead_, and the number of the
+    // carry of the baud rate's phase that follows
+    uint64_t markAt_ = 0, carry_ = 0;
     BoardWires wires_;
     FsmcPins pins_, delayed_;
     FsmcPins* far_ = &pins_; // FSMC pins at the chip

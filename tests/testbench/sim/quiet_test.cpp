@@ -11,9 +11,13 @@
 #include "driver_port.h"
 #include "ground.h"
 #include "map_regs.h"
+#ifdef MAP_SLOT_CAMERA
+#include "camera_regs.h"
+#endif
 #include "modem_regs.h"
 #include "quiet_span.h"
 #include "uav_machine.h"
+#include <cstring>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -292,6 +296,70 @@ TEST(Quiet, AMemoryThatHungGoesOnInItsClock) {
     EXPECT_EQ(written(pair.quick), written(pair.slow));
     EXPECT_EQ(pair.quick.memory().wordsWritten, 1u);
 }
+
+#ifdef MAP_SLOT_CAMERA
+// A camera that is evaluated alone is looked at in random clocks: during pixels, bursts to the
+// memory and ticks of the baud rate, at the end of frames, and while the memory hangs, so that
+// pixels are lost.
+TEST(Quiet, ACameraAloneWorksAsInTheChip) {
+    TwoChips pair;
+    EXPECT_THAT(pair.quick.camera().missing(), testing::IsEmpty());
+    Frame frame{64, 24, {}};
+    for (int i = 0; i < 64 * 24; ++i)
+        frame.pixels.push_back(static_cast<uint8_t>(i * i * 37));
+    for (SocModel* soc : {&pair.quick, &pair.slow}) {
+        // After 120 frames the sensor is quiet for long enough that its pins are driven only once
+        // per millisecond.
+        auto sends = [asked = 0u]() mutable { return ++asked % 137 < 120; };
+        connectSensor(*soc, frame, sends, [](uint32_t) {});
+        passUntil(*soc, McbModel::startClocks + 1000);
+        for (unsigned word = 0; word < 5; ++word) // the FIFOs do not stand at their first place
+            TwoChips::write(*soc);
+        FSMC_init(&driverPort, &soc->fsmc());
+        FSMC_write(MAP_SLOT_CAMERA, CAMERA_SIZE, 24 << 16 | 64);
+        FSMC_write(MAP_SLOT_CAMERA, CAMERA_BASE, MAP_MEMORY_CAMERA);
+        FSMC_write(MAP_SLOT_CAMERA, CAMERA_STRIDE, 4096);
+        FSMC_write(MAP_SLOT_CAMERA, CAMERA_MASK, CAMERA_EVENT_FRAME_MASK);
+        FSMC_write(MAP_SLOT_CAMERA, CAMERA_CONTROL, CAMERA_CONTROL_START_MASK);
+    }
+    Random random(testSeed());
+    uint64_t frames = 0;
+    for (unsigned looks = 0; looks < 400; ++looks) {
+        const bool isLong = random.below(8) == 0;
+        const uint64_t until = pair.quick.cycles() + 1 + random.below(isLong ? 40000 : 4000);
+        while (pair.quick.cycles() < until)
+            if (!pair.quick.passQuiet(until))
+                pair.quick.tick();
+        passUntil(pair.slow, until);
+        expectSameState(pair.quick, pair.slow);
+        ASSERT_FALSE(HasFailure());
+        for (SocModel* soc : {&pair.quick, &pair.slow}) {
+            if (looks % 100 == 50 || looks % 100 == 53)
+                soc->memory().hang(looks % 100 == 50);
+            if (looks % 20)
+                continue;
+            FSMC_init(&driverPort, &soc->fsmc());
+            if (looks == 100) { // from 9600 baud to 250 kbaud
+                FSMC_write(MAP_SLOT_MODEM, MODEM_RX_BASE, 0x10000);
+                FSMC_write(MAP_SLOT_MODEM, MODEM_BAUD, 0x3D090 | MODEM_BAUD_WIRE_MASK);
+                FSMC_write(MAP_SLOT_MODEM, MODEM_CONTROL, MODEM_CONTROL_CONFIGURE_MASK);
+            }
+            frames = FSMC_read(MAP_SLOT_CAMERA, CAMERA_FRAMES);
+            FSMC_write(MAP_SLOT_CAMERA, CAMERA_EVENT, CAMERA_EVENT_FRAME_MASK);
+        }
+    }
+    EXPECT_GT(frames, 50u);
+    EXPECT_GT(FSMC_read(MAP_SLOT_CAMERA, CAMERA_DROPPED), 0u);
+    EXPECT_EQ(std::memcmp(pair.quick.memory().data(), pair.slow.memory().data(),
+                          pair.slow.memory().size()),
+              0);
+    if (pair.quick.camera().exists())
+        EXPECT_GT(pair.quick.evaluatedAlone() * 2, pair.quick.evaluated());
+    EXPECT_EQ(pair.slow.evaluatedAlone(), 0u);
+    std::printf("%lu clocks, %lu evaluated, %lu of them alone, %lu frames\n", pair.quick.cycles(),
+                pair.quick.evaluated(), pair.quick.evaluatedAlone(), frames);
+}
+#endif
 
 // Modem and air must act in the clock in which they are due, whenever the test looks at them.
 TEST(Quiet, NothingOutsideOfTheChipIsLate) {

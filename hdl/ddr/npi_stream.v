@@ -42,15 +42,14 @@ module npi_stream #(
     assign npi_rmw_o      = 1'b0;
     assign npi_wr_flush_o = 1'b0;
     assign npi_rd_flush_o = 1'b0;
-    wire unused = &{1'b0, npi_wr_empty_i, npi_rd_word_i, 1'b0};
 
     localparam [5:0] BURST = 6'd8, FIFO = 6'd32; // words
     localparam [3:0] SIZE_64_BYTES = 4'd3;
 
     reg                 request, request_read; // a request is waiting for its acknowledgement
     reg [ADDR_BITS-1:6] read_addr, write_addr; // addresses of the next bursts
-    // number of words to request, and number of words to deliver to the core
-    reg [WORD_BITS-1:0] to_ask, to_give;
+    reg [WORD_BITS-3:0] to_ask;                // number of bursts to request
+    reg [WORD_BITS-1:0] to_give;               // number of words to deliver to the core
     // number of words that were requested and have not been popped
     reg [5:0]           outstanding;
     reg [2:0]           filled;                // number of words in the current burst
@@ -62,12 +61,25 @@ module npi_stream #(
     wire acked_write = npi_addr_ack_i && !request_read;
 
     // ---- read ----
-    wire ask = to_ask != {WORD_BITS{1'b0}} && outstanding <= FIFO - BURST;
+    wire asks = to_ask != {(WORD_BITS - 2){1'b0}};
+    wire ask  = asks && outstanding <= FIFO - BURST;
 
     assign read_valid_o = !npi_rd_empty_i && to_give != {WORD_BITS{1'b0}};
     assign read_data_o  = npi_rd_data_i;
     assign npi_rd_pop_o = !npi_rd_empty_i && (read_take_i || to_give == {WORD_BITS{1'b0}});
     wire popped_burst   = npi_rd_pop_o && outstanding[2:0] == 3'd0;
+
+    // Both counters either load their value or count down. The multiplexer is in front of the carry
+    // chain, so that a bit takes only one LUT. The sums are written as m - ~n, which is m + n + 1,
+    // because Yosys connects the minuend to the chain without a LUT. `partial` is the carry for a
+    // last burst of fewer than eight words.
+    wire down    = !read_start_i;
+    wire partial = !down && read_words_i[2:0] != 3'd0;
+    wire [WORD_BITS-2:0] ask_next = {{(WORD_BITS - 2){down}}, partial} -
+        ~{down ? to_ask : {1'b0, read_words_i[WORD_BITS-1:3]}, 1'b0};
+    wire [WORD_BITS-1:0] give_next = {{(WORD_BITS - 1){1'b1}}, !down} -
+        ~(down ? to_give : read_words_i);
+    wire unused = &{1'b0, npi_wr_empty_i, npi_rd_word_i, ask_next[0], 1'b0};
 
     // ---- write ----
     wire push = !npi_wr_almost_full_i && !bursts[2] && (padding || write_valid_i);
@@ -112,22 +124,18 @@ module npi_stream #(
         outstanding[2:0] <= outstanding[2:0] - {2'd0, npi_rd_pop_o};
         if (acked_read != popped_burst)
             outstanding[5:3] <= acked_read ? outstanding[5:3] + 3'd1 : outstanding[5:3] - 3'd1;
-        if (acked_read) begin
+        if (acked_read)
             read_addr <= read_addr + 1'b1;
-            to_ask    <= to_ask > {{(WORD_BITS - 4){1'b0}}, 4'd8} ?
-                to_ask - {{(WORD_BITS - 4){1'b0}}, 4'd8}
-                                                                  : {WORD_BITS{1'b0}};
-        end
-        if (read_valid_o && read_take_i)
-            to_give <= to_give - 1'b1;
-        if (read_stop_i) begin
-            to_ask  <= {WORD_BITS{1'b0}};
-            to_give <= {WORD_BITS{1'b0}};
-        end
-        if (read_start_i) begin
+        if (read_start_i)
             read_addr <= read_base_i;
-            to_ask    <= read_words_i;
-            to_give   <= read_words_i;
+        // after read_stop_i, a request that is still waiting no longer counts
+        if (read_start_i || (acked_read && asks))
+            to_ask <= ask_next[WORD_BITS-2:1];
+        if (read_start_i || (read_valid_o && read_take_i))
+            to_give <= give_next;
+        if (read_stop_i && !read_start_i) begin
+            to_ask  <= {(WORD_BITS - 2){1'b0}};
+            to_give <= {WORD_BITS{1'b0}};
         end
 
         if (push)
@@ -144,7 +152,7 @@ module npi_stream #(
             request     <= 1'b0;
             // an idle stream holds this value, also before npi_init_done_i
             request_read <= 1'b1;
-            to_ask      <= {WORD_BITS{1'b0}};
+            to_ask      <= {(WORD_BITS - 2){1'b0}};
             to_give     <= {WORD_BITS{1'b0}};
             outstanding <= 6'd0;
             filled      <= 3'd0;
@@ -171,6 +179,7 @@ module npi_stream #(
     // Assumptions: the core takes a word only when it is offered, starts only when the stream is
     // idle, and does not flush together with a word.
     reg [WORD_BITS-1:0] f_left; // number of words that the core may still take
+    reg [2:0] f_rest;           // number of words of the last burst that the core does not take
     reg [2:0] f_begun;          // number of words that were sent since the burst began
     reg [ADDR_BITS-1:6] f_read, f_write; // addresses of the next bursts since the start
     reg       f_reads, f_writes;
@@ -197,6 +206,8 @@ module npi_stream #(
         there    <= there + {5'd0, came} - {5'd0, npi_rd_pop_o};
         f_left   <= read_stop_i ? {WORD_BITS{1'b0}} : read_start_i ? read_words_i
                     : f_left - {{(WORD_BITS - 1){1'b0}}, read_take_i};
+        if (read_start_i)
+            f_rest <= -read_words_i[2:0];
         if (write_valid_i && write_ready_o)
             f_begun <= f_begun + 3'd1;
         else if (padding && full)
@@ -235,11 +246,10 @@ module npi_stream #(
         // arrive.
         assert (to_give == f_left);
         assert (read_valid_o == (there != 6'd0 && f_left != {WORD_BITS{1'b0}}));
-        assert (to_ask == {WORD_BITS{1'b0}} || to_give >= to_ask);
-        // Until the last word is requested, the core receives every outstanding word.
-        assert (to_ask == {WORD_BITS{1'b0}} ||
-                {1'b0, to_give} == {1'b0, to_ask} + {{(WORD_BITS - 5){1'b0}}, outstanding});
-        assert (to_ask != {WORD_BITS{1'b0}} || to_give <= outstanding);
+        // Until the last burst is requested, the core receives every outstanding word.
+        assert (!asks || {2'd0, to_give} + {{(WORD_BITS - 1){1'b0}}, f_rest} ==
+                         {1'b0, to_ask, 3'd0} + {{(WORD_BITS - 4){1'b0}}, outstanding});
+        assert (asks || to_give <= outstanding);
         assert (f_pushed <= 6'd32);
         assert (!padding || filled != 3'd0);
         assert (!npi_addr_req_o || npi_rnw_o || bursts != 3'd0);

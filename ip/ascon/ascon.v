@@ -28,9 +28,10 @@ module ascon (
                       DIGEST = 4'd12, FLUSH = 4'd13, DRAIN = 4'd14, CLEAR = 4'd15;
 
     reg [3:0]   state, after;   // after: state that follows the rounds
-    // Flags: one for each of the states ROUNDS, WORD, LOAD_SOURCE, LOAD_TAG, TAG_WORD and
-    // WAIT_FOR_START (idle). They are flip-flops because of their high fan-out. busy is !idle.
-    reg         in_rounds, in_word, in_source, in_tag, in_tag_word, idle, busy;
+    // Flags: one for each of the states ROUNDS, WORD, LOAD_SOURCE, LOAD_TAG, TAG_WORD, DIGEST and
+    // WAIT_FOR_START (idle). They are flip-flops because of their high fan-out, or because memory
+    // waits for them. busy is !idle.
+    reg         in_rounds, in_word, in_source, in_tag, in_tag_word, in_digest, idle, busy;
     // keyed: the operand is a word of the key; from_memory: the operand is a word from memory
     reg         keyed, from_memory;
     // the operand is ciphertext, so it replaces the word of the state instead of being added
@@ -130,7 +131,7 @@ module ascon (
     wire reads  = !pass[1] && !none;
     wire step   = in_word && (!reads || read_valid) && (!writes || none || write_ready);
     wire tag_step    = in_tag_word && (decrypt ? read_valid : write_ready);
-    wire digest_step = state == DIGEST && write_ready;
+    wire digest_step = in_digest && write_ready;
 
     npi_stream #(.ADDR_BITS(32), .WORD_BITS(24)) u_stream (
         `include "memory_connect.vh"
@@ -209,6 +210,7 @@ module ascon (
             in_source <= to == LOAD_SOURCE;
             in_tag    <= to == LOAD_TAG;
             in_tag_word <= to == TAG_WORD;
+            in_digest <= to == DIGEST;
             idle      <= to == WAIT_FOR_START;
             busy      <= to != WAIT_FOR_START;
             keyed     <= to == FIRST_WORDS || to == ADD_KEY || to == FINAL_KEY;
@@ -365,7 +367,7 @@ module ascon (
     always @* if (past && !rst_i) begin
         assert (in_rounds == (state == ROUNDS) && in_word == (state == WORD));
         assert (in_source == (state == LOAD_SOURCE) && in_tag == (state == LOAD_TAG));
-        assert (in_tag_word == (state == TAG_WORD));
+        assert (in_tag_word == (state == TAG_WORD) && in_digest == (state == DIGEST));
         assert (idle == (state == WAIT_FOR_START) && busy == !idle);
         assert (keyed == (state == FIRST_WORDS || state == ADD_KEY || state == FINAL_KEY));
         assert (pass <= WIPE);

@@ -47,8 +47,8 @@ entity vision_memory is
 end entity;
 
 architecture rtl of vision_memory is
-  type state_t is (WAIT_FOR_WORK, WAIT_FOR_READ, WAIT_FOR_WRITE);
-  signal state       : state_t;
+  signal request     : std_logic;              -- the memory has not acknowledged the request yet
+  signal writes      : std_logic;              -- the request is a write
   signal active      : std_logic;              -- high from start to stop
   signal read_addr   : unsigned(31 downto 7);
   signal write_addr  : unsigned(31 downto 3);
@@ -61,52 +61,46 @@ architecture rtl of vision_memory is
   signal slot_full   : std_logic;
   signal pushed      : std_logic;
   signal pop, refill : std_logic;
+  signal room        : std_logic;              -- another read may be requested
 begin
   refill <= not left(0) or (not left(1) and pixel_take_i);
   pop    <= not npi_rd_empty_i and (refill or not active);
 
+  room   <= '1' when outstanding <= 16 else '0';
+
   npi_rd_pop_o   <= pop;
-  npi_addr_req_o <= '1' when state /= WAIT_FOR_WORK else '0';
-  npi_rnw_o      <= '0' when state = WAIT_FOR_WRITE else '1';
-  npi_size_o     <= "0000" when state = WAIT_FOR_WRITE else "0100";
-  npi_addr_o     <= std_logic_vector(write_addr) & "000" when state = WAIT_FOR_WRITE else
+  npi_addr_req_o <= request;
+  npi_rnw_o      <= not writes;
+  npi_size_o     <= "0000" when writes = '1' else "0100";
+  npi_addr_o     <= std_logic_vector(write_addr) & "000" when writes = '1' else
                     std_logic_vector(read_addr) & "0000000";
   npi_wr_data_o  <= slot;
-  npi_wr_push_o  <= '1' when state = WAIT_FOR_WRITE and pushed = '0' else '0';
+  npi_wr_push_o  <= request and writes and not pushed;
   record_ready_o <= not slot_full;
   pixel_valid_o  <= left(0);
   pixel_o        <= word(7 downto 0);
-  quiet_o        <= '1' when state = WAIT_FOR_WORK and slot_full = '0' and outstanding = 0 else '0';
+  quiet_o        <= '1' when request = '0' and slot_full = '0' and outstanding = 0 else '0';
 
   transfer : process (clk_i)
     variable asked : unsigned(5 downto 0);
   begin
     if rising_edge(clk_i) then
       asked  := to_unsigned(0, 6);
-      pushed <= '0';
-      case state is
-        when WAIT_FOR_WORK =>
-          if npi_init_done_i = '1' then
-            if slot_full = '1' then
-              state <= WAIT_FOR_WRITE;
-            elsif active = '1' and stop_i = '0' and outstanding <= 16 then
-              state <= WAIT_FOR_READ;
-            end if;
-          end if;
-        when WAIT_FOR_READ =>
-          if npi_addr_ack_i = '1' then
-            asked     := to_unsigned(16, 6);
-            read_addr <= read_addr + 1;
-            state     <= WAIT_FOR_WORK;
-          end if;
-        when WAIT_FOR_WRITE =>
-          pushed <= '1';
-          if npi_addr_ack_i = '1' then
-            write_addr <= write_addr + 1;
-            slot_full  <= '0';
-            state      <= WAIT_FOR_WORK;
-          end if;
-      end case;
+      pushed <= request and writes;
+      if request = '0' then
+        request <= npi_init_done_i and (slot_full or (active and not stop_i and room));
+        writes  <= slot_full;
+      elsif npi_addr_ack_i = '1' then
+        request <= '0';
+        writes  <= '0';
+        if writes = '1' then
+          write_addr <= write_addr + 1;
+          slot_full  <= '0';
+        else
+          asked     := to_unsigned(16, 6);
+          read_addr <= read_addr + 1;
+        end if;
+      end if;
 
       if pop = '1' then
         outstanding <= outstanding + asked - 1;
@@ -145,7 +139,8 @@ begin
         write_addr <= unsigned(result_base_i(31 downto 3));
       end if;
       if rst_i = '1' then
-        state       <= WAIT_FOR_WORK;
+        request     <= '0';
+        writes      <= '0';
         active      <= '0';
         outstanding <= to_unsigned(0, 6);
         left        <= (others => '0');

@@ -6,6 +6,7 @@
 // counter of more than six bits needs several LUTs in series.
 
 // COUNT_UP declares the function up(from), which returns the next number; 0 follows the greatest.
+// ~up(~from) is the previous number.
 `define COUNT_UP(up, BITS) \
     function automatic [(BITS)-1:0] up; \
         input [(BITS)-1:0] from; \

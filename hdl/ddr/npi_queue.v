@@ -12,6 +12,7 @@
 // and a read word can arrive. Commands are issued in the order of acceptance.
 
 `default_nettype none
+`include "count_up.vh"
 `include "shift_order.vh"
 
 module npi_queue #(
@@ -59,11 +60,7 @@ module npi_queue #(
     `SHIFT_ORDER(moved_after, 5)
     `SHIFT_NUMBERS(moved_of, moved_number, moved_after, 5)
 
-    // Returns the next number. The function has no carry chain, in which each bit takes a LUT site.
-    function [4:0] next_number;
-        input [4:0] from;
-        next_number = from ^ {&from[3:0], &from[2:0], &from[1:0], from[0], 1'b1};
-    endfunction
+    `COUNT_UP(up, 5)
 
     // Returns the number of words minus 1 for a size; sizes 6 and 7 count as 5.
     function [4:0] last_of;
@@ -142,7 +139,7 @@ module npi_queue #(
         if (cmd_valid_o && cmd_ready_i)
             issue <= after(issue);
         if (back_done_i)
-            back_index <= next_number(back_index);
+            back_index <= up(back_index);
         if (back_ends)
             back <= after(back);
         full <= !back_ends && (full || (push_i && nearly));

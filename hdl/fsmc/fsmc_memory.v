@@ -16,6 +16,7 @@
 // clears this flip-flop one clock before it loads the address (the tag) of the new data.
 
 `default_nettype none
+`include "count_up.vh"
 
 module fsmc_memory #(
     parameter ADDR_BITS   = 25, // width of a halfword address
@@ -167,23 +168,9 @@ module fsmc_memory #(
     wire at_alone = same_sync && fetch_block == at_block && have_one;
     wire at_whole = same_sync && idle_o && (at_block ? full[1] : full[0]);
 
-    // These sums have no carry chains, in which each bit takes a LUT site.
-    reg [BLOCK_LOG2-1:0] next_word; // fetch_word + 1
-    reg [PAIR-1:0]       next_pair; // at_pair + ahead
-    reg                  carry;
-    integer              i;
-    always @* begin
-        carry = 1'b1;
-        for (i = 0; i < BLOCK_LOG2; i = i + 1) begin
-            next_word[i] = fetch_word[i] ^ carry;
-            carry        = carry && fetch_word[i];
-        end
-        carry = ahead;
-        for (i = 0; i < PAIR; i = i + 1) begin
-            next_pair[i] = at_pair[i] ^ carry;
-            carry        = carry && at_pair[i];
-        end
-    end
+    `COUNT_UP(word_after, BLOCK_LOG2)
+    `COUNT_UP(pair_after, PAIR)
+    wire [PAIR-1:0] next_pair = ahead ? pair_after(at_pair) : at_pair;
 
     wire fetching = wanted || busy;
     wire last     = npi_rd_pop_o && (single || &fetch_word);
@@ -218,7 +205,7 @@ module fsmc_memory #(
             {wanted, busy} <= 2'b01;
 
         if (npi_rd_pop_o && !single)
-            fetch_word <= next_word;
+            fetch_word <= word_after(fetch_word);
         if (last)
             {busy, stale} <= 2'b00;
         if (fill && fetch_word == one_word)

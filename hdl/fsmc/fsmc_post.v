@@ -9,6 +9,7 @@
 // request.
 
 `default_nettype none
+`include "count_up.vh"
 `include "shift_order.vh"
 
 module fsmc_post #(
@@ -55,21 +56,7 @@ module fsmc_post #(
 
     wire       joins = open_addr == wr_addr_i[ADDR_BITS-1:2];
 
-    // Returns the next or the previous number. The function has no carry chain, in which each bit
-    // takes a LUT site.
-    function automatic [LOG2-1:0] stepped;
-        input [LOG2-1:0] from;
-        input            down;
-        integer i;
-        reg     carry;
-        begin
-            carry = 1'b1;
-            for (i = 0; i < LOG2; i = i + 1) begin
-                stepped[i] = from[i] ^ carry;
-                carry = carry && (from[i] ^ down);
-            end
-        end
-    endfunction
+    `COUNT_UP(up, LOG2)
 
     wire full   = &count; // no other word can be closed, so the open word stays open
     wire close  = open && !full && (ended || flush_i || (wr_i && !joins));
@@ -97,7 +84,7 @@ module fsmc_post #(
             addrs[tail] <= open_addr;
         if (close != word_taken_i)
             // the number does not depend on `close`, which arrives late
-            count <= stepped(count, word_taken_i);
+            count <= word_taken_i ? ~up(~count) : up(count);
         if (close)
             tail <= after(tail);
         if (close || word_taken_i)

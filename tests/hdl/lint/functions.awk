@@ -33,8 +33,8 @@ place && match($0, /for \([a-z_0-9]+ =/) { delete variables[substr($0, RSTART + 
     place = ""
 }
 END {
-    if (functions < 20) {
-        print "expected at least 20 functions, got " functions + 0
+    if (functions < 15) {
+        print "expected at least 15 functions, got " functions + 0
         failed = 1
     }
     exit failed

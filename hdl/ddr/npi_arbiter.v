@@ -170,15 +170,6 @@ module npi_arbiter #(
             end
         end
     end
-    // A port stores a part of a word in its write FIFO. The simulator then does not stop the clock
-    // (testbench/sim/rests.vh).
-    reg     stores;
-    integer s;
-    always @* begin
-        stores = 1'b0;
-        for (s = 0; s < PORTS; s = s + 1)
-            stores = stores || (MERGE[s] && |npi_wr_be_i[8*s +: 8]);
-    end
 
     assign wr_valid_o = |(move_at[PORTS-1:0] & ~npi_wr_empty_o);
     assign wr_data_o  = wr_data;
@@ -188,7 +179,7 @@ module npi_arbiter #(
     // These inputs are not used, because byte enables replace read-modify-write, and because
     // transfers are aligned.
     wire unused =
-        &{1'b0, npi_rmw_i, npi_size_i, npi_addr_i, addr[2:0], back_index[4], move_at, stores, 1'b0};
+        &{1'b0, npi_rmw_i, npi_size_i, npi_addr_i, addr[2:0], back_index[4], move_at, 1'b0};
 
 `ifdef FORMAL
     `include "npi_arbiter_proof.vh"

@@ -5,9 +5,8 @@
 // prover.
 //
 // It proves that at the time at which the clock stops, no register of the memory would take another
-// value at the next clock, whatever its inputs are (compare hdl/system/idle_proof.v). The words in
-// the write FIFOs are not part of the proof, which would take minutes with them; test_sim_quiet
-// fails if the clock is stopped while a part of a word is stored.
+// value at the next clock, whatever its inputs are (compare hdl/system/idle_proof.v), and that no
+// word is written to a FIFO.
 
 `default_nettype none
 `include "rests.vh"
@@ -26,7 +25,10 @@ module memory_rest_proof #(
     input wire                mcb_cmd_full_i, mcb_wr_full_i, mcb_rd_empty_i, mcb_calib_done_i,
     input wire [63:0]         mcb_rd_data_i,
     // outputs of the FIFOs; without them the prover would remove the FIFOs
-    output wire [PORTS-1:0]   npi_rd_empty_o, npi_wr_almost_full_o
+    output wire [PORTS-1:0]   npi_rd_empty_o, npi_wr_almost_full_o,
+    output wire [64*PORTS-1:0] npi_rd_data_o,
+    output wire [63:0]        mcb_wr_data_o,
+    output wire [7:0]         mcb_wr_mask_o
 );
     (* hierconn *) wire [PORTS-1:0] \u_core.npi_addr_req_i ;
     (* hierconn *) wire [PORTS-1:0] \u_core.npi_wr_push_i ;
@@ -36,7 +38,7 @@ module memory_rest_proof #(
     (* hierconn *) wire \u_core.u_arbiter.u_queue.moving ;
     (* hierconn *) wire \u_core.u_arbiter.u_queue.coming ;
     (* hierconn *) wire \u_core.u_arbiter.u_queue.cmd_valid_o ;
-    (* hierconn *) wire \u_core.u_arbiter.stores ;
+    (* hierconn *) wire [8*PORTS-1:0] \u_core.npi_wr_be_i ;
 
     wire closes;
     core_gate #(.GATED(1)) u_gate ( // the same gate as in sim_soc.v
@@ -55,7 +57,8 @@ module memory_rest_proof #(
         .npi_wr_be_i(npi_wr_be_i), .npi_wr_push_i(npi_wr_push_i),
         .npi_wr_flush_i(npi_wr_flush_i), .npi_rd_pop_i(npi_rd_pop_i),
         .npi_rd_flush_i(npi_rd_flush_i), .npi_rd_empty_o(npi_rd_empty_o),
-        .npi_wr_almost_full_o(npi_wr_almost_full_o),
+        .npi_wr_almost_full_o(npi_wr_almost_full_o), .npi_rd_data_o(npi_rd_data_o),
+        .mcb_wr_data_o(mcb_wr_data_o), .mcb_wr_mask_o(mcb_wr_mask_o),
         .mcb_cmd_full_i(mcb_cmd_full_i), .mcb_wr_full_i(mcb_wr_full_i),
         .mcb_rd_data_i(mcb_rd_data_i), .mcb_rd_empty_i(mcb_rd_empty_i),
         .mcb_calib_done_i(mcb_calib_done_i));

@@ -4,12 +4,13 @@
 // rest_proof.v and memory_rest_proof.v prove that a block would not change its state while its
 // clock is stopped.
 
-// MEMORY_RESTS is true while no port of `memory`, an instance of memory_mcb, has a request and no
-// transfer is pending. The memory then keeps its state.
+// MEMORY_RESTS is true while no port of `memory`, an instance of memory_mcb, has a request, no port
+// stores a part of a word in its write FIFO, and no transfer is pending. The memory then keeps its
+// state. Only port 0, of the bridge, stores parts of words (MERGE).
 `define MEMORY_RESTS(memory) \
     !(|{memory.npi_addr_req_i, memory.npi_wr_push_i, memory.npi_wr_flush_i, memory.npi_rd_pop_i, \
         memory.npi_rd_flush_i, memory.u_arbiter.u_queue.moving, memory.u_arbiter.u_queue.coming, \
-        memory.u_arbiter.u_queue.cmd_valid_o, memory.u_arbiter.stores})
+        memory.u_arbiter.u_queue.cmd_valid_o, memory.npi_wr_be_i[7:0]})
 
 // PLATFORM_STIRS is true while an access to the memory or to the register bus of the platform `p`
 // may change the state of the bridge, the decoder, the modem or the system slot. Memory port 0

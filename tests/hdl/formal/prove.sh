@@ -16,7 +16,8 @@
 # PROVE_BOUNDED=1: the proof is only bounded.
 # PROVE_READ: additional arguments of read_verilog: defines, files.
 # PROVE_CORE: the name of a core and its files, for the proof of a core in idle_proof.
-# PROVE_SCRIPT: Yosys script that changes the flattened design; it may use idle_registers.v.
+# PROVE_SCRIPT: Yosys script that changes the flattened design; it may use idle_registers.v and
+#   idle.ys.
 # PROVE_MUTANT: Yosys commands to run before flattening (tools/icesoc/mutants/drawn.py); without a
 #   trace.
 #
@@ -63,7 +64,7 @@ read=${PROVE_READ:-}
 flat=''
 [ -z "${PROVE_SCRIPT:-}" ] || {
     flat="script $PROVE_SCRIPT"
-    cp "$here/idle_registers.v" .
+    cp "$here/idle_registers.v" "$here/idle.ys" .
 }
 # -nosdff -nodffe: AIGER has only plain flip-flops. The module's outputs are removed, because abc
 # would treat them as properties. Undefined values, such as the value of a flip-flop without a

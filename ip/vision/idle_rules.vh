@@ -19,4 +19,5 @@
         assert (\u_core.state != WAIT_FOR_START || !\u_core.u_memory.active );
         assert (\u_core.state == STREAM || !\u_core.streaming );
         assert (\u_core.state != DRAIN || \u_core.stop );
+        assert (\u_core.state != 2'd3); // GHDL's netlist would treat this value like DRAIN
     end

@@ -17,6 +17,8 @@ import subprocess
 import sys
 import time
 
+from icesoc.util.rooms import ROOMS
+
 LONGEST = 600  # time after which a run is considered to hang, s
 source, build, work = (pathlib.Path(word).resolve() for word in sys.argv[1:4])
 moments, tools = int(sys.argv[4]), sys.argv[5:]
@@ -62,7 +64,7 @@ def synth():
 
 def new_ip():
     tree = work / "tree"
-    for folder in ("bus", "hdl", "sw", "testbench", "synth", "ip"):
+    for folder in ROOMS:
         (tree / folder).mkdir(parents=True)
     core = tree / "ip/low_pass"
 

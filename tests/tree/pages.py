@@ -14,8 +14,6 @@ import re
 import subprocess
 import sys
 
-ROOMS = "hdl|bus|ip|slice|sw|testbench|synth|tests|tools|docs|cmake|examples|boards"
-
 
 def exists(tree, path, files):
     """Returns True if a path that a page names is in the repository. The path may also be a folder,
@@ -33,6 +31,7 @@ def anchors(page):
 
 def check(tree, page, files):
     code, before = False, ""
+    folders = "|".join(sorted({re.escape(f.split("/")[0]) for f in files if "/" in f}))
     for number, line in enumerate(open(os.path.join(tree, page)), 1):
         line = line.rstrip("\n")
         if re.match(r"\s*```", line):
@@ -52,7 +51,7 @@ def check(tree, page, files):
             known = path.endswith(".md") and path in files
             if known and anchor not in anchors(os.path.join(tree, path)):
                 yield f"{page}:{number}: {path} has no heading #{anchor}"
-        for path in re.findall(rf"`((?:{ROOMS})/[\w./*-]+)`", line):
+        for path in re.findall(rf"`((?:{folders})/[\w./*-]+)`", line):
             # names that the guides use as examples
             example = re.search("low_pass|my_uart|[pP]ump|NAME", path)
             if not example and not exists(tree, path, files):

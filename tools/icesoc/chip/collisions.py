@@ -9,6 +9,7 @@ import re
 
 from icesoc import TREE
 from icesoc.regs.names import Collision, Spelled, constants
+from icesoc.util import rooms
 
 PLATFORM = "the platform"
 
@@ -18,7 +19,7 @@ def platform_names(base):
     modules, and names of the constants of bus/map.regs.json."""
     text = re.sub("//.*", "", (TREE / "hdl/soc.v").read_text())
     yield from (("soc.v", name) for name in re.findall(r"[A-Za-z_]\w*", text))
-    yield from (("modules", path.stem) for room in ("bus", "hdl")
+    yield from (("modules", path.stem) for room in rooms.PLATFORM
                 for path in (TREE / room).rglob("*.v"))
     yield from (("map_regs.h", constant["name"]) for constant in base["constants"])
     yield "core_pins.ucf", "soc_clk"

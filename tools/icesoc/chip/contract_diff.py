@@ -18,8 +18,9 @@ import tempfile
 
 from icesoc.chip import manifest
 from icesoc.regs.model import Block, Wrong
+from icesoc.util.rooms import RTL
 
-ROOMS = ("hdl", "ip", "examples", "bus")
+ROOMS = (*RTL, "examples")
 
 
 def fail(text):

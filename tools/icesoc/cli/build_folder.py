@@ -15,9 +15,10 @@ from icesoc.util.errors import Stop
 from icesoc.util.lock import lock
 from icesoc.util.ninja import run_ninja
 from icesoc.util.process import run, tool
+from icesoc.util.rooms import rooms
 
 DEFAULT_BOARD, DEFAULT_BRIDGE = "nucleo-qmtech", "async"
-ROOMS_OF_PROGRAMS = "bus;slice;sw;hdl;ip;testbench;tests"
+ROOMS_OF_PROGRAMS = ";".join(rooms("program"))
 
 
 def writable(folder, otherwise):

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from icesoc import TREE
 from icesoc.util import templates
+from icesoc.util.rooms import PLATFORM
 
 KINDS = {".vhd": "vhdl", ".vhdl": "vhdl", ".v": "verilog", ".sv": "verilog",
          ".vh": "header", ".svh": "header", ".h": "header", ".inc": "header"}
@@ -131,7 +132,7 @@ def check_names(slot, top, files):
         fail(f"'{slot}' is also the name of a {kind} of the core; give the slot another name")
     first = only_once(there, "leave one of the files out") if kind == "module" else {}
     room = str(TREE)
-    ours = [os.path.join(d, f) for r in ("bus", "hdl")
+    ours = [os.path.join(d, f) for r in PLATFORM
             for d, _, there in os.walk(os.path.join(room, r)) for f in there
             if f.endswith(".v")]
     for name, file, line in declared(ours, "module"):

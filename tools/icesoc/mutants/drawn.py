@@ -12,6 +12,7 @@ from icesoc.mutants import model, results, run
 from icesoc.mutants.results import GATE
 from icesoc.util.lock import only_one
 from icesoc.util.progress import clock, is_tenth
+from icesoc.util.rooms import PLATFORM, RTL
 from icesoc.util.tree import tree_state
 from concurrent.futures import ThreadPoolExecutor
 
@@ -69,7 +70,7 @@ class Proof:
     def is_in_tree(self):
         """Returns whether the tree has the module's file, which is otherwise generated."""
         return any(next(pathlib.Path(self.tree, folder).glob(f"**/{self.module}.v"), None)
-                   for folder in ("bus", "hdl", "ip"))
+                   for folder in RTL)
 
     def run(self, folder, mutant, seconds=None):
         """Runs prove.sh; `mutant`: Yosys commands that prove.sh runs after it has read the files
@@ -245,10 +246,10 @@ def progress(tried, number):
 def measure(proofs, options, out):
     source = pathlib.Path(proofs[0].tree)
     # state of the measured tree, for the status of mutants in the regression
-    tree = tree_state(source, "bus hdl tests")
+    tree = tree_state(source, " ".join((*PLATFORM, "tests")))
     # A copy of the tree is used, because any edit during the run would change the names of cells.
     shutil.rmtree(out / "drawn", ignore_errors=True)
-    for folder in ("bus", "hdl", "ip"):
+    for folder in RTL:
         shutil.copytree(source / folder, out / "drawn/source" / folder)
     with ThreadPoolExecutor(options.jobs) as pool:
         lists = list(pool.map(lambda proof: proof.draw(options.number, options.seed), proofs))

@@ -13,6 +13,7 @@ written.
 import collections, json, os, pathlib, re, shutil, subprocess, sys, tempfile
 
 from icesoc.mutants import results
+from icesoc.util.rooms import RTL
 
 NUMBER = """module mutant_number(output reg [15:0] number);
     initial number = $c("(std::getenv(\\"MUTANT\\") ? std::atoi(std::getenv(\\"MUTANT\\")) : 0)");
@@ -64,7 +65,7 @@ def cells(path):
             # The cell itself has the last of several locations. Yosys puts the location of a
             # condition that it could not resolve before the cell's location.
             source = cell["attributes"].get("src", "").split("|")[-1]
-            source = re.sub(r".*/((bus|hdl|ip)/)", r"\1", source)
+            source = re.sub(rf".*/(({'|'.join(RTL)})/)", r"\1", source)
             widths = {port: len(bits) for port, bits in cell["connections"].items()}
             signal = signals.get(cell["connections"].get("Q", [""])[0], "")
             alike[f"{module_of(cell['type'])} {source}{signal}"].append((name, widths))

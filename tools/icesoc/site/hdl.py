@@ -8,6 +8,8 @@ import dataclasses
 import re
 from pathlib import Path
 
+from icesoc.util.rooms import PLATFORM
+
 PARAMETER = re.compile(r"parameter\s+(?:signed\s+|integer\s+)?(\[[^]]*\]\s*)?(\w+)\s*=\s*([^,/]+?)"
                        r"\s*,?\s*(?://\s*(.*))?$")
 PORT = re.compile(r"(input|output|inout)\s+(?:wire|reg)?\s*(signed\s+)?"
@@ -83,7 +85,7 @@ def section(text, begin):
 
 def included(name, root):
     """Returns the text of an include file of the platform."""
-    for folder in ("bus", "hdl"):
+    for folder in PLATFORM:
         for path in sorted((root / folder).rglob(name)):
             return path.read_text()
     return ""

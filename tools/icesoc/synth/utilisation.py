@@ -22,12 +22,13 @@ from icesoc.util import measured
 from icesoc.util.errors import Stop, reason_of
 from icesoc.util.files import write
 from icesoc.util.lock import only_one
+from icesoc.util.rooms import RTL
 from icesoc.util.tree import tree_state, write_state
 
 # FPGA families; figures, limits and the page are about the first one
 FAMILIES = ("xc6s", "xc7", "ecp5")
 WHOLE_CHIP = "soc"
-STATE_OF = "bus hdl ip slice synth tools"
+STATE_OF = " ".join((*RTL, "slice", "synth", "tools"))
 PAGE = pathlib.Path(__file__).with_name("page.html")
 
 
@@ -36,9 +37,9 @@ def rtl_of(o):
     modules of the platform precede cores and generated modules."""
     if not o.generated.is_dir():
         raise Stop(f"{o.generated} not found; run ./icesoc build first")
-    rooms = sorted(folder for room in ("hdl", "ip") for folder in (o.source / room).iterdir()
+    inner = sorted(folder for room in ("hdl", "ip") for folder in (o.source / room).iterdir()
                    if folder.is_dir())
-    folders = [o.source / "synth", o.source / "hdl", o.source / "bus", *rooms, o.generated]
+    folders = [o.source / "synth", o.source / "hdl", o.source / "bus", *inner, o.generated]
     # The build passes the files of all cores. Their include files are in the same folders.
     files = [pathlib.Path(name) for name in o.files.split(";") if name]
     files = [sources.relative_to(file, pathlib.Path()) for file in files if file.exists()]

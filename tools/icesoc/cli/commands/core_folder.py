@@ -18,6 +18,7 @@ from icesoc.util.console import say
 from icesoc.util.errors import Stop, nearest
 from icesoc.util.process import logged, output, run
 from icesoc.util.reserved import REFUSAL, RESERVED
+from icesoc.util.rooms import RTL
 
 TEMPLATE = TREE / "tools/icesoc/cores/template"
 NAME = Option("name", TEXT, "name of the core, such as low_pass", "", positional=True)
@@ -37,7 +38,7 @@ def check_name(name, room="ip"):
     for folder in (Path("ip", name), Path(room, name)):
         if os.path.lexists(folder):
             raise Stop(f"{folder} already exists; choose another name, or remove it first", 2)
-    for room in ("bus", "hdl", "ip", "sw", "testbench", "synth"):
+    for room in (*RTL, "sw", "testbench", "synth"):  # rooms with modules or registers
         for path in sorted(Path(room).rglob("*")):
             if room != "synth" and path.name in (f"{name}.regs.json", f"{name}_wrapper.v"):
                 raise Stop(f"the name '{name}' is taken by {path}; choose another name", 2)

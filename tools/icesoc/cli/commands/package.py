@@ -11,9 +11,10 @@ from icesoc.cli.options import FOLDER, JOBS, SWITCH, Option
 from icesoc.release import version
 from icesoc.util.console import say
 from icesoc.util.process import logged, output as read, run
+from icesoc.util.rooms import rooms
 
 BUILD = "build/package"
-ROOMS = "bus;slice;ip;sw;hdl;testbench"
+ROOMS = ";".join(rooms("core"))
 
 
 @command("package", [

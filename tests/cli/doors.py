@@ -278,6 +278,12 @@ class Mistakes(Work):
             self.assertIn(said, text, words)
             self.assertNotIn("Traceback", text, words)
 
+    def test_the_probe_without_a_map_is_refused(self):
+        status, text = ask("tools/python", "-m", "icesoc.cores.probe", "--proxy", "probe:default",
+                           "--map", "/none", str(self.work / "capture.vcd"))
+        self.assertEqual(status, 1, text)
+        self.assertIn("probe: --map: expected gen/chip.json", text)
+
     def test_nothing_is_built_before_what_is_wrong_is_said(self):
         self.script("tree/cmake/setup.sh", "echo set up\n")
         for folder in ("ip", "synth", "tests"):

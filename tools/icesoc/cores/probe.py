@@ -186,7 +186,6 @@ def capture(probe, signals, args, say):
 
 
 def main():
-    plugged.interrupt_once()
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("out", help="output file for the waveform (VCD)")
@@ -219,6 +218,7 @@ def main():
         parser.error("expected --device or --proxy")
     import Ice
     import plugged
+    plugged.interrupt_once()
     Ice.loadSlice("", [str(TREE / "ip/probe/Probe.ice")])
     import Probes  # Ice.loadSlice creates this module
     communicator = None

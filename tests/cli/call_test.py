@@ -27,7 +27,7 @@ BUILD = Path(sys.argv[2]).resolve()
 HERE = Path(__file__).resolve().parent
 os.chdir(TREE)
 os.environ.pop("MAKEFLAGS", None)
-from icesoc.cli import command, main  # noqa: E402
+from icesoc.cli import main  # noqa: E402
 from icesoc.cli.commands.call import choices  # noqa: E402
 from icesoc.cli.options import ADDRESS  # noqa: E402
 from icesoc.call.objects import Catalogue  # noqa: E402

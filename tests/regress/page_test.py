@@ -10,7 +10,7 @@ import subprocess
 from pathlib import Path
 from types import SimpleNamespace
 
-from project import BUILD, TREE, Project, append, edit, main, write
+from project import BUILD, TREE, Project, append, main, write
 from icesoc.mutants import results
 from icesoc.regress import blocks
 from icesoc.util import browser
@@ -172,7 +172,7 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
         known = blocks.Blocks(Path("."))
         for name, place, block in (
                 ("test_fifo_deep.Fifo.One", "hdl", "hdl/fifo"), ("formal.fifo_2", "hdl/formal",
-                "hdl/fifo"), ("cdc.test_fifo.1", "hdl", "hdl/fifo"),
+                "hdl/fifo"), ("hdl.cdc.test_fifo.1", "hdl", "hdl/fifo"),
                 ("test_wire_modes.Modes.One", "hdl", "hdl/wire"),
                 ("formal.idle_fir", "hdl/formal", "ip/fir"),
                 ("test_ip_fir.Fir.One", "fir", "ip/fir"), ("test_x.One", "hdl", "hdl"),

@@ -12,7 +12,6 @@ import zlib
 import Ice
 
 import mission
-from icesoc import TREE
 from icesoc.cores import probe
 from icesoc.util.errors import Stop
 

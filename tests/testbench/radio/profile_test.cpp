@@ -68,7 +68,7 @@ TEST_P(Profiles, DeassertCTSAtTheirThreshold) {
 TEST_P(Profiles, AssertCTSAgainBelowTheirThreshold) {
     if (profile == "s1")
         GTEST_SKIP() << "series 1 has no FT";
-    constexpr size_t remaining = 50;
+    constexpr uint32_t remaining = 50;
     const uint32_t release = profile == "s2c" ? 17 : 1;
     for (const bool isAsserted : {true, false}) {
         const uint32_t ft = remaining + release - !isAsserted;

@@ -11,7 +11,7 @@ import time
 import places
 
 from icesoc.call.objects import Catalogue, check_register, flights, registers, ACCESSES, REGISTERS
-from icesoc.call.slices import annotation, listed
+from icesoc.call.slices import listed
 from icesoc.call.values import Reader, plain, readable
 from icesoc.cli.command import command
 from icesoc.cli.options import (ADDRESS, ARGUMENTS, BUILD, COUNT, FILE, FOLDER, KEY_FILE, PATH,

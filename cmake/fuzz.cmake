@@ -5,9 +5,10 @@
 # icesoc_fuzz(NAME HARNESS file.cpp SOURCES file... [INCLUDES dir...] [DEFINES name...] RUNS n
 #             [SEEDS file-or-folder] [DICT file] [LENGTH bytes] [LIBS file...] [LABELS ...]
 #             [DEPENDS ...])
-# Builds the program NAME, and adds the test fuzz.NAME, which runs RUNS inputs of up to LENGTH bytes
-# (default 400). The inputs in SEEDS run first; the others are random and depend only on the
-# environment variable SEED. The test ends after RUNS inputs, however long they take.
+# Builds the program NAME, and adds the test FOLDER.fuzz.NAME (icesoc_test_folder), which runs RUNS
+# inputs of up to LENGTH bytes (default 400). The inputs in SEEDS run first; the others are random
+# and depend only on the environment variable SEED. The test ends after RUNS inputs, however long
+# they take.
 function(icesoc_fuzz name)
   cmake_parse_arguments(A "" "HARNESS;DICT;RUNS;SEEDS;LENGTH"
     "SOURCES;INCLUDES;DEFINES;LIBS;LABELS;DEPENDS" ${ARGN})
@@ -49,7 +50,8 @@ function(icesoc_fuzz name)
   if(A_SEEDS)
     get_filename_component(seeds ${A_SEEDS} ABSOLUTE)
   endif()
-  add_test(NAME fuzz.${name}
+  icesoc_test_folder(test)
+  add_test(NAME ${test}.fuzz.${name}
     COMMAND ${CMAKE_SOURCE_DIR}/cmake/fuzz.sh ${dir}/run ${A_RUNS} ${seeds} ${options})
-  set_tests_properties(fuzz.${name} PROPERTIES LABELS "${A_LABELS};fuzz")
+  set_tests_properties(${test}.fuzz.${name} PROPERTIES LABELS "${A_LABELS};fuzz")
 endfunction()

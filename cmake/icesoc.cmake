@@ -150,19 +150,35 @@ function(icesoc_sanitized)
   set_property(GLOBAL APPEND PROPERTY ICESOC_SANITIZED ${ARGN})
 endfunction()
 
-# icesoc_uncertain(PROGRAM seeds [gtest filter]): adds tests cdc.<program>.<seed>. Each runs the
-# cases of an icesoc_test again, with synchronisers that sample the old or the new value at random
-# (hdl/cdc/cdc_random.vh). The random numbers depend on <seed> and on the test run's SEED.
+# icesoc_test_folder(VARIABLE): returns the word that the names of the caller's tests begin with,
+# which is the folder below ip/, tests/sw/ or tests/. (CTest runs a test in the caller's folder of
+# the build folder, which a core outside the tree has as well.)
+function(icesoc_test_folder variable)
+  cmake_path(RELATIVE_PATH CMAKE_CURRENT_BINARY_DIR BASE_DIRECTORY ${CMAKE_BINARY_DIR}
+             OUTPUT_VARIABLE path)
+  if(path MATCHES "^(tests/sw|tests|ip)/([^/]+)")
+    set(${variable} ${CMAKE_MATCH_2} PARENT_SCOPE)
+  else()
+    cmake_path(GET path FILENAME name)
+    set(${variable} ${name} PARENT_SCOPE)
+  endif()
+endfunction()
+
+# icesoc_uncertain(PROGRAM seeds [gtest filter]): adds tests <folder>.cdc.<program>.<seed>.
+# Each runs the cases of an icesoc_test again, with synchronisers that sample the old or the new
+# value at random (hdl/cdc/cdc_random.vh). The random numbers depend on <seed> and on the test run's
+# SEED.
 function(icesoc_uncertain program seeds)
   set(filter ${ARGN})
   if(NOT filter)
     set(filter *)
   endif()
+  icesoc_test_folder(folder)
   foreach(seed RANGE 1 ${seeds})
-    add_test(NAME cdc.${program}.${seed}
+    add_test(NAME ${folder}.cdc.${program}.${seed}
       COMMAND ${program} --gtest_brief=1 "--gtest_filter=${filter}")
     # The test fails if the filter matches no case.
-    set_tests_properties(cdc.${program}.${seed} PROPERTIES LABELS "rtl;cdc"
+    set_tests_properties(${folder}.cdc.${program}.${seed} PROPERTIES LABELS "rtl;cdc"
                          ENVIRONMENT "CDC_SEED=${seed};NEEDS=${program}"
                          FAIL_REGULAR_EXPRESSION "[^0-9]0 tests from")
   endforeach()

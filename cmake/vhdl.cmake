@@ -54,7 +54,7 @@ function(icesoc_vhdl)
   set_property(GLOBAL APPEND PROPERTY ICESOC_VHDL_TARGETS ${A_NAME}_verilog)
 endfunction()
 
-# icesoc_vhdl_test(NAME core SOURCES file... [LIBS lib...]): adds the test vhdl.<core>
+# icesoc_vhdl_test(NAME core SOURCES file... [LIBS lib...]): adds the test <core>.vhdl
 # (cmake/vhdl_test.sh). It runs <core>_tb.vhd with vectors that <core>_vectors.cpp writes. Both
 # files are in the folder of the caller.
 function(icesoc_vhdl_test)
@@ -64,8 +64,8 @@ function(icesoc_vhdl_test)
   add_dependencies(${A_NAME}_vectors ghdl)
   icesoc_tested(${A_NAME} ${A_NAME}_vectors)
   set_property(GLOBAL APPEND PROPERTY ICESOC_TEST_PROGRAMS ${A_NAME}_vectors)
-  add_test(NAME vhdl.${A_NAME} COMMAND ${CMAKE_SOURCE_DIR}/cmake/vhdl_test.sh ${A_NAME} ${GHDL}
+  add_test(NAME ${A_NAME}.vhdl COMMAND ${CMAKE_SOURCE_DIR}/cmake/vhdl_test.sh ${A_NAME} ${GHDL}
            $<TARGET_FILE:${A_NAME}_vectors> ${CMAKE_CURRENT_BINARY_DIR}/vhdl ${A_SOURCES}
            ${CMAKE_CURRENT_SOURCE_DIR}/${A_NAME}_tb.vhd)
-  set_tests_properties(vhdl.${A_NAME} PROPERTIES LABELS vhdl)
+  set_tests_properties(${A_NAME}.vhdl PROPERTIES LABELS vhdl)
 endfunction()

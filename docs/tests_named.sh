@@ -18,7 +18,7 @@ for name in $(named '[A-Z][A-Za-z]*\.([A-Z][A-Za-z0-9]*|\*)' | grep -v "^Ice[.]"
     [ "$case" != '*' ] || case='[A-Z]'
     grep -rqE "TEST(_F|_P)?\($suite, $case" --include='*.cpp' "$@" || missing "$name"
 done
-names=$(named '(e2e|slice|fuzz|lint|vhdl|formal)\.[a-z0-9_.]+[a-z0-9]')
+names=$(named '([a-z]+\.fuzz|e2e|slice|lint|formal)\.[a-z0-9_.]+[a-z0-9]')
 [ -z "$names" ] || known=$(ctest --test-dir "$build" -N 2>/dev/null | sed -n 's/.*: \(.*\)/\1/p')
 for name in $names; do
     echo "$known" | grep -qxF "$name" || missing "$name"

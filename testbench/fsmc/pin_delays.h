@@ -65,7 +65,7 @@ inline const FsmcCorner fsmcCorners[] = {
      500},
 };
 
-// Returns a corner of delays; in the tests cdc.* (CDC_SEED is set), a simplified corner. In these
+// Returns a corner of delays; in the tests *.cdc.* (CDC_SEED is set), a simplified corner. In these
 // tests each synchroniser may be late by a whole clock, which already covers the effect of the
 // delays (docs/fsmc.md). In a simplified corner the address arrives no later than NOE, the bits of
 // the address arrive together, and NWE's delay into the chip is equal at both edges. At 60 MHz the

@@ -331,7 +331,7 @@ add_custom_target(test_w)
         write("hdl/a/other.v", "module other;\n    inner u_other (.a(a));\nendmodule\n")
         files = " ".join(f"${{CMAKE_SOURCE_DIR}}/ip/core/{name}.vhd"
                          for name in ("leaf", "inner", "core", "core_tb"))
-        self.tests("add_test(NAME vhdl.core COMMAND ${CMAKE_SOURCE_DIR}/cmake/vhdl_test.sh core "
+        self.tests("add_test(NAME core.vhdl COMMAND ${CMAKE_SOURCE_DIR}/cmake/vhdl_test.sh core "
                    f"{files} WORKING_DIRECTORY ${{CMAKE_SOURCE_DIR}})\n")
         commit("a core in VHDL")
         self.regress("--name vhdl")
@@ -341,10 +341,10 @@ add_custom_target(test_w)
         write("wrong", "")
         self.regress("--name vhdl", 1)
         self.has(r"^        changed since it passed at [0-9a-f]+: ip/core/inner.vhd:7 \(1 line\)$",
-                 "^Waveform of vhdl.core around clock 12 ")
+                 "^Waveform of core.vhdl around clock 12 ")
         self.has(r'"signals":\[\["core_tb.u_core.u_inner.sum"',
                  file="build/regress/report.html")
-        rows = Path("build/regress/failures/vhdl.core-1.gtkw").read_text()
+        rows = Path("build/regress/failures/core.vhdl-1.gtkw").read_text()
         self.assertIn("\ncore_tb.u_core.u_inner.sum[3:0]\n", rows)
         self.assertNotIn("u_leaf", rows)
 

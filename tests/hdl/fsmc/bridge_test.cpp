@@ -34,7 +34,7 @@ TEST_F(Bridge, ADoorbellMakesWritesVisibleAndReadsFresh) {
 
 // The read begins one HCLK cycle after NWE's edge, sooner than the driver's BUSTURN allows. The
 // read must return the written value, even if the synchroniser passes the write a clock late and
-// the read in time (cdc.test_fsmc_pins).
+// the read in time (hdl.cdc.test_fsmc_pins).
 TEST_F(Bridge, ARegisterReadRightBehindAWriteComesAfterIt) {
     Random random(testSeed());
     FSMC_setHclk(120000000);

@@ -23,6 +23,7 @@ from concurrent.futures import ThreadPoolExecutor
 from icesoc.mutants import results
 from icesoc.util.errors import reason_of
 from icesoc.util.lock import only_one
+from icesoc.util.rooms import MEASURED
 from icesoc.util.tree import tree_state, write_state
 
 TOP = pathlib.Path.cwd()  # the tree
@@ -121,10 +122,10 @@ def targets(test, copy):
     kind, _, rest = test.partition(".")
     if kind.startswith("test_"):
         return [kind]
-    if kind == "cdc":
-        return [rest.rpartition(".")[0]]
-    if kind == "vhdl":
-        return [f"{rest}_vectors"]
+    if rest.startswith("cdc."):
+        return [rest.split(".")[1]]
+    if rest == "vhdl":
+        return [f"{kind}_vectors"]
     if kind == "slice":
         return ["slice2c"] + ["ghdl"] * rest.startswith("hardware.vhdl.")
     return ["regmaps"]
@@ -254,8 +255,7 @@ def main():
     with only_one(WORK, "mutants"):
         if options.block == "*":
             # the status of mutants in the regression is out of date if one of these folders changes
-            measured = "bus hdl ip slice sw testbench tests tools"
-            write_state(WORK, tree_state(TOP, measured))
+            write_state(WORK, tree_state(TOP, MEASURED))
         return try_all(chosen, options.jobs)
 
 

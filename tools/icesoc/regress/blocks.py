@@ -7,6 +7,7 @@ import pathlib
 import re
 
 from icesoc.regress.lights import below_gate
+from icesoc.util.rooms import PLATFORM, RTL
 from icesoc.util.tree import tracked
 
 
@@ -17,7 +18,7 @@ class Blocks:
         files = [pathlib.PurePath(file) for file in tracked(source)]
         self.folders = {str(folder) for file in files for folder in file.parents}
         self.modules = {file.stem: str(file) for file in files
-                        if file.suffix in (".v", ".vhd") and file.parts[0] in ("hdl", "bus", "ip")}
+                        if file.suffix in (".v", ".vhd") and file.parts[0] in RTL}
 
     def of_file(self, path):
         return "/".join(path.split("/")[:-1][:2])
@@ -33,10 +34,10 @@ class Blocks:
         return self.of_file(self.modules[name]) if name else ""
 
     def of_test(self, name, place):
-        about = re.match(r"((formal|lint|vhdl|cdc)[.])?(test_|idle_|crossings_)?(\w+)", name)[4]
+        about = re.match(r"((formal|lint|hdl[.]cdc)[.])?(test_|idle_|crossings_)?(\w+)", name)[4]
         if f"ip/{place}" in self.folders:
             return f"ip/{place}"
-        if place.split("/")[0] in ("hdl", "bus") and (block := self.of_module(about)):
+        if place.split("/")[0] in PLATFORM and (block := self.of_module(about)):
             return block
         words = place.split("/")[:2]
         return "/".join(words) if "/".join(words) in self.folders else words[0]

@@ -156,8 +156,8 @@ def rank(failure, tests):
     of the firmware, and whole missions."""
     test = tests.get(failure.result.name)
     text = " ".join([failure.result.name, *([test.place, *test.labels] if test else [])])
-    order = ("^formal[.]", "^(lint|tree)[.]", "^(vhdl|slice)[.]|(hdl|bus|ip)/?.* rtl", " rtl",
-             " (firmware|models)", " interop")
+    order = ("^formal[.]", "^(lint|tree)[.]", r"^(slice[.]|\w+[.]vhdl\b)|(hdl|bus|ip)/?.* rtl",
+             " rtl", " (firmware|models)", " interop")
     return -1 if failure.own_assertion else next(
         (i for i, kind in enumerate(order) if re.search(kind, text)), len(order))
 

@@ -15,6 +15,7 @@ from icesoc.util.cmake import cached
 from icesoc.util.errors import Stop
 from icesoc.util.files import digest, write
 from icesoc.util.process import collect
+from icesoc.util.rooms import RTL, rooms
 from icesoc.util.tree import tracked
 
 NOT_BUILT = "_NOT_BUILT"  # suffix that CTest gives to a program that is not built
@@ -73,22 +74,23 @@ class Test:
         """Returns the folders that a test without a program reads."""
         own = f"tests/{self.place}"
         if "formal" in self.place or "lint" in self.place:
-            return ("bus", "hdl", "ip", "tools", own)
+            return (*RTL, "tools", own)
         if self.place.startswith("slice"):
             return ("slice", "tests/slice")
-        return ("bus", "hdl", "ip", "slice", "sw", "testbench", "tools", own)
+        return (*rooms("core"), "tools", own)
 
     def compiles(self):
         """For a test that GHDL runs, returns the absolute paths in its command: its sources and
         programs. For any other test, returns an empty list."""
         return [word for word in self.command if word.startswith("/")] \
-            if self.name.startswith("vhdl.") else []
+            if self.name.endswith(".vhdl") else []
 
     def blocks(self):
         """Returns the words that --block may select this test by: the words of its folder, and
         the words of its name up to the name of the case."""
         kind, _, rest = self.name.partition(".")
-        more = rest if kind in ("formal", "lint", "wave") else ""
+        is_kind = kind in ("formal", "lint", "wave") or rest.startswith(("cdc.", "fuzz."))
+        more = rest if is_kind else ""
         return set(re.findall("[A-Za-z0-9]+", f"{self.place}/{kind}/{more}"))
 
     def _may_begin(self, pattern):

@@ -12,6 +12,7 @@ from icesoc.util import vcd
 from icesoc.util.errors import Stop, reason_of
 from icesoc.util.files import write
 from icesoc.util.process import collect
+from icesoc.util.rooms import RTL
 from icesoc.util.rows import read as read_rows
 
 CLOCKS_PER_SECOND = 1e8  # frequency of the chip in a flight, Hz
@@ -49,7 +50,7 @@ def scene_of(failure, test):
                 scene.slot = slot if slot >= FIRST_CORE else 0
     elif match := re.search("at clock cycle ([0-9]+)", log):
         scene = Scene(failure.result.name.split(".")[0], int(match[1]))
-    elif failure.result.name.startswith("vhdl.") and \
+    elif failure.result.name.endswith(".vhdl") and \
             (match := re.search(r"@(\d+)([munpf]s):", log)):
         # GHDL simulates up to the failure, and its waveform contains all clocks
         scene = Scene("", int(int(match[1]) * CLOCKS_PER_SECOND * SECONDS[match[2]]))
@@ -74,15 +75,15 @@ def instances(changed, source, build):
     """Yields the names of all instances of the modules and entities in changed files. `changed`:
     text with the paths of these files. At the end, yields the names of the modules, because the top
     of a model is named after its module."""
-    texts = None
-    for path in re.findall(r"((?:hdl|bus|ip)/[^\s:,]*\.(?:sv|vhdl|v|vhd))(?=[:, ]|$)", changed):
+    texts, rooms = None, "|".join(RTL)
+    for path in re.findall(rf"((?:{rooms})/[^\s:,]*\.(?:sv|vhdl|v|vhd))(?=[:, ]|$)", changed):
         file = source / path
         text = file.read_text(errors="replace") if file.is_file() else ""
         kind = "entity" if file.suffix.startswith(".vhd") else "module"
         modules = re.findall(rf"^\s*{kind}\s+(\w+)", text, re.M | re.I) or [file.stem]
         if texts is None:
             texts = [each.read_text(errors="replace")
-                     for folder in (source / "hdl", source / "bus", source / "ip", build / "gen")
+                     for folder in (*(source / room for room in RTL), build / "gen")
                      for each in sorted(folder.rglob("*")) if each.suffix in SOURCES]
         for module in modules:
             use = re.compile(rf"^\s*{module}\s+(?:#\s*\([^;]*?\)\s*)?(\w+)\s*\(|"  # Verilog

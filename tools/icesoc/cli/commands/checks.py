@@ -18,6 +18,7 @@ from icesoc.util.console import say, warn
 from icesoc.util.errors import Stop
 from icesoc.util.lock import lock
 from icesoc.util.process import output, run, tool
+from icesoc.util.rooms import MEASURED
 from icesoc.util.tree import tree_state, write_state
 
 GROUPS["check"] = "proofs, sanitizers, fuzzing, faults, coverage"
@@ -140,7 +141,7 @@ def sanitizers(values):
             status = one_more(status, run([path, "--gtest_brief=1", *left], check=False,
                                           env=environment))
     build.ninja("fuzz_gdb")
-    return one_more(status, build.ctest("-R", "^fuzz[.]gdb$", tests=1, check=False))
+    return one_more(status, build.ctest("-R", "^testbench[.]fuzz[.]gdb$", tests=1, check=False))
 
 
 @command("check fuzz", [
@@ -158,10 +159,10 @@ def fuzz(values):
     failure.
     """
     build = configured(values, "regress", tests=True)
-    chosen = f"^fuzz[.].*({values.name or ''})"
+    chosen = f"[.]fuzz[.].*({values.name or ''})"
     if not values.built:
-        run([build / "tests/regress/regress", "--prepare", "--build", build.folder, "--name",
-             chosen])
+        run([build / "tests/regress/regress", "--prepare", "--build", build.folder,
+             "--label", "^fuzz$", "--name", chosen])
     return build.ctest("-R", chosen, tests=values.tests or values.jobs, check=False,
                        FUZZ=max(1, round(60 * values.minutes)), SEED=values.seed)
 
@@ -312,7 +313,7 @@ def bench(values):
     build.ninja("bench_programs", "regress", "size")
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    write_state(folder, tree_state(".", "bus hdl ip sw testbench tests tools"))
+    write_state(folder, tree_state(".", MEASURED))
     status = measure(benches_of(build), folder)
     return one_more(status, run(["tests/bench/figures.py", values.page,
                                  *sorted(folder.glob("*.json")), "build/size.json"], check=False))

@@ -55,7 +55,7 @@ def test(values):
     build.ninja(f"tests_of_{core}")
     if core not in build.cached("TESTED_CORES").split(";"):
         raise Stop(f"{core} has no test: {core}_test.cpp not found in the core's folder")
-    return build.ctest("-R", rf"^(test_ip_{core}[.]|vhdl[.]{core}$)", tests=values.jobs,
+    return build.ctest("-R", rf"^(test_ip_{core}[.]|{core}[.]vhdl$)", tests=values.jobs,
                        junit=f"junit-{core}.xml", SEED=values.seed)
 
 
@@ -123,9 +123,9 @@ def rows_of(fst, build, core):
 def traced(values):
     """Returns the build folder of a test with a waveform, and the command that runs the test."""
     what = values.ip
-    if what.startswith("vhdl."):  # GHDL writes the waveform itself
+    if what.endswith(".vhdl"):  # GHDL writes the waveform itself
         build = BuildFolder(values.build, values).prepare()
-        build.ninja("ghdl", f"{what[5:]}_vectors")
+        build.ninja("ghdl", f"{what[:-5]}_vectors")
         return build, ["ctest", "--test-dir", build.folder, "--no-tests=error", "-R",
                        f"^{re.escape(what)}$"]
     if what.startswith("test_"):
@@ -146,23 +146,23 @@ def traced(values):
 
 
 @command("core wave", [dataclasses.replace(
-    CORE, kind=matching(r"(vhdl\.)?\w+", "a core, test_... or vhdl.CORE"), is_checked=False,
+    CORE, kind=matching(r"\w+(\.vhdl)?", "a core, test_... or CORE.vhdl"), is_checked=False,
     help="core, test program (such as test_fsmc_bridge), or VHDL test bench that runs in GHDL "
-         "(such as vhdl.fir)"), Option(
+         "(such as fir.vhdl)"), Option(
     "test", TEXT, "name of the test, or an expression that matches only this test", "",
     positional=True), CORE_FOLDERS, BUILD, JOBS], make="wave", brief="core wave fir Impulse",
          examples=["core wave fir Impulse", "core wave test_fsmc_bridge TooEarly",
-                   "core wave vhdl.fir"])
+                   "core wave fir.vhdl"])
 def wave(values):
     """write the waveform of one test for GTKWave, build/wave/NAME.fst
 
     The save file NAME.gtkw lists the ports, then internal signals. For a core in VHDL,
-    `vhdl.NAME` in place of the core name selects GHDL's waveform, which has the names and types
+    `NAME.vhdl` in place of the core name selects GHDL's waveform, which has the names and types
     of the source."""
     what = values.ip
-    if not what or not (values.test or what.startswith("vhdl.")):
+    if not what or not (values.test or what.endswith(".vhdl")):
         raise Stop("core wave: expected a core or test program, and a test: ./icesoc core "
-                   "wave fir Impulse; or only vhdl.CORE: ./icesoc core wave vhdl.fir", 2)
+                   "wave fir Impulse; or only CORE.vhdl: ./icesoc core wave fir.vhdl", 2)
     build, words = traced(values)
     folder = Path("build/wave").absolute()
     folder.mkdir(parents=True, exist_ok=True)

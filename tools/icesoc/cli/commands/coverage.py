@@ -11,13 +11,14 @@ from icesoc.cli.options import BUILD, JOBS, NAME, Option
 from icesoc.util.console import say, warn
 from icesoc.util.errors import Stop
 from icesoc.util.process import run, tool
+from icesoc.util.rooms import MEASURED, RTL, rooms
 from icesoc.util.tree import tree_state, write_state
 
 # labels of the tests that coverage is measured with
 COUNTED = "rtl|firmware|vhdl|models|slice|interop|e2e"
 # Tests that are left out: fuzzers have coverage counters of another kind, and e2e.cores builds a
 # separate chip.
-LEFT_OUT = "NOT_BUILT|^fuzz|^e2e.cores"
+LEFT_OUT = "NOT_BUILT|[.]fuzz[.]|^e2e.cores"
 
 
 @command("check coverage", [
@@ -25,11 +26,11 @@ LEFT_OUT = "NOT_BUILT|^fuzz|^e2e.cores"
            "only tests with a name that matches this expression; minimum figures are then not "
            "checked", ""), BUILD,
     JOBS], make="coverage", brief=["check coverage --name ^test_fsmc_corners[.]",
-                             "check coverage --name ^vhdl[.]fir"],
+                             "check coverage --name ^fir[.]vhdl"],
          long="check coverage",
          examples=[
              "check coverage",
-             "check coverage --name '^vhdl[.]fir'",
+             "check coverage --name '^fir[.]vhdl'",
              "check coverage --jobs 2"])
 def coverage(values):
     """measure the lines, branches and toggles that the tests reach
@@ -44,7 +45,7 @@ def coverage(values):
     counted.configure("-DCOVERAGE=ON")
     counted.follow(build)
     work, regress = counted.folder, build / "tests/regress/regress"
-    tree = tree_state(".", "bus hdl ip slice sw testbench tests tools")
+    tree = tree_state(".", MEASURED)
     limits = Path("tests/limits.toml")
     if values.name:
         run([regress, "--prepare", "--build", work, f"--name={values.name}"])
@@ -105,7 +106,7 @@ def of_host(work):
                  "gcov,source")
     if not found:
         raise Stop((work / "lcov.log").read_text()[-1000:] or "no C or C++ was counted", 2)
-    return own(work, "host.info", found[0], ("sw", "slice", "testbench", "bus", "ip"))
+    return own(work, "host.info", found[0], rooms("core"))
 
 
 def of_rtl(work, points):
@@ -115,7 +116,7 @@ def of_rtl(work, points):
         return []
     for option, name in (("--write", "rtl.dat"), ("--write-info", "all_rtl.info")):
         run(["verilator_coverage", option, work / name, *counts], stdout=subprocess.DEVNULL)
-    return own(work, "rtl.info", work / "all_rtl.info", ("hdl", "bus", "ip"))
+    return own(work, "rtl.info", work / "all_rtl.info", RTL)
 
 
 def of_vhdl(work, points):

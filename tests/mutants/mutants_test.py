@@ -151,9 +151,9 @@ class Cases(Script):
         write(pair, PAIR)
         write("bus/none.v", "")
         write("ip/none", "")
-        prove = f"{TREE}/tests/hdl/formal/prove.sh pair 4 {self.work} {self.work}/build/pair"
+        prove = f"{TREE}/tools/python -m icesoc.proof.prove pair 4 {self.work}"
         write("CMakeLists.txt",
-              PROJECT.format("NONE") + f"add_test(NAME formal.pair COMMAND env {prove})\n")
+              PROJECT.format("NONE") + f"add_test(NAME formal.pair COMMAND {prove} build/pair)\n")
         self.ask("cmake", "-S", ".", "-B", "build", "-G", "Ninja")
         self.draw(status=2)
         self.has("^SURVIVED .*formal.pair .*hdl/small/pair.v:[56] ", "^pair .* [1-9] the same$",

@@ -17,7 +17,12 @@ iverilog -g2005 -Wall -Wno-timescale -I"$source/bus" -I"$work" -t null "$work/ki
 [ ! -s "$work/iverilog" ] || { cat "$work/iverilog" && fail 'iverilog warns'; }
 printf '#include "kinds_regs.h"\nint main(void) { return 0; }\n' >"$work/kinds.c"
 gcc -std=c90 -pedantic -Wall -Wextra -Werror -fsyntax-only "$work/kinds.c"
-prove() { GEN_DIR=$1 "$source/tests/hdl/formal/prove.sh" kinds_regs 4 "$source" "$1/proof"; }
+prove() { # folder with the block, options
+    folder=$1
+    shift
+    "$source/tools/python" -m icesoc.proof.prove kinds_regs 4 "$source" "$folder/proof" \
+        --generated "$folder" "$@"
+}
 prove "$work" >"$work/log" || { cat "$work/log" && fail 'not proven'; }
 
 # A block with LUT RAM and with words in a memory of the core.
@@ -57,7 +62,7 @@ wrong() {
     sed "$2" "$work/kinds_regs.v" >"$work/wrong/kinds_regs.v"
     ! cmp -s "$work/kinds_regs.v" "$work/wrong/kinds_regs.v" || fail "nothing is changed: $1"
     cp "$work"/*.vh "$work/wrong"
-    ! PROVE_BOUNDED=1 prove "$work/wrong" >"$work/log" 2>&1 || fail "proven although $1"
+    ! prove "$work/wrong" --bounded >"$work/log" 2>&1 || fail "proven although $1"
     grep -q 'an assertion fails\|assert' "$work/log" || { cat "$work/log" && fail "$1"; }
 }
 wrong 'word 8 exists' "s/WORDS = 16'hDEFF/WORDS = 16'hDFFF/"

@@ -10,12 +10,15 @@ import argparse, collections, functools, json, os, pathlib, re, shutil, subproce
 from icesoc import TREE
 from icesoc.mutants import model, results, run
 from icesoc.mutants.results import GATE
+from icesoc.proof import prove
 from icesoc.util.lock import only_one
+from icesoc.util.process import tool
 from icesoc.util.progress import clock, is_tenth
 from icesoc.util.rooms import PLATFORM, RTL
 from icesoc.util.tree import tree_state
 from concurrent.futures import ThreadPoolExecutor
 
+PROVE = "icesoc.proof.prove"  # word of a test command that is a proof
 # Programs that test a module; the first expression that matches the module name applies.
 TESTS = {
     "bus_": "test_ip_new_foreign", "npi_stream": "test_ip_foreign_axis test_ip_fir",
@@ -57,15 +60,12 @@ write_aiger -zinit same.aig
 
 
 class Proof:
-    """A proof in the form in which CTest runs it: prove.sh module depth source work parameters."""
+    """A proof in the form in which CTest runs it (tools/icesoc/proof/prove.py)."""
     def __init__(self, test, out):
         self.name, words = test["name"].split(".", 1)[1], test["command"]
-        start = next(i for i, word in enumerate(words) if word.endswith("/prove.sh"))
-        self.script, self.module, self.depth, self.tree, _, *self.parameters = words[start:]
-        self.source = out / "source"
-        given = next((p["value"] for p in test["properties"] if p["name"] == "ENVIRONMENT"), [])
-        self.environment = {**os.environ, **dict(entry.split("=", 1) for entry in given)}
-        self.work = out / self.name
+        self.options = prove.parser().parse_args(words[words.index(PROVE) + 1:])
+        self.module, self.tree = self.options.module, self.options.source
+        self.source, self.work = out / "source", out / self.name
 
     def is_in_tree(self):
         """Returns whether the tree has the module's file, which is otherwise generated."""
@@ -73,13 +73,12 @@ class Proof:
                    for folder in RTL)
 
     def run(self, folder, mutant, seconds=None):
-        """Runs prove.sh; `mutant`: Yosys commands that prove.sh runs after it has read the files
-        and before the proof. Returns exit status and output of prove.sh."""
-        limit = {"PROVE_SECONDS": seconds} if seconds else {}
-        ran = subprocess.run(
-            [self.script, self.module, self.depth, self.source, folder, *self.parameters],
-            text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-            env={**self.environment, "PROVE_MUTANT": mutant, **limit})
+        """Runs the proof; `mutant`: Yosys commands that it runs after it has read the files and
+        before it converts them. Returns its exit status and output."""
+        changed = {"source": self.source, "work": folder, "mutant": mutant}
+        changed |= {"seconds": seconds} if seconds else {}
+        ran = subprocess.run([*tool("proof.prove"), *prove.words(self.options, **changed)],
+                             text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         return ran.returncode, ran.stdout
 
     def draw(self, number, seed):
@@ -108,8 +107,8 @@ class Proof:
         proof's assumptions allow."""
         # If the proof removes parts of the module, each named wire counts as an output, because a
         # removed part may read the wire.
-        seen = "expose w:* w:$* %d\n" if any("delete" in text for text in self.parameters) else ""
-        # commands of prove.sh that map to flip-flops and gates
+        seen = "expose w:* w:$* %d\n" if self.options.without else ""
+        # commands of the proof that map to flip-flops and gates
         to_state = (self.work / "state.ys").read_text()
         to_gates = (self.work / "gates.ys").read_text()
         side = functools.partial(SIDE.format, module=self.module, seen=seen,
@@ -301,7 +300,7 @@ def main():
         sys.exit(f"mutants: --build: expected a build folder, got '{options.build}'; run "
                  "`./icesoc build` first")
     proofs = [Proof(test, out / "drawn") for test in json.loads(shown.stdout)["tests"]
-              if any(word.endswith("/prove.sh") for word in test["command"])]
+              if PROVE in test["command"]]
     # Proofs of several modules together, and proofs of generated modules, are left out.
     proofs = [proof for proof in proofs
               if not proof.module.endswith("_proof") and proof.is_in_tree()]

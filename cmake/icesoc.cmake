@@ -150,9 +150,9 @@ function(icesoc_sanitized)
   set_property(GLOBAL APPEND PROPERTY ICESOC_SANITIZED ${ARGN})
 endfunction()
 
-# icesoc_test_folder(VARIABLE): returns the word that the names of the caller's tests begin with,
-# which is the folder below ip/, tests/sw/ or tests/. (CTest runs a test in the caller's folder of
-# the build folder, which a core outside the tree has as well.)
+# icesoc_test_folder(VARIABLE): returns the first word of the names of the caller's tests: the name
+# of the caller's folder below ip/, tests/sw/ or tests/. It is taken from the build folder, because
+# a core outside the tree also has a folder there, in which CTest runs its tests.
 function(icesoc_test_folder variable)
   cmake_path(RELATIVE_PATH CMAKE_CURRENT_BINARY_DIR BASE_DIRECTORY ${CMAKE_BINARY_DIR}
              OUTPUT_VARIABLE path)
@@ -334,8 +334,8 @@ function(icesoc_verilate name)
     COMMAND ${unchanged} restore ${dir}
     DEPENDS ${deps} ${unchanged} VERBATIM COMMENT "Verilating ${A_TOP} as ${name}")
   # Verilator's makefile appends -Os; OPT_FAST overrides it, which doubles the measured speed. Code
-  # that runs only once (OPT_SLOW) is not optimised; -O1 took half of an edit's compile time, and
-  # minutes with coverage counters.
+  # that runs only once (OPT_SLOW) is not optimised: with -O1, compiling this code took half of the
+  # time after an edit, and minutes with coverage counters.
   add_custom_command(OUTPUT ${lib}
     COMMAND ${CMAKE_COMMAND} -E env --unset=MAKEFLAGS CCACHE_DIR=$ENV{CCACHE_DIR}
             ${environment} make -s -j2 -C ${dir} -f ${class}.mk ${class}__ALL.a

@@ -44,7 +44,7 @@ install(FILES ${tools}/cli/__init__.py ${tools}/cli/choices.py ${tools}/cli/comm
 install(FILES ${tools}/cli/commands/__init__.py ${tools}/cli/commands/call.py
   DESTINATION ${SHARE}/tools/icesoc/cli/commands COMPONENT ${component})
 install(FILES ${tools}/util/__init__.py ${tools}/util/chip.py ${tools}/util/console.py
-  ${tools}/util/errors.py ${tools}/util/process.py ${tools}/util/rows.py
+  ${tools}/util/errors.py ${tools}/util/process.py ${tools}/util/rooms.py ${tools}/util/rows.py
   DESTINATION ${SHARE}/tools/icesoc/util COMPONENT ${component})
 install(PROGRAMS ${here}/ground/icesoc-call DESTINATION ${CMAKE_INSTALL_BINDIR}
   COMPONENT ${component})

@@ -90,8 +90,9 @@ bool isCopied(const std::string& path) {
     return path.find('.') == std::string::npos && path != "ticked" && path != "low";
 }
 
-// Returns the path of a signal in a form that is the same in both models: for a port of an instance
-// in a generate block, Verilator puts the prefix in front of the names of the blocks.
+// Returns the path of a signal in a form that is the same in both models. Verilator marks a port of
+// an instance by a prefix. In a generate block, it puts this prefix in front of the names of the
+// blocks; here the prefix is moved behind them, to the name of the port.
 std::string pathOf(const Member& member) {
     const std::string path = member.path, prefix = "__Vcellout__";
     const size_t scope = path.rfind('.') + 1;

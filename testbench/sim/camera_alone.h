@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// camera_alone: computes clocks of the camera core and the memory in a Verilated model of their own
-// (sim_camera.v), while the rest of the chip would not change. A picture takes hundreds of
-// thousands of clocks, and the small model needs a fraction of the time of the whole chip.
+// camera_alone: simulates only the camera core and the memory while the rest of the chip would not
+// change. A second Verilated model (sim_camera.v) contains these two blocks. A picture takes
+// hundreds of thousands of clocks, and this small model needs a fraction of the time that the model
+// of the whole chip needs.
 //
 // The state of the registers of both blocks is copied from the chip to the small model (load), and
 // back (store). The small model may compute clocks alone if it has followed the chip for one clock

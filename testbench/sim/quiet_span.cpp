@@ -36,8 +36,8 @@ constexpr uint64_t least = 8;
 // smallest number of clocks for which the camera works alone; copying its state takes as long as
 // some tens of clocks
 constexpr uint64_t worthAlone = 256;
-constexpr unsigned longestOthers =
-    4096;                        // largest number of looks between two trials for the camera
+// largest number of calls of look() between two trials for the camera
+constexpr unsigned longestOthers = 4096;
 constexpr unsigned longest = 32; // largest number of clocks between two comparisons of a busy chip
 // number of comparisons of a busy chip between two records of the cores that have changed
 constexpr uint64_t blameEvery = 256;

@@ -51,8 +51,8 @@ public:
 
     // chip: number of clocks, starting now, for which the whole chip is quiet. platform: the same
     // for the platform alone. camera: the same for everything except the camera core and the
-    // memory, as long as their outputs to the rest do not change. 0 means busy, or that the state
-    // is unknown.
+    // memory, provided that the outputs of these two to the rest do not change. 0 means that the
+    // blocks are busy, or that their state is unknown.
     struct Clocks {
         uint64_t chip, platform, camera;
         // True if the next clock will show whether the camera can work alone (camera_alone.h).

@@ -5,8 +5,9 @@
 // change.
 //
 // Instances have the same names as in sim_soc.v, so that the state of a register can be copied
-// between the two models. All inputs from the rest of the chip are constant: there is no access to
-// the slot, no core takes a frame, and no other memory port has a request.
+// between the two models. While this model is used, all inputs from the rest of the chip are
+// constant: nothing accesses the core's registers, no core takes a frame, and no other memory port
+// has a request.
 
 `default_nettype none
 `include "rests.vh"
@@ -93,7 +94,7 @@ module sim_camera (
                     .clk_i(memory_clk), .rst_i(low[39]),
                     .npi_addr_i({{32*(PORTS-1-PORT){1'b0}}, addr, {32*PORT{1'b0}}}),
                     .npi_addr_req_i({{PORTS-1-PORT{low[38]}}, addr_req, {PORT{low[38]}}}),
-                    // as in platform.v, so that Verilator gives the register the same name
+                    // two wires as in platform.v, so that Verilator names the register as there
                     .npi_addr_ack_o({addr_ack, addr_ack_0}),
                     .npi_rnw_i({{PORTS-1-PORT{low[38]}}, rnw, {PORT{low[38]}}}),
                     .npi_size_i({{4*(PORTS-1-PORT){1'b0}}, size, {4*PORT{1'b0}}}),

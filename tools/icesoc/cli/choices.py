@@ -10,20 +10,12 @@ import os
 import re
 from pathlib import Path
 
+from icesoc.util.rooms import ROOMS, RTL
+
+HARDWARE = (*RTL, "synth")
+SEARCHED = (*ROOMS, "cmake", "tools")  # folders with tests and targets
 MODULE = re.compile(r"^ *(?:module|entity) +(\w+)", re.M | re.I)
 CASE = re.compile(r"^ *(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", re.M)
-
-
-def hardware():
-    """Returns the folders with hardware. (Packages contain this file without rooms.py.)"""
-    from icesoc.util.rooms import RTL
-    return (*RTL, "synth")
-
-
-def searched():
-    """Returns the folders with tests and targets."""
-    from icesoc.util.rooms import ROOMS
-    return (*ROOMS, "cmake", "tools")
 
 
 def files(folders, *endings):
@@ -80,9 +72,9 @@ def designs(values=None):
     and modules that the build generates."""
     from icesoc.synth.sources import DESIGNS, read_designs  # not part of the installed icesoc-call
     found = read_designs()["designs"] if Path(DESIGNS).is_file() else []
-    names = {name for text in texts(hardware(), ".v", ".vhd") for name in MODULE.findall(text)}
+    names = {name for text in texts(HARDWARE, ".v", ".vhd") for name in MODULE.findall(text)}
     names = {name for name in names if not name.endswith(("_rules", "_proof", "_tb"))}
-    names |= {path.name.replace(".regs.json", "_regs") for path in files(hardware(), ".regs.json")}
+    names |= {path.name.replace(".regs.json", "_regs") for path in files(HARDWARE, ".regs.json")}
     names |= {name for core in cores(values) for name in (core, f"{core}_wrapper")}
     return sorted(names | {each["name"] for each in found})
 
@@ -90,7 +82,7 @@ def designs(values=None):
 @expecting("a label of tests, or an expression that matches one")
 def labels(values=None):
     """Returns the labels of tests."""
-    text = "\n".join(texts(searched(), "CMakeLists.txt", ".cmake"))
+    text = "\n".join(texts(SEARCHED, "CMakeLists.txt", ".cmake"))
     found = re.findall(r'\bLABELS "?([a-z0-9_;]+)', re.sub("#.*", "", text))
     return sorted({label for each in found for label in each.split(";") if label})
 
@@ -132,7 +124,7 @@ def blocks(values=None):
 
 def cases(values=None):
     """Returns the cases of the C++ tests as Suite.Case."""
-    return sorted({".".join(names) for text in texts(searched(), "_test.cpp")
+    return sorted({".".join(names) for text in texts(SEARCHED, "_test.cpp")
                    for names in CASE.findall(text)})
 
 
@@ -140,7 +132,7 @@ def cases(values=None):
 def words_of_tests(values=None):
     """Returns the words that occur in names of tests."""
     words = {word for names in cases() for word in names.split(".")}
-    text = "\n".join(texts(searched(), "CMakeLists.txt", ".cmake", ".cmake.in", "core.toml"))
+    text = "\n".join(texts(SEARCHED, "CMakeLists.txt", ".cmake", ".cmake.in", "core.toml"))
     return sorted(words | set(re.findall(r"[A-Za-z]\w{2,}", text)))
 
 
@@ -154,5 +146,5 @@ def may_name_test(text, values):
             BuildFolder(values.build, values).other_cores():
         return True
     known = " ".join([*words_of_tests(),
-                      *texts(searched(), "_test.cpp", "_test.py", ".sh", ".json")])
+                      *texts(SEARCHED, "_test.cpp", "_test.py", ".sh", ".json")])
     return all(part in known for part in re.findall("[A-Za-z]{3,}", text))

@@ -101,7 +101,7 @@ class Prover:
         empty text."""
         if self.o.step:
             if not shutil.which("cadical"):
-                self.fail("--step needs cadical: cmake/setup.sh", status=2)
+                self.fail("--step needs cadical, which is missing: run ./icesoc setup", status=2)
             self.bounded(self.o.step + 1)
             return f"induction step of {self.o.step} clock(s)" \
                 if self.engines.step(self.o.step) else ""
@@ -158,7 +158,7 @@ def main():
     prover.covers()
     times = os.times()
     seconds = times.user + times.system + times.children_user + times.children_system
-    (options.work / "cpu").write_text(f"{seconds:.1f}\n")  # `make proofs` adds these times up
+    (options.work / "cpu").write_text(f"{seconds:.1f}\n")  # ./icesoc check proofs adds these up
     prover.say(f"{seconds:.1f} s of CPU time")
 
 

@@ -41,6 +41,9 @@ PLACES = {
         "MAVLink 2, signed: {mav.key} |",
         "without authentication (`make test NAME=CallBytes`) | {air.clear} | "
         "MAVLink 2: {mav.clear} |",
+        "with authentication (`./icesoc bench`) | {command.key} | MAVLink 2, signed: {mav.ms} |",
+        "the vehicle to a program, with authentication (`./icesoc bench`) | {down.key} | "
+        "the modem's limit: {down.limit} |",
         "| 0 of {hostile} |",
         "a firmware update (`./icesoc bench`) | 0 of {firmware} |",
         "a bitstream update (`./icesoc bench`) | 0 of {bitstream} |",
@@ -69,6 +72,12 @@ PLACES = {
         "four cores takes {soc.lut} LUTs, {soc.ff} flip-flops and {soc.dsp} DSP blocks",
         "blocks of Table I is {table1.mhz} MHz",
         "the chip's is {soc.slowest} to {soc.fastest} MHz (median {soc.mhz})"],
+    "docs/faq.md": [
+        "a number as parameter, ms | {call.clear} | {call.key} |",
+        "the vehicle sends pictures, ms | {busy.clear} | {busy.key} |",
+        "from the vehicle to the ground station, bytes/s | {down.clear} | {down.key} |",
+        "from the ground station to the vehicle, bytes/s | {up.clear} | {up.key} |"],
+    "docs/security.md": ["uses {stack.key} of its 2,048 bytes of stack, and {stack.clear} in open"],
     "docs/hw-mapping.md": ["({soc.lut} LUTs, {soc.ff} flip-flops)"],
     PICTURE.format("utilisation"): [
         "{soc.lut} LUT ", " {soc.ff} FF ", " {soc.slices} slices ",
@@ -131,10 +140,28 @@ def rows(tree):
     return found
 
 
+def cells(tree):
+    """Returns {"ROW [COLUMN]": first number} for the tables of docs/figures.md that have several
+    columns of figures. A cell with a limit gives a second entry, `limit of ROW [COLUMN]`."""
+    found: dict[str, str] = {}
+    columns: list[str] = []
+    for line in Path(tree, "docs/figures.md").read_text().splitlines():
+        name, *cells_ = [cell.strip() for cell in line.strip("|").split("|")]
+        if name == "what":
+            columns = cells_
+        elif line.startswith("| ") and "measured" not in columns:
+            for column, cell in zip(columns, cells_):
+                if match := re.match(r"([\d,.]+)(?: of ([\d,.]+),)?", cell):
+                    for prefix, number in zip(("", "limit of "), match.groups()):
+                        if number:
+                            found[f"{prefix}{name} [{column}]"] = number.replace(",", "")
+    return found
+
+
 def values(tree):
     """Returns {name: figure} for the figures that have a source. A figure is a text without commas
     between thousands."""
-    measured = rows(tree)
+    measured = {**rows(tree), **cells(tree)}
     designs = read_baseline(Path(tree, "synth/baseline.json"))["designs"]
     found = {f"{name}.{key}": str(designs[design][key])
              for name, design in (("table1", "table1"), ("flown", "table1_flown"), ("soc", "soc"))
@@ -148,7 +175,20 @@ def values(tree):
             "hostile": "hostile packets",
             "firmware": "new firmware: power losses, in each operation and later",
             "bitstream": "new bitstream: power losses, in each operation and later",
-            "ram": "full: RAM with all objects and all stacks, including the main stack"}.items():
+            "ram": "full: RAM with all objects and all stacks, including the main stack",
+            "command.key": "round trip of a command, limit: MAVLink 2, ms [with a key]",
+            "mav.ms": "limit of round trip of a command, limit: MAVLink 2, ms [with a key]",
+            "call.clear": "Ice, round trip of note(int), ms [in the clear]",
+            "call.key": "Ice, round trip of note(int), ms [with a key]",
+            "busy.clear": "Ice, call during a picture transfer, ms [in the clear]",
+            "busy.key": "Ice, call during a picture transfer, ms [with a key]",
+            "down.clear": "Ice, goodput UAV to ground in the clear, bytes/s [loss 0.00]",
+            "down.key": "Ice, goodput UAV to ground with a key, bytes/s [loss 0.00]",
+            "down.limit": "limit of Ice, goodput UAV to ground with a key, bytes/s [loss 0.00]",
+            "up.clear": "Ice, goodput ground to UAV in the clear, bytes/s [loss 0.00]",
+            "up.key": "Ice, goodput ground to UAV with a key, bytes/s [loss 0.00]",
+            "stack.clear": "stack used: radioStack, bytes [in the clear]",
+            "stack.key": "stack used: radioStack, bytes [with a key]"}.items():
         if row in measured:
             found[name] = measured[row]
     layers = {f"{program}.{layer}": measured[f"{program}.{layer}"]

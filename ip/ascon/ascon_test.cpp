@@ -162,7 +162,7 @@ TEST_F(AsconTest, EqualsTheModelForRandomMessages) {
         ASSERT_EQ(memory_.bytes(target_, message.size()), AsconBytes(message.size(), 0));
         ASSERT_EQ(memory_.bytes(target_ + static_cast<uint32_t>(message.size()), 8),
                   AsconBytes(8, 0x55))
-            << "the core wrote behind the message";
+            << "the core wrote beyond the message";
         ASSERT_TRUE(decrypt(nonce, associated, sealed));
         ASSERT_EQ(memory_.bytes(target_, message.size()), message);
     }

@@ -107,7 +107,7 @@ TEST_F(CameraTest, EveryFrameIsInMemoryAsTheSensorSentIt) {
         EXPECT_EQ(bus_.read(CAMERA_DROPPED), 0u);
         for (uint32_t i = 0; i < 3; ++i)
             EXPECT_EQ(memory_.byte(base_ + i * stride_ + width * height), 0)
-                << "the camera wrote behind a frame";
+                << "the camera wrote beyond a frame";
         stop();
     }
 }

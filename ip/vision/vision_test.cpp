@@ -99,7 +99,7 @@ TEST_F(VisionTest, StoresAtMostWhatItIsTold) {
     EXPECT_EQ(bus_.read(VISION_STORED), 5u);
     want.resize(5);
     EXPECT_TRUE(results() == want);
-    EXPECT_EQ(memory_.byte(resultBase_ + 40), 0) << "the core wrote behind the fifth corner";
+    EXPECT_EQ(memory_.byte(resultBase_ + 40), 0) << "the core wrote beyond the fifth corner";
 }
 
 TEST_F(VisionTest, SettingsWrittenWhileBusyAreTheNextFrames) {

@@ -28,7 +28,7 @@ public:
 
     Block run() {
         if (isReserved(block_.name))
-            error(d_.at, "gives a module '" + block_.name +
+            error(d_.at, "its module would have the name '" + block_.name +
                              "', a reserved word of Verilog, SystemVerilog or VHDL");
         identity();
         pins();

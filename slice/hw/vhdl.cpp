@@ -277,7 +277,7 @@ void calls(Writer& w, const Block& b) {
                 if (p.isCount)
                     w.line("  " + c.name + "_" + baseName(p) + "_o <= memory & " +
                            binary(p.offset, b.memoryLsb()) + "; -- " + number(p.offset) +
-                           " bytes behind the first buffer");
+                           " bytes after the start of the first buffer");
                 if (!word.isOut)
                     w.line("  " + portOf(c, p, false) +
                            " <= " + slice(lowerCase(word.name), p.lsb, p.width) + ";");

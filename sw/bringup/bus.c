@@ -216,7 +216,7 @@ void Bus_testInterrupt(void) {
 
 void Bus_testModem(void) {
     U32 ms, event = 0, status;
-    Report_step("modem", "the modem answers AT commands, and CTS allows to send");
+    Report_step("modem", "the modem answers AT commands, and accepts bytes (CTS)");
     Bus_write(MAP_SLOT_MODEM, MODEM_BAUD, 3UL | bringup_limits.guardMs << MODEM_BAUD_GUARD_MS_LSB);
     Bus_write(MAP_SLOT_MODEM, MODEM_ADDR, 0x00000001UL);
     Bus_write(MAP_SLOT_MODEM, MODEM_NET, 0x3332000CUL);
@@ -243,7 +243,7 @@ void Bus_testModem(void) {
         Console_number(step);
         Console_end();
     } else if (!(status & MODEM_STATUS_CTS_MASK))
-        Report_fail("MODEM_CTS", 0, "stuck1", "the modem never allows to send",
+        Report_fail("MODEM_CTS", 0, "stuck1", "the modem never accepts bytes",
                     "this line with line_tester, and D7 = 1");
     if (Report_pass()) {
         Console_text("set up in ms: ");

@@ -127,7 +127,7 @@ void Ice_OutputStream_writeDouble(Ice_OutputStreamPtr os, Ice_Double v);
 void Ice_OutputStream_writeSize(Ice_OutputStreamPtr os, Ice_Int v);
 void Ice_OutputStream_writeString(Ice_OutputStreamPtr os, Ice_String v);
 void Ice_OutputStream_writeText(Ice_OutputStreamPtr os, const char* terminated);
-/* Writes an enumerator. `largest` is the enum's greatest value, which determines the width in
+/* Writes an enumerator. `largest` is the enum's largest value, which determines the width in
  * encoding 1.0. */
 void Ice_OutputStream_writeEnum(Ice_OutputStreamPtr os, Ice_Int v, Ice_Int largest);
 /* An enumerator of a small enum is a byte in both encodings. */

@@ -155,11 +155,11 @@
 #define LINK_SILENCE 4U
 
 #if LINK_TAG < 4 || LINK_TAG > 16
-#error "LINK_TAG is 4..16 bytes"
+#error "LINK_TAG: expected 4 to 16 bytes"
 #elif LINK_WINDOW < 8 || LINK_WINDOW > 64 || (LINK_WINDOW & (LINK_WINDOW - 1))
-#error "LINK_WINDOW is a power of two, 8..64"
+#error "LINK_WINDOW: expected a power of two, 8 to 64"
 #elif LINK_MAX_MESSAGE < 1 || LINK_MAX_MESSAGE > 32000
-#error "LINK_MAX_MESSAGE is 1..32000 bytes"
+#error "LINK_MAX_MESSAGE: expected 1 to 32000 bytes"
 #elif LINK_SEND_BYTES <= LINK_MAX_MESSAGE + LINK_RESERVE || LINK_SEND_BYTES > 32768 || \
     (LINK_SEND_BYTES & (LINK_SEND_BYTES - 1))
 #error "LINK_SEND_BYTES: expected a power of two up to 32768, above LINK_MAX_MESSAGE + LINK_RESERVE"

@@ -82,7 +82,7 @@ typedef struct Radio_Counters {
     U8 signal; /* API mode: signal strength of the last packet (RSSI), in -dBm */
 } Radio_Counters;
 
-/* DDR3 byte addresses of the rings. Each ring has 2 KiB; its address is a multiple of 128. */
+/* DDR3 byte addresses of the rings. Each ring has 2 KiB; its address is a multiple of 2048. */
 typedef struct Radio_Memory {
     U32 transmitRing, receiveRing;
 } Radio_Memory;

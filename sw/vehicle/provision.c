@@ -123,9 +123,8 @@ static const char* obey(const char* line) {
     }
     number = isGroup ? UAV_EVERYBODY : (U32)address[0] << 8 | address[1];
     if (!end || *end)
-        answer = "no: key or open, the key's 32 of 0..9a..f, the address's 4, a present key's; "
-                 "ground or fellow, its address, its key; group, the call's number, its key; or "
-                 "protect\r\n";
+        answer = "no: expected key KEY ADDRESS, open ADDRESS, ground ADDRESS KEY, fellow ADDRESS "
+                 "KEY, group NUMBER KEY or protect; a current key may follow\r\n";
     else if (!isProven)
         answer = "no: it has a key; append it, or fit the jumper\r\n";
     else if (!(isPeer ? UAV_providePeer(isFellow                  ? UAV_VEHICLE

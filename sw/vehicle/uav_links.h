@@ -22,7 +22,7 @@ void UAV_limitLinks(void);
 /* Passes a packet to the link of the peer that sent it. Drops packets from unknown peers. */
 void UAV_onPacketOf(void* context, const U8* bytes, U32 size);
 
-/* Returns 1 if at least one peer has a session. */
+/* Returns a number other than 0 if at least one peer has a session. */
 int UAV_isUp(void);
 
 /* Returns the role of the peer that called a servant. */

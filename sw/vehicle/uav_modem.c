@@ -14,6 +14,7 @@
 #include "uav_keys.h"
 #include "uav_links.h"
 #include "uav_os.h"
+#include "uav_peers.h"
 
 /* time without a link after which the modem is configured again, because it may have lost its
  * settings, us */
@@ -60,7 +61,7 @@ static void onPacket(void* context, const U8* bytes, U32 size) {
 }
 
 static void setUpModem(void) {
-    XBeeInitTypeDef xbeeConf = {RADIO_250000, 0x0001, 0x0000, 0, 0, 0, 0, onAnswer};
+    XBeeInitTypeDef xbeeConf = {RADIO_250000, 0x0001, UAV_GROUND_ADDRESS, 0, 0, 0, 0, onAnswer};
     static const Radio_Memory rings = {UAV_TRANSMIT_RING, UAV_RECEIVE_RING};
     if (uav_wire || uav_transparent) {
         xbeeConf.baud = uav_wire ? RADIO_WIRE_115200 : XBEE_BD_115200;

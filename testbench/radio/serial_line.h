@@ -220,7 +220,7 @@ public:
 
 private:
     bool speedFits() const;
-    // Returns the greatest age of bytes that are read now from an idle wire, ns: two poll periods
+    // Returns the largest age of bytes that are read now from an idle wire, ns: two poll periods
     // plus the time of one byte.
     double lookBack() const { return 1e6 + 10 * bitNs_; }
     void readAhead(uint64_t now);

@@ -168,7 +168,7 @@ uint32_t Stm32F2::read(uint32_t address, unsigned bytes) {
 void Stm32F2::write(uint32_t address, unsigned bytes, uint32_t value) {
     if (isPeripheral(address)) {
         if (bytes != 4)
-            throw Error("peripheral registers are written in words");
+            throw Error("a peripheral register was not written as a word of 32 bits");
         return writePeripheral(address, value);
     }
     uint64_t before = fsmc_.hclks();

@@ -241,7 +241,7 @@ def update(vehicle, images, say, air, rehearses):
         transfer(vehicle, *images[status.slot], say, air)
         vehicle.wait_while("checking")
         say(watch.stop())
-        say("version %d is complete and its signature correct; it starts" % version)
+        say("version %d was received and verified; the vehicle starts it" % version)
         await_start(vehicle, version)
     if rehearses:
         say("version %d runs and is not confirmed: the vehicle returns to the old version within "

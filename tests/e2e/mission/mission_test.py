@@ -267,7 +267,7 @@ class Cases(Script):
         sent = re.search(r"sent 262144 bytes in (.*)", self.said)[1]
         self.assertLessEqual(float(re.search(r"[\d.]+", sent)[0]), 30)
         self.patched("crashes.elf", "Program_run", 0, b"\xff\xde")  # UDF
-        self.update("crashes.elf", "is complete and its signature correct; it starts",
+        self.update("crashes.elf", "was received and verified; the vehicle starts it",
                     "was started, then replaced by the old one",
                     "2 software, 0 watchdog", status=None)
 

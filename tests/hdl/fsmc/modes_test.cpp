@@ -189,7 +189,7 @@ TEST(Modes, TheDriverRefusesWhatTheManualForbids) {
         EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.read.addhld = 16; }));
         for (unsigned busturn : {0u, 16u})
             EXPECT_TRUE(refuses(bank, [=](FSMC_Bank& x) { x.busturn = static_cast<U8>(busturn); }))
-                << "a read may begin too soon behind a write";
+                << "a read may begin too soon after a write";
         EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.writeMode = FSMC_MODE_1; }));
         EXPECT_TRUE(refuses(bank, [](FSMC_Bank& x) { x.mode = static_cast<FSMC_Mode>(7); }));
     }

@@ -29,7 +29,7 @@ REASONS = {
     "Undefined.ice:9:": "a name that is not a type is reported once, not at each use",
     "ConstDef.ice:132:": "a value that was refused above is refused once",
     "NotType.ice:28:": "a struct with a rejected member is not also reported as empty",
-    "IllegalIdentifier.ice:23:": "the line of the wrong character is named, not the one behind it"}
+    "IllegalIdentifier.ice:23:": "names the line of the wrong character, not the next line"}
 SAID = re.compile(r"[^:\n]*?([^/:\n]+\.ice):(\d+):(.*)")
 WANTED = {"ok": (0, False), "warning": (0, True), "error": (1, True)}
 KEYWORDS = """module class interface exception struct sequence dictionary enum out extends

@@ -128,7 +128,7 @@ TEST(Proxy, MovesThePins) {
     EXPECT_EQ(pins.set_limit_limit_o, 0xFFFD);
     EXPECT_EQ(pins.shift_list_base_o, coreMemory);
     EXPECT_EQ(pins.shift_shifted_base_o, coreMemory + 256)
-        << "the second buffer begins at the first multiple of 128 behind 200 bytes";
+        << "the second buffer begins at the first multiple of 128 after 200 bytes";
 }
 
 TEST(Proxy, ElementsLieInMemoryAsInC) {

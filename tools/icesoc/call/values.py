@@ -14,7 +14,7 @@ from icesoc.call.slices import INTEGERS, listed
 from icesoc.util.errors import Stop, nearest
 
 FLOAT_LIMIT = 3.4028234663852886e38
-DEEPEST = 100  # greatest nesting depth of a value
+DEEPEST = 100  # largest nesting depth of a value
 SHOWN_BYTES = 64  # number of bytes of a sequence<byte> that are printed
 
 

@@ -12,7 +12,7 @@ import typing
 from icesoc.cli import choices
 from icesoc.util.errors import Stop, nearest
 
-MOST_LISTED = 20  # greatest number of names in a message
+MOST_LISTED = 20  # largest number of names in a message
 
 
 @dataclasses.dataclass

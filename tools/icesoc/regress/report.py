@@ -16,7 +16,7 @@ from icesoc.util.tree import read_state
 from icesoc.web.page import filled, page_parts, script_safe
 
 HERE = pathlib.Path(__file__).resolve().parent
-LARGEST = 2_000_000  # greatest size of the page, bytes
+LARGEST = 2_000_000  # largest size of the page, bytes
 MEASURED = {"coverage": "coverage/summary.json", "utilisation": "synth/report.json",
             "speed": "bench/simulator.json"}
 

@@ -177,9 +177,9 @@ class Design:
     title: str = ""
     file: str = ""  # path of the module's file in the project
     parameters: dict = dataclasses.field(default_factory=dict)
-    limits: dict = dataclasses.field(default_factory=dict)  # greatest "lut", "ff", "slices",
+    limits: dict = dataclasses.field(default_factory=dict)  # largest "lut", "ff", "slices",
                                                             # "sites"
-    pads: dict = dataclasses.field(default_factory=dict)  # output port -> greatest delay from any
+    pads: dict = dataclasses.field(default_factory=dict)  # output port -> largest delay from any
                                                           # pad, ns, grade -2
     paper: bool = False  # True: the paper has figures for the design
     # The design is mapped this number of additional times, each time with its inputs and outputs

@@ -77,6 +77,10 @@ PLACES = {
         "the vehicle sends pictures, ms | {busy.clear} | {busy.key} |",
         "from the vehicle to the ground station, bytes/s | {down.clear} | {down.key} |",
         "from the ground station to the vehicle, bytes/s | {up.clear} | {up.key} |"],
+    "docs/fleet.md": [
+        "| look-ups per second and CPU | {lookups} with 10,000 names |",
+        "| registrations per second and CPU | {registrations}, each written to disk |",
+        "| {events.one} to one subscriber, {events.ten} to ten each |"],
     "docs/security.md": ["uses {stack.key} of its 2,048 bytes of stack, and {stack.clear} in open"],
     "docs/hw-mapping.md": ["({soc.lut} LUTs, {soc.ff} flip-flops)"],
     PICTURE.format("utilisation"): [
@@ -176,6 +180,10 @@ def values(tree):
             "firmware": "new firmware: power losses, in each operation and later",
             "bitstream": "new bitstream: power losses, in each operation and later",
             "ram": "full: RAM with all objects and all stacks, including the main stack",
+            "registrations": "registrations with 10000 vehicles, per second of CPU time",
+            "lookups": "look-ups with 10000 vehicles, per second of CPU time",
+            "events.one": "events to 1 subscribers, per second of CPU time",
+            "events.ten": "events to 10 subscribers, per second of CPU time",
             "command.key": "round trip of a command, limit: MAVLink 2, ms [with a key]",
             "mav.ms": "limit of round trip of a command, limit: MAVLink 2, ms [with a key]",
             "call.clear": "Ice, round trip of note(int), ms [in the clear]",

@@ -39,7 +39,7 @@ def check(tree, page, files):
         if code:
             continue
         if before.startswith("|") and line and not line.startswith("|"):
-            yield f"{page}:{number}: a line right behind a table is shown as its last row"
+            yield f"{page}:{number}: expected an empty line after the table"
         before = line
         for target in re.findall(r"\]\(([^)#\s]+)[^)]*\)", line):
             if "://" not in target and not target.startswith("../../actions/"):  # GitHub's

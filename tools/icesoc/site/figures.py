@@ -73,6 +73,10 @@ PLACES = {
         "blocks of Table I is {table1.mhz} MHz",
         "the chip's is {soc.slowest} to {soc.fastest} MHz (median {soc.mhz})"],
     "docs/faq.md": [
+        "| LUTs of the FPGA | 9,112 | {soc.lut} by the chip",
+        "| flip-flops of the FPGA | 18,224 | {soc.ff} |",
+        "| DSP blocks of the FPGA | 32 | {soc.dsp}, by fir |",
+        "| RAM of the microcontroller | 131,072 bytes | {ram}; without",
         "a number as parameter, ms | {call.clear} | {call.key} |",
         "the vehicle sends pictures, ms | {busy.clear} | {busy.key} |",
         "from the vehicle to the ground station, bytes/s | {down.clear} | {down.key} |",

@@ -101,7 +101,7 @@ int Radio_answers(void);
  * are numbered as in the controller's STATUS.STEP (docs/modem.md). */
 U32 Radio_failedStep(void);
 
-/* Copies a frame of 1..128 bytes into the output ring. Returns 0; returns 1 if no buffer is free.
+/* Copies a frame of 1..100 bytes into the output ring. Returns 0; returns 1 if no buffer is free.
  * `context` is not used; it gives the function the type of Link_Port.transmit. */
 int Radio_transmit(void* context, const U8* frame, U32 size);
 

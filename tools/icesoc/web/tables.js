@@ -170,5 +170,5 @@ function chart(place, {labels, titles = labels, series, limits = [], height = 19
 }
 
 if (typeof Tabulator === "undefined")
-  document.body.prepend(element("p", "Tables do not sort and charts are tables: Tabulator and uPlot could not be fetched. With a network, " +
-    "or a mirror of npm's in the environment's ICESOC_NPM, make this page again.", "soft"));
+  document.body.prepend(element("p", "Tables cannot be sorted, and charts are shown as tables, because Tabulator and uPlot could not be downloaded. Make this page " +
+    "again with a network, or set ICESOC_NPM to a mirror of npm.", "soft"));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // axis_filter: sends a buffer through a core with one AXI-Stream input and one AXI-Stream output,
-// of 8, 16, 32 or 64 bits, and writes the core's output to another buffer (`make new-foreign
-// BUS=axis`).
+// of 8, 16, 32 or 64 bits, and writes the core's output to another buffer (`./icesoc core foreign
+// --bus axis`).
 //
 // An operation ends with the core's tlast. If the core has no tlast (LAST 0), it ends after as many
 // output beats as input beats. An operation with 0 bytes is refused. If the output is longer than

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """cores: measures the throughput of cores in their block tests and compares it with their memory
-ports; also measures the duration of the first `make ip-test` in a fresh clone, compared with the
-time that Verilator itself takes.
+ports; also measures the duration of the first `./icesoc core test` in a fresh clone, compared with
+the time that Verilator itself takes.
 
     cores.py BUILD-FOLDER OUTPUT.json [--brief]
 

@@ -14,16 +14,63 @@ from icesoc.util.ninja import run_ninja
 from icesoc.util.table import Table
 
 
+def docstrings_of(tree):
+    return {ast.get_docstring(node, False) or "" for node in ast.walk(tree)
+            if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef))}
+
+
 def strings_of(text):
     """Returns the strings of a Python program, without its comments."""
-    nodes = list(ast.walk(ast.parse(text)))
-    comments = {ast.get_docstring(node, False) for node in nodes
-                if isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef))}
-    return [node.value for node in nodes if isinstance(node, ast.Constant) and
+    tree = ast.parse(text)
+    comments = docstrings_of(tree)
+    return [node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and
             isinstance(node.value, str) and node.value not in comments]
 
 
+def texts_of_tree():
+    """Yields (path, text) of the tree's files that may name a command. CHANGELOG.md is left out,
+    because it names the commands of earlier versions."""
+    for file in subprocess.run(["git", "grep", "-IlE", r"make |\./icesoc", "--", ":!CHANGELOG.md"],
+                               cwd=TREE, text=True, check=True, capture_output=True
+                               ).stdout.splitlines():
+        yield file, (TREE / file).read_text()
+
+
+def comments_of(file, text):
+    """Returns the comments of a file, without line breaks and comment marks. The result also
+    contains other parts of the text, but not the strings of a Python program."""
+    if file.endswith(".py"):
+        text = "\n".join([*docstrings_of(ast.parse(text)), *re.findall(r"(?m)^ *#.*", text)])
+    return re.sub(r"\n[ \t]*(?://+|#+|\*|--)?[ \t]*", " ", text)
+
+
+def wrong_commands(text, is_page):
+    """Yields each command in backquotes that does not exist, and each variable that a command does
+    not have. `is_page`: code blocks of the text can contain several commands."""
+    value = r"""[A-Z][A-Z0-9_]*=(?:'[^']*'|"[^"]*"|[^\s`'"]*)"""
+    verbs = {each.make for each in command.COMMANDS.values() if each.make} | set(command.ALIASES)
+    begin = r"(?<!board )\b" if is_page else "`"
+    quoted = "\n\n".join(re.findall(r"```.*?```|``.*?``|`[^`]+`", text, re.S)) if is_page else text
+    for before, verb, after in re.findall(
+            rf"{begin}make ((?:{value} )*)([a-z][a-z-]*)((?:[ \n]+\[?{value})*)", quoted):
+        if verb not in verbs:
+            yield f"make {verb}"
+            continue
+        known = {o.variable for each in command.COMMANDS.values() if each.make == verb
+                 for o in each.options}
+        for name in re.findall(r"(?<![\w$])([A-Z][A-Z0-9_]*)=", before + after):
+            if name not in known:
+                yield f"make {verb} has no variable {name}"
+    for words in re.findall(("" if is_page else "`") + r"\./icesoc ([a-z][^`\n#|]*)", quoted):
+        try:
+            command.find(words.split())
+        except Stop:
+            yield f"./icesoc {words}"
+
+
 class Lists(unittest.TestCase):
+    maxDiff = None
+
     def test_every_command_has_a_short_form_and_the_list_is_short(self):
         self.assertEqual([name for name, each in command.COMMANDS.items() if not each.brief], [])
         self.assertLessEqual(len({name.split()[0] for name in command.COMMANDS}), 23)
@@ -73,23 +120,31 @@ class Lists(unittest.TestCase):
             wrong += [f"{file}: {name}" for name in found - {allowed.get(file)}]
         self.assertEqual(wrong, [])
 
-    def test_pages_name_commands_that_there_are(self):
-        value = r"""[A-Z][A-Z0-9_]*=(?:'[^']*'|"[^"]*"|[^\s`'"]*)"""
-        verbs = {each.make for each in command.COMMANDS.values()} | set(command.ALIASES)
-        for page in [TREE / "README.md", TREE / "CONTRIBUTING.md",
-                     *sorted(TREE.glob("docs/**/*.md"))]:
-            quoted = "\n\n".join(re.findall(r"```.*?```|``.*?``|`[^`]+`", page.read_text(), re.S))
-            for before, verb, after in re.findall(
-                    rf"(?<!board )\bmake ((?:{value} )*)([a-z][a-z-]*)"
-                    rf"((?:[ \n]+\[?{value})*)", quoted):
-                self.assertIn(verb, verbs, page.name)
-                known = {o.variable for each in command.COMMANDS.values() if each.make == verb
-                         for o in each.options}
-                self.assertLessEqual(
-                    set(re.findall(r"(?<![\w$])([A-Z][A-Z0-9_]*)=", before + after)), known,
-                    f"{page.name}: make {verb}")
-            for words in re.findall(r"\./icesoc ([a-z][^`\n#|]*)", quoted):
-                command.find(words.split())
+    def test_pages_and_comments_name_commands_that_there_are(self):
+        for file, text in texts_of_tree():
+            is_page = file.endswith(".md")
+            text = text if is_page else comments_of(file, text)
+            self.assertEqual(list(wrong_commands(text, is_page)), [], file)
+
+    def test_comments_name_one_form_of_each_command(self):
+        """A comment names a command in the same form as messages and pages."""
+        goals = {each.make for each in command.COMMANDS.values() if each.make}
+        other = "|".join(sorted(goals - {"run", "test", "synth", "regress", "package"}))
+        found = [f"{file}: {name}" for file, text in texts_of_tree()
+                 # the requirements of tests/plan.toml are about variables of make
+                 if not file.endswith((".md", "plan.toml"))
+                 for name in re.findall(rf"(?<!board )\bmake (?:{other})(?![\w-])",
+                                        comments_of(file, text))]
+        self.assertEqual(sorted(set(found)), [])
+
+    def test_a_stale_command_is_found(self):
+        for text, wrong in (
+                ("-- `make new-foreign\n--   BUS=axis` writes it", []),
+                ("// `make new-core NAME=a`", ["make new-core"]),
+                ("# `make run\n# COLOUR=1`", ["make run has no variable COLOUR"]),
+                ("/* `./icesoc core\n * remake` */", ["./icesoc core remake"]),
+                ("`./icesoc core foreign` and `./icesoc commands --brief`", [])):
+            self.assertEqual(list(wrong_commands(comments_of("", text), False)), wrong, text)
 
     def test_the_schema_is_that_of_the_options_and_holds_a_flight(self):
         schema = (TREE / "tools/icesoc/cli/flight.schema.json").read_text()

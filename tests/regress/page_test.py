@@ -268,7 +268,8 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
         self.lights(mutants="grey   sources have changed since it was green")
 
     def test_lights_figures(self):
-        """Figures of `make synth` and `make bench` can be within a limit, beyond it, or missing."""
+        """Figures of `make synth` and `./icesoc bench` can be within a limit, beyond it, or
+        missing."""
         def entry(value, unit, limit):
             return [{"name": "whole", "value": value, "unit": unit, "limit": limit}]
 

@@ -49,7 +49,7 @@ folders="$samples/sample_verilog;$samples/sample_vhdl;$work/scaler;$here/servo;$
 folders="$folders;$work/many;$foreign/my_port;$foreign/my_requests;$work/my_lamps"
 mapped scaler # a core with sequences, exceptions and events
 mapped many   # a core with 46 words, more than the 16 of a slot
-# A core in VHDL that make new-foreign has put into a slot. GHDL is downloaded only once.
+# A core in VHDL that ./icesoc core foreign has put into a slot. GHDL is downloaded only once.
 lamps=$source/tests/ip/new_foreign/lamps
 logged "$source/tools/python" -m icesoc.cores.new_foreign \
     my_lamps lamps own "$work/fresh/my_lamps" GHDL="$build/ghdl/ghdl" \

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// axis_core_test: tests third-party cores with AXI-Streams, which `make new-foreign BUS=axis` has
-// connected, through their generated servants.
+// axis_core_test: tests third-party cores with AXI-Streams, which `./icesoc core foreign --bus
+// axis` has connected, through their generated servants.
 
 #include "Vmy_scale_slot.h"
 #include "Vmy_twice_slot.h"

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// foreign_test: tests third-party cores that `make new-foreign` has connected: registers, pins,
-// interrupt, a separate clock, and cores that answer at any time that their bus allows. Checkers of
-// the bus rules (bus/*_rules.v) end the test if a wrapper or a core breaks a rule.
+// foreign_test: tests third-party cores that `./icesoc core foreign` has connected: registers,
+// pins, interrupt, a separate clock, and cores that answer at any time that their bus
+// allows. Checkers of the bus rules (bus/*_rules.v) end the test if a wrapper or a core breaks a
+// rule.
 
 #include "Va_bridge_slot.h"
 #include "Vmy_apb2_slot.h"

@@ -1,8 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # refused: source-folder work-folder GHDL
-# Tests that `make new-foreign` rejects wrong input with a reason, and writes no files then. This is
-# a shell script because each case is a command and its output.
+# Tests that `./icesoc core foreign` rejects wrong input with a reason, and writes no files then.
+# This is a shell script because each case is a command and its output.
 set -eu
 source=$1 work=$2 ghdl=$3
 new() { "$source/tools/python" -m icesoc.cores.new_foreign "$@"; }

@@ -13,7 +13,7 @@ module wb_port (
     input      [7:0] port_in,
     output reg [7:0] port_out
 );
-    localparam [1:0] PORT_LEVELS = 2'd0, // `make new-foreign` makes the names of
+    localparam [1:0] PORT_LEVELS = 2'd0, // `./icesoc core foreign` makes the names of
                                          // registers from these names
                      PORT_DRIVEN = 2'b01;
     assign wb_inta_o = port_in[7];

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""contract_diff: lists changes of the register contract since a commit: make contract-diff
-BASE=commit.
+"""contract_diff: lists changes of the register contract since a commit
+(./icesoc contract diff COMMIT).
 
     contract_diff.py SLICE2C TREE COMMIT | contract_diff.py SLICE2C OLD-FOLDER NEW-FOLDER
 

@@ -9,8 +9,8 @@
 //
 // SOAK_SECONDS is the number of simulated seconds; the default is 5. SOAK_REST=10 makes each caller
 // pause for ten seconds on average, and makes faults rarer by the same factor. With SOAK_REST the
-// test is a flight (make fly), in which most clocks are skipped; the camera's sensor then sends one
-// picture per second, and the cores are called one after the other.
+// test is a flight (`./icesoc fly`), in which most clocks are skipped; the camera's sensor
+// then sends one picture per second, and the cores are called one after the other.
 
 #include "../../../support/delivery_check.h"
 #include "../../../support/environment.h"

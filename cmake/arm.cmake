@@ -5,6 +5,7 @@
 
 icesoc_needs(gcc-arm-none-eabi ARM_GCC program arm-none-eabi-gcc)
 icesoc_needs(binutils-arm-none-eabi ARM_SIZE program arm-none-eabi-size)
+icesoc_needs(libnewlib-arm-none-eabi ARM_LIBC path newlib/string.h)
 icesoc_needs(binutils-arm-none-eabi ARM_OBJCOPY program arm-none-eabi-objcopy)
 
 set(ARM_FLAGS -mcpu=cortex-m3 -mthumb -Os -g -ffunction-sections -fdata-sections -fno-common
@@ -19,6 +20,11 @@ function(icesoc_arm_objects out name)
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/${name}.arm)
   list(TRANSFORM A_INCLUDES PREPEND -I)
   list(TRANSFORM A_DEFINES PREPEND -D)
+  string(REGEX MATCHALL "-isystem;[^;]+" others "${A_OPTIONS}")
+  list(TRANSFORM others REPLACE ";" "")
+  icesoc_for_editors(SOURCES ${A_SOURCES}
+    OPTIONS --target=arm-none-eabi -mcpu=cortex-m3 -mthumb ${C90_WARNINGS} ${A_INCLUDES}
+      ${A_DEFINES} ${others} -isystem${ARM_LIBC}/newlib)
   set(objects)
   foreach(source IN LISTS A_SOURCES)
     get_filename_component(path ${source} ABSOLUTE)

@@ -14,6 +14,7 @@ function(icesoc_fuzz name)
     "SOURCES;INCLUDES;DEFINES;LIBS;LABELS;DEPENDS" ${ARGN})
   list(TRANSFORM A_INCLUDES PREPEND -I)
   list(TRANSFORM A_DEFINES PREPEND -D)
+  icesoc_for_editors(SOURCES ${A_HARNESS} OPTIONS ${A_INCLUDES} ${A_DEFINES})
   set(flags -g -O1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined
             -fno-omit-frame-pointer ${A_INCLUDES} ${A_DEFINES})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/${name}.fuzz)

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""interrupted: interrupts make regress, make synth and ./icesoc core new at times drawn from a seed,
-by Ctrl-C (INT to all processes), TERM or KILL. No process may be left, and the next run must give
-the correct result.
+"""interrupted: interrupts make regress, make synth and ./icesoc core new at times drawn from a
+seed, by Ctrl-C (INT to all processes), TERM or KILL. No process may be left, and the next run must
+give the correct result.
 
 Usage: interrupted.py source-folder build-folder work-folder moments tool... (new_ip, regress,
 synth); `moments` is the number of interruptions. SEED=1

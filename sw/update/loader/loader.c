@@ -45,12 +45,11 @@ static const Slots_Port port = {&slots_firmware,      0,
                                 Signature_digest,     LOADER_KEYS,
                                 (const U8*)FLASH_BASE};
 
-/* Starts the program with its vector table at this address. */
-static void __attribute__((naked, noreturn)) jump(const U32* at) {
+/* Starts the program with its vector table at this address, which is in r0. */
+static void __attribute__((naked, noreturn)) jump(const U32* at __attribute__((unused))) {
     __asm__ volatile("ldrd r1, r2, [r0]\n\t"
                      "msr msp, r1\n\t"
                      "bx r2");
-    (void)at;
 }
 
 void Reset_Handler(void) {

@@ -24,7 +24,7 @@ from pathlib import Path
 from project import (BREAK, LONGEST, REGRESS, TREE, Project, append, commit, edit, git, main,
                      write)
 from icesoc.mutants import results
-from icesoc.regress import runner, unchanged
+from icesoc.regress import execution, unchanged
 from icesoc.regress.ctest import write_finished
 from icesoc.regress.tests import Test
 
@@ -107,8 +107,8 @@ class Cases(Project):
         its age has doubled. Without a history, it is first reported after 60 s."""
         usual = {"quick": 0.1, "slow": 20.0, "new": None, "formal.long": 40.0}
         tests = [types.SimpleNamespace(name=name) for name in usual]
-        progress = runner.Progress(tests, types.SimpleNamespace(seconds=usual.get,
-                                                                  usual=usual.get), 2)
+        progress = execution.Progress(tests, types.SimpleNamespace(seconds=usual.get,
+                                                                     usual=usual.get), 2)
         begun = 1000.0
         for name in usual:
             progress.start(name)
@@ -157,8 +157,8 @@ add_test(NAME script.Wraps COMMAND sh -c
         self.regress("--name 'Wraps|a.One'")
         write("flicker", "")
         self.ask(TREE / "tools/python", "-c", """import sys
-from icesoc.regress import regress, runner
-runner.SHORTEST_HANG = 2
+from icesoc.regress import execution, regress
+execution.SHORTEST_HANG = 2
 sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.has("^1 passed, 1 failed",
                  "^1 x  Hang, ended after [2-9] s of CPU time, usually 0.. s, in spin, called by "

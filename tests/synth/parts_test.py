@@ -4,8 +4,8 @@
 and with figures that can be calculated by hand."""
 import copy, json, os, pathlib, statistics, tempfile, types, unittest, unittest.mock
 
-from icesoc.synth import (baseline, batch, cores, equivalence, owners, report, reports, runner,
-                          slices, sources, timing)
+from icesoc.synth import (baseline, batch, cores, equivalence, owners, published, report, slices,
+                          sources, synthesis, timing)
 from icesoc.util.errors import Stop
 from icesoc.synth.netlist import Cell, Name, Netlist, Pin, Port, ZERO
 from icesoc.synth.owners import Cost
@@ -123,8 +123,8 @@ class Timing(unittest.TestCase):
             pad = {"kind": timing.PAD_TO_PAD, "port": "y", "ns": mhz / 10}
             return {"lut": lut, "mhz": mhz, "timing": {"paths": [mhz], "pads": [pad]}, "nets": mhz,
                     "places": {"at": mhz}, "sites": 2 * lut}
-        f = runner.together([order(10, 102), order(12, 109), order(11, 108), order(13, 104),
-                             order(14, 105)])
+        f = synthesis.together([order(10, 102), order(12, 109), order(11, 108), order(13, 104),
+                                order(14, 105)])
         self.assertEqual((f["lut"], f["mhz"], f["nets"]), (12, 105, 105))
         self.assertEqual((f["timing"]["paths"], f["timing"]["slowest"]), ([105], [102]))
         self.assertEqual((timing.slowest_pad(f["timing"]["pads"], "y"), f["sites"]), (10.9, 24))
@@ -141,10 +141,10 @@ class Timing(unittest.TestCase):
         folder = pathlib.Path(work.name)
 
         def run(name, begun=0, spent=None, orders=0):
-            return runner.Run(sources.Design(name, name, orders=orders), "xc6s", begun=begun,
-                              spent=spent, netlist=folder / name)
-        options = runner.Options(None, None, jobs=2,
-                                 luts={"chip": 5800, "large": 2000, "small": 200})
+            return synthesis.Run(sources.Design(name, name, orders=orders), "xc6s", begun=begun,
+                                 spent=spent, netlist=folder / name)
+        options = synthesis.Options(None, None, jobs=2,
+                                    luts={"chip": 5800, "large": 2000, "small": 200})
         chip, large, small = run("chip", orders=4), run("large"), run("small")
 
         def shows(text, load=0):
@@ -170,41 +170,42 @@ class Reports(unittest.TestCase):
     TREE = pathlib.Path(__file__).resolve().parents[2]
 
     def setUp(self):
-        self.reports = reports.read(self.TREE)
+        self.reports = published.read(self.TREE)
         self.designs = [r for r in self.reports if "netlist" in r]
 
     def stated(self):
         """Raises an exception if a stated figure is not in the reports."""
         maps = [r["map"] for r in self.reports]
-        for said, found in ((timing.ROUTED, reports.range_of(self.ratios("routed"))),
-                            (slices.SITES_OF_MAP, reports.range_of(self.sites())),
-                            (slices.MAPPED, reports.slices_range(maps))):
+        for said, found in ((timing.ROUTED, published.range_of(self.ratios("routed"))),
+                            (slices.SITES_OF_MAP, published.range_of(self.sites())),
+                            (slices.MAPPED, published.slices_range(maps))):
             self.assertEqual(said.count, found.count)
             for figure, recomputed in zip(said, found):
                 self.assertAlmostEqual(figure, recomputed, delta=0.006)
-        self.assertEqual(slices.USUAL_SHARE, reports.best_share(maps))
-        self.assertLess(slices.USUAL_PAIRING, statistics.mean(map(reports.paired, maps)))
+        self.assertEqual(slices.USUAL_SHARE, published.best_share(maps))
+        self.assertLess(slices.USUAL_PAIRING, statistics.mean(map(published.paired, maps)))
 
     def sites(self):
-        return reports.site_ratios(self.reports)
+        return published.site_ratios(self.reports)
 
     def ratios(self, kind):
-        return reports.clock_ratios(self.reports, kind)
+        return published.clock_ratios(self.reports, kind)
 
     def test_the_errors_that_are_stated_are_those_of_the_reports(self):
         self.stated()
         for key, ns in ("routed", 99.0), ("synthesised", 99.0):  # adds an entry with wrong figures
             broken = next(r for r in self.designs if key in r)
             kept, broken[key] = broken[key], ns
-            before = reports.range_of(self.ratios(key))
+            before = published.range_of(self.ratios(key))
             broken[key] = kept
-            self.assertLess(before.low, 0.9 * reports.range_of(self.ratios(key)).low)
+            self.assertLess(before.low, 0.9 * published.range_of(self.ratios(key)).low)
         self.designs[0]["routed"] = 99.0
         self.assertRaises(AssertionError, self.stated)
 
     def test_each_is_predicted_by_the_others(self):
-        self.assertEqual(reports.left_out([1, 2, 4], statistics.median), [1 / 3, 2 / 2.5, 4 / 1.5])
-        found = reports.range_of([1.0] * 19 + [2.0])
+        self.assertEqual(published.left_out([1, 2, 4], statistics.median),
+                         [1 / 3, 2 / 2.5, 4 / 1.5])
+        found = published.range_of([1.0] * 19 + [2.0])
         self.assertEqual((found.median, found.low, found.count), (1, 1, 20))
         self.assertEqual(timing.ROUTED._replace(low=0.9, high=1.25).of(100), "90-125")
 
@@ -238,9 +239,9 @@ class Reports(unittest.TestCase):
                 file.parent.mkdir()
                 file.write_text(json.dumps(broken))
                 with self.assertRaisesRegex(Stop, f"report 1 cannot be read: .*{why}"):
-                    reports.read(folder)
+                    published.read(folder)
                 file.write_text("{}")
-                self.assertRaisesRegex(Stop, "expected a list of reports", reports.read, folder)
+                self.assertRaisesRegex(Stop, "expected a list of reports", published.read, folder)
 
 
 class Baseline(unittest.TestCase):
@@ -249,7 +250,7 @@ class Baseline(unittest.TestCase):
 
     def setUp(self):
         self.design = sources.Design("block", "block")
-        self.row = report.Row(self.design, runner.Run(self.design, "xc6s"))
+        self.row = report.Row(self.design, synthesis.Run(self.design, "xc6s"))
         self.row.main.figures = {
             "lut": 100, "ff": 50, "slices": 30, "carry": 0, "dsp": 2, "ram": 1.5, "mhz": 0,
             "costs": {"u_part": {"state": Cost(60, 0, 30, 0, 1.5, 2)},
@@ -324,7 +325,7 @@ class Baseline(unittest.TestCase):
             self.fails(*said)
 
     def test_a_failed_synthesis_is_a_failure_also_for_another_chip(self):
-        self.row.others = [runner.Run(self.design, "xc7", error="no such thing")]
+        self.row.others = [synthesis.Run(self.design, "xc7", error="no such thing")]
         self.fails("block: synthesis for xc7 failed")
         self.row.main.error = "syntax error"
         self.fails("block: synthesis failed")

@@ -11,7 +11,7 @@ import re
 import subprocess
 import sys
 
-from icesoc.synth import runner, sources, timing, utilisation
+from icesoc.synth import sources, synthesis, timing, utilisation
 
 SOURCE = pathlib.Path(sys.argv[1])
 HERE = pathlib.Path(__file__).parent
@@ -78,7 +78,7 @@ def bench(module, output):
     delay(module, names)
     delayed, flat, program = (output / f"nwait.{kind}" for kind in ("json", "v", "vvp"))
     delayed.write_text(json.dumps({"modules": {"fsmc_bridge": module}}))
-    script = runner.filled(SCRIPT, {"NETLIST": delayed, "OUTPUT": flat})
+    script = synthesis.filled(SCRIPT, {"NETLIST": delayed, "OUTPUT": flat})
     (output / "nwait.ys").write_text(script)
     subprocess.run(["yosys", "-q", "-s", output / "nwait.ys"], check=True)
     subprocess.run(["iverilog", "-g2012", "-s", "nwait_bench", "-o", program,
@@ -94,8 +94,8 @@ def main():
     library = utilisation.rtl_of(o)
     plan = sources.read_plan(library, SOURCE)
     design = next(design for design in plan.designs if design.name == "fsmc_bridge")
-    run = runner.mapped(design, "xc6s", library,
-                        runner.Options(SOURCE / "synth/yosys", output / "cache"))
+    run = synthesis.mapped(design, "xc6s", library,
+                           synthesis.Options(SOURCE / "synth/yosys", output / "cache"))
     module = json.loads(run.netlist.read_text())["modules"]["fsmc_bridge"]
     program, faults = bench(module, output), []
     for seed in range(1, seeds + 1):

@@ -6,7 +6,7 @@ import keyword
 
 import Ice
 
-from icesoc.call.slices import INTEGERS
+from icesoc.call.declarations import INTEGERS
 from icesoc.util.errors import Stop
 
 

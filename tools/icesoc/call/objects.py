@@ -12,7 +12,7 @@ from pathlib import Path
 import places
 
 from icesoc import TREE
-from icesoc.call.slices import Slices, listed
+from icesoc.call.declarations import Slices, listed
 from icesoc.util import chip
 from icesoc.util.errors import Stop, nearest
 

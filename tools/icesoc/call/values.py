@@ -10,7 +10,7 @@ import math
 import os
 import re
 
-from icesoc.call.slices import INTEGERS, listed
+from icesoc.call.declarations import INTEGERS, listed
 from icesoc.util.errors import Stop, nearest
 
 FLOAT_LIMIT = 3.4028234663852886e38

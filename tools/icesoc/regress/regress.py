@@ -23,7 +23,7 @@ from icesoc.regress.history import History, make_run
 from icesoc.regress.lights import text_of
 from icesoc.regress.report import gather, write_reports
 from icesoc.regress.junit import write_junit
-from icesoc.regress.runner import run_tests
+from icesoc.regress.execution import run_tests
 from icesoc.regress.tests import (Graph, Name, fingerprint, list_tests, read_plan, targets_of,
                                   unmatched, write_numbers)
 from icesoc.regress.waves import add_waves

@@ -6,7 +6,7 @@ import sys
 import threading
 import time
 
-from icesoc.synth.runner import carry_out_one, netlist_of_order, version_of
+from icesoc.synth.synthesis import carry_out_one, netlist_of_order, version_of
 from icesoc.util.errors import Stop
 from icesoc.util.progress import Line, clock
 

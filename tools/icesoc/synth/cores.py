@@ -7,7 +7,7 @@ from icesoc.regs.model import Block
 from icesoc.synth import report
 from icesoc.synth.owners import Cost
 from icesoc.synth.batch import carry_out
-from icesoc.synth.runner import Run
+from icesoc.synth.synthesis import Run
 from icesoc.synth.sources import Design
 from icesoc.util.errors import Stop
 

@@ -18,7 +18,7 @@ import xml.etree.ElementTree
 from icesoc.synth import batch
 from icesoc.synth import netlist
 from icesoc.synth import report
-from icesoc.synth import runner
+from icesoc.synth import synthesis
 from icesoc.util.errors import Stop
 from icesoc.util.files import digest, write
 from icesoc.util.process import collect as command
@@ -73,10 +73,10 @@ def attributes_of(module):
 def prove(design, family, library, options, models, seconds):
     """Proves a design within this number of seconds. Returns (result, whether the netlist is
     equivalent, seconds used). Decided results are stored for the next run."""
-    begin, run = time.monotonic(), runner.mapped(design, family, library, options)
+    begin, run = time.monotonic(), synthesis.mapped(design, family, library, options)
     files = (run.netlist, *models, pathlib.Path(__file__), pathlib.Path(netlist.__file__),
              options.scripts / "equivalence.ys", options.scripts / "product.v")
-    known = digest([library.hash_of(design.top), runner.version_of(options.yosys),
+    known = digest([library.hash_of(design.top), synthesis.version_of(options.yosys),
                     *(file.read_text() for file in files)])
     kept = run.netlist.with_suffix(f".{known}.proof")
     if kept.exists():
@@ -94,14 +94,14 @@ def proof(mapped, design, family, library, options, models, seconds):
     boxes = BOXES & set(re.findall(r'"type": "(\w+)"', text))
     words = {
         "NETLIST": file.with_suffix(".netlist"), "MODELS": " ".join(map(str, models)),
-        "SIMULATION": runner.SIMULATION[family], "PRODUCT": options.scripts / "product.v",
+        "SIMULATION": synthesis.SIMULATION[family], "PRODUCT": options.scripts / "product.v",
         "BOXES": "read_verilog -lib +/xilinx/cells_xtra.v" if boxes else ""}
 
     def script(part):
-        return runner.filled(runner.script_of(
-            runner.Run(design, "equivalence", netlist=file), library, options, part), words)
+        return synthesis.filled(synthesis.script_of(
+            synthesis.Run(design, "equivalence", netlist=file), library, options, part), words)
 
-    runner.yosys_by(script, file, options)
+    synthesis.yosys_by(script, file, options)
     part = json.loads((file.parent / f"{file.name}.part.json").read_text())["modules"]["miter"]
     commands, is_plain = attributes_of(part)
     said = solved(file, commands, is_plain, options, seconds)

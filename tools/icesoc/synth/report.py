@@ -10,7 +10,7 @@ from icesoc.synth import slices
 from icesoc.synth import timing
 from icesoc.synth.baseline import MEASURED, clock_text, short_version
 from icesoc.synth.owners import Cost
-from icesoc.synth.runner import Run
+from icesoc.synth.synthesis import Run
 from icesoc.synth.sources import Design, Library, Plan
 from icesoc.web.page import filled, page_parts, script_safe
 

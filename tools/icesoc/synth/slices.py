@@ -14,11 +14,11 @@ from icesoc.synth.netlist import LUT_INPUTS, MEMORY_LUTS, UNDEFINED
 SITES, FLIP_FLOPS, MUXES, SHARED_INPUTS = 4, 8, 2, 5
 
 # Fraction of flip-flops that do not share a site with a LUT. map needs (sites + fraction *
-# flip-flops) / 4 slices. The value is fitted to published reports (reports.py).
+# flip-flops) / 4 slices. The value is fitted to published reports (published.py).
 USUAL_SHARE = 0.74
 # Fraction of functions that need no separate site, because two functions share one. In the reports
 # it is 2 to 31 %, and 14 % on average. A lower value is used, because map needs more sites than
-# estimated (reports.py).
+# estimated (published.py).
 USUAL_PAIRING = 0.11
 
 

@@ -219,7 +219,7 @@ def read_json(file):
 
 def read_designs(root="."):
     """Returns the content of synth/designs.json: the designs, the chip, the paper's figures, and
-    published reports (reports.py)."""
+    published reports (published.py)."""
     return read_json(pathlib.Path(root, DESIGNS))
 
 

@@ -28,7 +28,7 @@ NET_DELAYS = ((0, 0.0), (1, 0.580), (2, 0.617), (5, 0.715), (16, 1.004), (26, 1.
 PAD_IN, PAD_OUT = 1.222, 2.571
 
 # Ratio of the published clock after routing to the estimated clock: median, and range that contains
-# 90 % of `count` designs. The estimate for each design is fitted to the others (reports.py).
+# 90 % of `count` designs. The estimate for each design is fitted to the others (published.py).
 ROUTED = Range(median=1.22, low=0.92, high=1.57, count=11)
 
 

@@ -13,10 +13,10 @@ from icesoc.synth import baseline
 from icesoc.synth import batch
 from icesoc.synth import cores
 from icesoc.synth import equivalence
+from icesoc.synth import published
 from icesoc.synth import report
-from icesoc.synth import reports
-from icesoc.synth import runner
 from icesoc.synth import sources
+from icesoc.synth import synthesis
 from icesoc.synth.report import Report, Row
 from icesoc.util import measured
 from icesoc.util.errors import Stop, reason_of
@@ -51,8 +51,8 @@ def rtl_of(o):
 def synthesise(plan, library, options, o):
     """Returns the runs of the requested designs for each family. Results of all other designs are
     only taken from the cache."""
-    runs = [runner.Run(design, family, plan.has(design, family)
-                       and (not o.design or design.name in o.design))
+    runs = [synthesis.Run(design, family, plan.has(design, family)
+                          and (not o.design or design.name in o.design))
             for family in o.family for design in plan.designs]
     batch.carry_out(runs, library, options)
     for run in runs:
@@ -116,7 +116,7 @@ def write_reports(r, o, libraries):
 def edif(plan, library, options, o):
     print(f"{o.edif} as EDIF ...", file=sys.stderr)
     design = next(design for design in plan.designs if design.name == o.edif)
-    runner.write_edif(design, library, options, o.output / "ise")
+    synthesis.write_edif(design, library, options, o.output / "ise")
     print(f"{o.output / 'ise' / o.edif}.edf and its Verilog in {o.output / 'ise/verilog'}; "
           "see docs/utilisation.md.")
     return 0
@@ -125,7 +125,7 @@ def edif(plan, library, options, o):
 def netlist(plan, library, options, o):
     design = next(design for design in plan.designs if design.name == o.netlist)
     design.parameters.update(o.set)
-    runner.write_for_simulation(design, o.family[-1], library, options, o.to, models_of(o))
+    synthesis.write_for_simulation(design, o.family[-1], library, options, o.to, models_of(o))
     files = " ".join(str(file.absolute()) for file in library.all_files_of(design.top))
     write(o.to.with_suffix(".d"), f"{o.to.absolute()}: {files}\n")
     return 0
@@ -149,8 +149,8 @@ def run(o, libraries):
         if name not in names:
             raise Stop(f"unknown design {name}; expected one of {', '.join(sorted(names))}")
     accepted = baseline.read_baseline(o.source / "synth/baseline.json")
-    options = runner.Options(o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs,
-                             {name: a["lut"] for name, a in accepted["designs"].items()})
+    options = synthesis.Options(o.source / "synth/yosys", o.output / "cache", o.yosys, o.jobs,
+                                {name: a["lut"] for name, a in accepted["designs"].items()})
     if o.list:
         print(*(design.name for design in plan.designs))
         return 0
@@ -165,7 +165,7 @@ def run(o, libraries):
             design.orders = 0  # only the median of the clock needs further mappings
         runs = synthesise(plan, library, options, o) if o.design else []
         return tell_cores(library, options, o, accepted, runs)
-    yosys = runner.version_of(o.yosys)
+    yosys = synthesis.version_of(o.yosys)
     # git reads the tree's state and the history in parallel
     with concurrent.futures.ThreadPoolExecutor() as pool:
         tree = pool.submit(tree_state, o.source, STATE_OF)
@@ -237,7 +237,7 @@ def main(words):
     o = options_of(words)
     try:
         if o.reports:
-            print(reports.text(reports.read(o.source)), end="")
+            print(published.text(published.read(o.source)), end="")
             return 0
         if o.compare:
             before, after = map(measured.read, (o.compare, o.output / "report.json"))

@@ -10,8 +10,8 @@ import time
 
 import places
 
+from icesoc.call.declarations import listed
 from icesoc.call.objects import Catalogue, check_register, flights, registers, ACCESSES, REGISTERS
-from icesoc.call.slices import listed
 from icesoc.call.values import Reader, plain, readable
 from icesoc.cli.command import command
 from icesoc.cli.options import (ADDRESS, ARGUMENTS, BUILD, COUNT, FILE, FOLDER, KEY_FILE, PATH,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""reports: compares the estimates with published reports of XST, map and TRCE ("reports" in
+"""published: compares the estimates with published reports of XST, map and TRCE ("reports" in
 synth/designs.json), which shows how accurate the estimates are (docs/utilisation.md).
 
 Every report has figures of map, which calibrate the estimate of slices. If Yosys can read the

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""slices: the declarations of Slice files, as printed by `slice2c --describe`.
+"""declarations: the declarations of Slice files, as printed by `slice2c --describe`.
 
 The command line and the page in the browser use them to check values and to show operations.
 """

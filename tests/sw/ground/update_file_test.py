@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""package_test: tests that update.py reads all update packages in a file, in order, and rejects a
-damaged file."""
+"""update_file_test: tests that update.py reads all update packages in a file, in order, and rejects
+a damaged file."""
 import tempfile
 import unittest
 from pathlib import Path

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""runner: runs selected tests with CTest, prints the progress, and ends hangs."""
+"""execution: runs selected tests with CTest, prints the progress, and ends hangs."""
 import contextlib
 import os
 import pathlib

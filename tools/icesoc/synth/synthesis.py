@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""runner: runs a synthesis with Yosys, caches the result under the hash of its sources, and
+"""synthesis: runs a synthesis with Yosys, caches the result under the hash of its sources, and
 computes the figures of the run. batch.py runs several.
 
 The cache stores the figures as JSON: {"lut", "ff", ...: counts; "cells": counts by Yosys cell type;

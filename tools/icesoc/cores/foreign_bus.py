@@ -53,7 +53,7 @@ class Core:
         a word. On an APB with 8 or 16 data bits, the addresses of registers are assumed to have no
         gaps."""
         width, lsb = len(port["bits"]), port.get("offset", 0)
-        step, reason = 4, "as you say"
+        step, reason = 4, "as given"
         if address or role in ("words", "bytes"):
             step = 1 if (address or role) == "words" else 4
         elif lsb > 1:
@@ -77,7 +77,7 @@ class Core:
             # byte addresses, with a word of four bytes for each register
             unit, other = "bytes, each a register", "bytes"
         self.unit = f"counts {unit}: {reason}" + (
-            "" if reason == "as you say" else f"; if not, ADDRESS={other}")
+            "" if reason == "as given" else f"; if not, ADDRESS={other}")
         lsb = lsb if step > 1 else 0
         self.step, gap = step, step.bit_length() - 1
         self.word_bits = max(0, width + lsb - gap)

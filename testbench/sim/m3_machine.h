@@ -56,7 +56,7 @@ public:
     // Prints what the processor has executed and, if it has stopped, the reason.
     void report();
 
-    // Runs as a debugger commands. Execution begins when a debugger connects. After the debugger
+    // Runs the program under a debugger. Execution begins when a debugger connects. After the debugger
     // has detached, the program runs freely until another debugger connects. `canGoBack` is true if
     // nothing outside of this process takes part in the flight; a debugger can then run the program
     // backwards, even from its end.

@@ -284,7 +284,7 @@ CHANGES = [
      'nets[0].mcu: expected a pin of the microcontroller, such as "PD14", got "PF\u0660"'),
     ("[modem]", "[fpga]", "Cannot declare ('fpga',) twice (at line 124, column 6)"),
     ("[mcu]", "without = []\n[mcu]", "without: expected only in a board with 'base'"),
-    ("[mcu]", "a = " + "[" * 2000 + "]" * 2000 + "\n[mcu]", "brackets are nested too deep"),
+    ("[mcu]", "a = " + "[" * 2000 + "]" * 2000 + "\n[mcu]", "brackets are nested too deeply"),
     ('part = "stm32f207zgt6"', 'part = "stm32f407"',
      "mcu.part: expected stm32f207vgt6 or stm32f207zgt6, got 'stm32f407'; did you mean "
      "stm32f207zgt6?"),

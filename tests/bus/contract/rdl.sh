@@ -90,7 +90,7 @@ refused 'b: duplicate name, first on line 1' 'addrmap a { reg { field {} b; fiel
 refused 'has no address' 'addrmap A_PAGES { reg { field {} b; } x; };
     addrmap top { addrmap { reg { field {} b; } x; } A; };'
 refused "expected text in UTF-8" "\\0377"
-refused 'nested too deep' "$(printf 'addrmap a {%.0s' $(seq 1500))"
+refused 'nested too deeply' "$(printf 'addrmap a {%.0s' $(seq 1500))"
 ! rdl "$work/none.rdl" "$work" && grep -q 'No such file' "$work/log" ||
     fail 'a file that is not there is not said'
 echo 'rdl: all as expected'

@@ -61,7 +61,7 @@ def parse(path):
     except OSError as e:
         raise Wrong(f"{path}: {e.strerror}") from None
     except RecursionError:
-        raise Wrong(f"{path}: brackets are nested too deep") from None
+        raise Wrong(f"{path}: brackets are nested too deeply") from None
     except ValueError:  # Python converts at most 4300 digits
         raise Wrong(f"{path}: a number has too many digits") from None
 

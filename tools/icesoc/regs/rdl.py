@@ -318,7 +318,7 @@ def main():
             with open(path, "w") as f:
                 f.write(json.dumps(block, indent=2) + "\n")
     except RecursionError:
-        sys.exit(f"{args.file}:1: error: components are nested too deep")
+        sys.exit(f"{args.file}:1: error: components are nested too deeply")
     except UnicodeDecodeError:
         sys.exit(f"{args.file}:1: error: expected text in UTF-8")
     except OSError as e:

@@ -155,8 +155,8 @@ def elements(address, *options, **size):
 
 
 def fault(page):
-    """Opens a page, and returns the first exception in its scripts, with line and text; empty if
-    without one."""
+    """Opens a page, and returns the first exception in its scripts, with line and text; "" if
+    no exception occurred."""
     page = Path(page).resolve()
     with Browser() as browser:
         browser.open(page.as_uri())

@@ -107,7 +107,7 @@ def build_figures(values):
             try:
                 synthesised = figures_of_synth(whole_report())
             except Stop as error:
-                say(f"the figures that come from a report of the synthesis stay as they are: "
+                say(f"the figures from the synthesis report are unchanged: "
                     f"{error}")
                 synthesised = {}
             for page in figures.correct(".", synthesised):

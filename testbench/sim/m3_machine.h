@@ -56,10 +56,10 @@ public:
     // Prints what the processor has executed and, if it has stopped, the reason.
     void report();
 
-    // Runs the program under a debugger. Execution begins when a debugger connects. After the debugger
-    // has detached, the program runs freely until another debugger connects. `canGoBack` is true if
-    // nothing outside of this process takes part in the flight; a debugger can then run the program
-    // backwards, even from its end.
+    // Runs the program under a debugger. Execution begins when a debugger connects. After the
+    // debugger has detached, the program runs freely until another debugger connects. `canGoBack`
+    // is true if nothing outside of this process takes part in the flight; a debugger can then run
+    // the program backwards, even from its end.
     void debug(GdbStub& stub, bool canGoBack);
 
     Stm32F2& stm32() { return stm32_; }

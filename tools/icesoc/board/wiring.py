@@ -74,7 +74,7 @@ def grounds(board: Board):
             pins = [str(number) for number, pin in
                     enumerate(module.facts["connectors"].get(connector, []), 1) if pin == "GND"]
             if pins:
-                parts.append(f"{connector} pins {', '.join(pins)}")
+                parts.append(f"{connector} pin{'s' if len(pins) > 1 else ''} {', '.join(pins)}")
     return "; ".join(parts) + "."
 
 
@@ -92,6 +92,8 @@ def materials(board: Board):
             (count + 10, "jumper wire, female to female, 10 to 15 cm",
              f"{count} signals, 10 grounds"),
             (1, "USB serial adapter, 3.3 V", "console, 115200 baud"),
+            (1, "USB serial adapter, 3.3 V, with an FT232 or CP2102N",
+             "replaces the modem for the first call, 111111 baud"),
             (1, "JTAG adapter for Xilinx (Platform Cable USB, or FT2232H with openFPGALoader)",
              "loads the bitstream at J2"),
             (1, "XBee of the same kind with a USB adapter", "the ground's modem")]

@@ -15,6 +15,8 @@
 
 `default_nettype none
 
+`include "wrong_parameter.vh"
+
 module bus_window #(
     parameter [31:0] ID_VALUE   = 32'd0,
     parameter        ADDR_WIDTH = 12,  // width of a byte address in the core, 3..32
@@ -37,15 +39,7 @@ module bus_window #(
 );
     generate
         if (ADDR_WIDTH < 3 || ADDR_WIDTH > 32 || TIMEOUT < 1 || TIMEOUT > 255) begin : g_refused
-// reports an error in the same way as npi_arbiter: by $error in Verilator and Yosys, and by the
-// name of an unknown module in other tools
-`ifdef VERILATOR
-            $error("bus_window: ADDR_WIDTH is 3..32, TIMEOUT 1..255");
-`elsif YOSYS
-            $error("bus_window: ADDR_WIDTH is 3..32, TIMEOUT 1..255");
-`else
-            bus_window_parameter_out_of_range u_refused ();
-`endif
+            `WRONG_PARAMETER("bus_window: ADDR_WIDTH is 3..32, TIMEOUT 1..255")
         end
     endgenerate
 

@@ -9,6 +9,8 @@
 
 `default_nettype none
 
+`include "wrong_parameter.vh"
+
 module mcb_backend #(
     parameter ADDR_WIDTH = 27 // width of a byte address, 9..30; the MCB supports up to 1 GiB
 ) (
@@ -31,13 +33,7 @@ module mcb_backend #(
 );
     generate
         if (ADDR_WIDTH < 9 || ADDR_WIDTH > 30) begin : g_refused
-`ifdef VERILATOR // Stops the elaboration with an error message, in the same way as npi_arbiter.
-            $error("mcb_backend: ADDR_WIDTH is 9..30");
-`elsif YOSYS
-            $error("mcb_backend: ADDR_WIDTH is 9..30");
-`else
-            mcb_backend_ADDR_WIDTH_9_to_30 u_refused ();
-`endif
+            `WRONG_PARAMETER("mcb_backend: ADDR_WIDTH is 9..30")
         end
     endgenerate
 

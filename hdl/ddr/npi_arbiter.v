@@ -8,6 +8,8 @@
 
 `default_nettype none
 
+`include "wrong_parameter.vh"
+
 module npi_arbiter #(
     parameter             PORTS      = 2, // number of ports, 2..8
     // one bit per port: 1 if the port is served before the other ports (npi_select)
@@ -51,15 +53,7 @@ module npi_arbiter #(
     generate
         if (PORTS < 2 || PORTS > 8 || URGENT_RUN == 0 || ADDR_WIDTH < 9 ||
             ADDR_WIDTH > 32) begin : g_refused
-            // Verilog-2005 has no module item for an error message. Icarus and XST report the
-            // name of an unknown module instead.
-`ifdef VERILATOR
-            $error("npi_arbiter: PORTS is 2..8, URGENT_RUN 1..7, ADDR_WIDTH 9..32");
-`elsif YOSYS
-            $error("npi_arbiter: PORTS is 2..8, URGENT_RUN 1..7, ADDR_WIDTH 9..32");
-`else
-            npi_arbiter_PORTS_2_to_8_URGENT_RUN_1_to_7_ADDR_WIDTH_9_to_32 u_refused ();
-`endif
+            `WRONG_PARAMETER("npi_arbiter: PORTS is 2..8, URGENT_RUN 1..7, ADDR_WIDTH 9..32")
         end
     endgenerate
 

@@ -4,14 +4,7 @@
 
 `default_nettype none
 
-// $error as a module item is SystemVerilog, so for Icarus and XST the name of an undefined module
-// serves as the message.
-`ifdef VERILATOR
-    `define TELLS_ERRORS
-`endif
-`ifdef YOSYS
-    `define TELLS_ERRORS
-`endif
+`include "wrong_parameter.vh"
 
 module fsmc_parameter_rules #(
     parameter MUXED        = 0,
@@ -21,13 +14,13 @@ module fsmc_parameter_rules #(
     parameter BLOCK_LOG2   = 3
 );
     generate
-        if (MUXED >> 1 != 0 || WAIT_HIGH >> 1 != 0 || TIMEOUT_LOG2 < 1 || TIMEOUT_LOG2 > 24 ||
-            POST_LOG2 < 2 || POST_LOG2 > 5 || BLOCK_LOG2 < 1 || BLOCK_LOG2 > 4) begin : g_refused
-`ifdef TELLS_ERRORS
-            $error("FSMC bridge: MUXED, WAIT_HIGH 0..1, TIMEOUT_LOG2 1..24, POST 2..5, BLOCK 1..4");
-`else
-            fsmc_bridge_parameter_out_of_range u_refused ();
-`endif
+        if (MUXED >> 1 != 0 || WAIT_HIGH >> 1 != 0 || TIMEOUT_LOG2 < 1 ||
+            TIMEOUT_LOG2 > 24) begin : g_pins_refused
+            `WRONG_PARAMETER("FSMC bridge: MUXED, WAIT_HIGH is 0..1, TIMEOUT_LOG2 1..24")
+        end
+        if (POST_LOG2 < 2 || POST_LOG2 > 5 || BLOCK_LOG2 < 1 ||
+            BLOCK_LOG2 > 4) begin : g_sizes_refused
+            `WRONG_PARAMETER("FSMC bridge: POST_LOG2 is 2..5, BLOCK_LOG2 1..4")
         end
     endgenerate
 endmodule

@@ -297,13 +297,27 @@ cc -std=c90 -ffunction-sections -fdata-sections -o by_pkg_config -Imade \\
             import yaml
         except ImportError:
             self.skipTest("python3-yaml is missing: FuseSoC's core files were not read")
+        listed, included, needed = {}, {}, {}  # by the name of the block
         for path in self.hdl.glob("*.core"):
             head, _, text = path.read_text().partition("\n")
             self.assertEqual(head, "CAPI=2:")
-            for fileset in yaml.safe_load(text)["filesets"].values():
-                for file in fileset["files"]:
-                    name = file if isinstance(file, str) else next(iter(file))
-                    self.assertTrue((self.hdl / name).exists(), f"{path} names {name}")
+            core = yaml.safe_load(text)
+            block = core["name"].split(":")[2]
+            files = [file if isinstance(file, str) else next(iter(file))
+                     for fileset in core["filesets"].values() for file in fileset["files"]]
+            for name in files:
+                self.assertTrue((self.hdl / name).exists(), f"{path} names {name}")
+            listed[block] = {Path(name).name for name in files}
+            included[block] = {name for file in files for name in re.findall(
+                '(?m)^ *`include "(.*)"', (self.hdl / file).read_text())
+                if not name.endswith("_proof.vh")}
+            needed[block] = [each.split(":")[2] for each in
+                             core["filesets"]["rtl"].get("depend", [])]
+
+        def with_needed(block):
+            return listed[block].union(*map(with_needed, needed[block]))
+        missing = {block: included[block] - with_needed(block) for block in listed}
+        self.assertEqual({block: names for block, names in missing.items() if names}, {})
 
     def test_fusesoc(self):
         """FuseSoC finds each block with its dependencies, and lints the block with Verilator."""

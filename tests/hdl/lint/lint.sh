@@ -75,15 +75,19 @@ done
 verilate '' '-DCOVER_POINTS --coverage --assert -Wno-SYNCASYNCNET'
 # One process for all variants, because starting Yosys takes longer than a variant.
 yosys -q -p "$read_file design -save read; $checks"
+icarus() { # [variant]
+    # shellcheck disable=SC2086,SC2046
+    iverilog -g2005 -Wall -Wno-timescale -t null $search -s "$module" \
+        $(for p in $(each "${1-}"); do echo "-P$module.$p"; done) "$file"
+}
 for variant in $refused; do
-    for tool in verilate elaborate; do
+    for tool in verilate elaborate icarus; do
         said=$($tool "$variant" 2>&1) && { echo "$module: $tool takes $variant" >&2; exit 1; }
-        # the variant must be rejected with the error message for its parameters
-        echo "$said" | grep -q "$says: [A-Z].*[0-9][.][.][0-9]" || {
+        # the variant must be rejected with the message of wrong_parameter.vh
+        echo "$said" | grep -qE "$says: [A-Z].*[0-9][.][.][0-9]|Unknown module type: wrong_par" || {
             echo "$said" >&2
             exit 1
         }
     done
 done
-# shellcheck disable=SC2086
-iverilog -g2005 -Wall -Wno-timescale -t null $search -s "$module" "$file"
+icarus

@@ -13,7 +13,8 @@ enum { NO_MATCH, DEFAULT_OF_ALL, DEFAULT_OF_CATEGORY, EXACT };
 
 static int match(const Ice_Servant* entry, const Ice_Current* current, Ice_Status* status) {
     const Ice_Identity* id = &entry->identity;
-    if (!entry->servant)
+    /* the sizes are compared first, because most names differ in size */
+    if (!entry->servant || (id->name.size && id->name.size != current->name.size))
         return NO_MATCH;
     if (id->name.size == 0 && id->category.size == 0)
         return DEFAULT_OF_ALL;
@@ -36,7 +37,7 @@ static Ice_ObjectPtr find(Ice_CommunicatorPtr ic, Ice_Current* current, Ice_Stat
     icec_lock(ic, ICE_LOCK_STATE);
     *status = ic->stopping ? ICE_CONNECTION_CLOSED : ICE_OBJECT_NOT_EXIST;
     for (adapter = ic->stopping ? 0 : ic->adapters; adapter; adapter = adapter->next)
-        for (s = 0; adapter->active && s < ICE_SERVANTS; ++s) {
+        for (s = 0; adapter->active && s < ICE_SERVANTS && best != EXACT; ++s) {
             int found = match(&adapter->servants[s], current, status);
             if (found > best) {
                 best = found;

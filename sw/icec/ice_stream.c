@@ -24,8 +24,11 @@ int Ice_String_equals(Ice_String a, const char* terminated) {
 }
 
 int Ice_String_is(const Ice_String* a, const char* terminated) {
-    size_t size = strlen(terminated);
-    return (size_t)a->size == size && (size == 0 || memcmp(a->data, terminated, size) == 0);
+    Ice_Int i;
+    for (i = 0; i < a->size; ++i)
+        if (!terminated[i] || a->data[i] != terminated[i])
+            return 0;
+    return !terminated[i];
 }
 
 int Ice_String_copy(Ice_String s, char* to, Ice_Int size) {
@@ -164,11 +167,12 @@ const Ice_Byte* Ice_InputStream_readBlob(Ice_InputStreamPtr is, Ice_Int size) {
 
 static U32 readWord(Ice_InputStreamPtr is, Ice_Int bytes) {
     const Ice_Byte* b = Ice_InputStream_readBlob(is, bytes);
-    U32 v = 0;
-    if (b)
-        while (bytes--)
-            v = v << 8 | b[bytes];
-    return v;
+    if (!b)
+        return 0;
+    /* compilers make one load of these four bytes */
+    if (bytes == 4)
+        return (U32)b[0] | (U32)b[1] << 8 | (U32)b[2] << 16 | (U32)b[3] << 24;
+    return bytes == 1 ? b[0] : (U32)b[0] | (U32)b[1] << 8;
 }
 
 Ice_Byte Ice_InputStream_readByte(Ice_InputStreamPtr is) {

@@ -93,8 +93,6 @@ static Link_Entry* findAhead(Link_Queue* queue, U32 most, U32* start) {
 int link_cut(Link_Queue* queue, Link_Chunk* chunk, U32 room, U32 reduced, U32 overtaker) {
     Link_Entry* entry;
     U32 left;
-    if (queue->cutEntry == queue->count)
-        return 0;
     entry = findAhead(queue, overtaker, &chunk->start);
     if (!entry && !reduced)
         return 0;

@@ -62,7 +62,10 @@ Link_Entry* link_enqueue(Link_Queue* queue, U32 flags, U32 size, U32 longest);
 /* Appends bytes to the newest entry, and updates its check. */
 void link_put(Link_Queue* queue, const U8* data, U32 size);
 
-/* Cuts the next chunk: a whole entry if the entry is shorter than `room` bytes, otherwise at most
+/* Returns whether nothing is left to cut. */
+#define LINK_IS_ALL_CUT(queue) ((queue)->cutEntry == (queue)->count)
+
+/* Cuts the next chunk of a queue in which something is left to cut: a whole entry if the entry is shorter than `room` bytes, otherwise at most
  * `reduced` bytes of it. If `reduced` is 0, cuts only an entry that overtakes others. `overtaker`
  * is the size of the largest entry that may overtake, bytes; 0 disables overtaking. Returns 0 if
  * nothing was cut. */

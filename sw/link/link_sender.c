@@ -348,7 +348,7 @@ static int nextFragment(Link_Sender* sender, U32* seq) {
                 return 1;
             break;
         }
-    if (!cut(sender, isRepeated))
+    if (LINK_IS_ALL_CUT(&sender->queue) || !cut(sender, isRepeated))
         return isRepeated;
     *seq = sender->next - 1U;
     return 1;
@@ -389,7 +389,7 @@ int link_pollSender(Link_Sender* sender) {
         return 0;
     while (sender->hasWork) {
         if (LINK_IS_HELD(sender->pacing)) {
-            if (!cut(sender, 1))
+            if (LINK_IS_ALL_CUT(&sender->queue) || !cut(sender, 1))
                 break;
             seq = sender->next - 1U;
         } else {

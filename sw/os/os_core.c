@@ -7,31 +7,14 @@
 OS_Kernel os_kernel;
 INT8U OSPrioCur;
 
-void OS_Set_add(OS_Set* set, U8 priority) {
-    set->word[priority >> 5] |= 1U << (priority & 31U);
-}
-
-void OS_Set_remove(OS_Set* set, U8 priority) {
-    set->word[priority >> 5] &= ~(1U << (priority & 31U));
-}
-
-int OS_Set_has(const OS_Set* set, U8 priority) {
-    return (int)(set->word[priority >> 5] >> (priority & 31U) & 1U);
-}
-
 int OS_PriorityTaken(U8 priority) {
-    return os_kernel.byPriority[priority] != 0 || OS_Set_has(&os_kernel.reserved, priority);
+    return os_kernel.byPriority[priority] != 0 || OS_SET_HAS(&os_kernel.reserved, priority);
 }
 
 U8 OS_Set_first(const OS_Set* set) {
-    /* Returns the number of the lowest set bit. A de Bruijn sequence is used: the upper five bits
-     * of the product are different for each of the 32 bits. */
-    static const U8 place[32] = {0,  1,  28, 2,  29, 14, 24, 3, 30, 22, 20, 15, 25, 17, 4,  8,
-                                 31, 27, 13, 23, 21, 19, 16, 7, 26, 12, 18, 6,  11, 5,  10, 9};
-    U32 n = set->word[0] ? 0U : 32U, bits = set->word[n >> 5];
-    if (bits == 0)
-        return OS_LOWEST_PRIO + 1U;
-    return (U8)(n + place[((bits & (0U - bits)) * 0x077CB531U) >> 27]);
+    U32 n = set->word[0] ? 0U : 32U;
+    U32 bits = set->word[n >> 5];
+    return (U8)(bits ? n + OS_LOWEST_BIT(bits) : OS_LOWEST_PRIO + 1U);
 }
 
 /* Switches to the ready task with the highest priority. Interrupts must be disabled. */
@@ -51,6 +34,28 @@ void OS_Sched(void) {
     if (os_kernel.running && !os_kernel.interruptNesting && !os_kernel.lockNesting)
         switchToFirst();
     OS_EXIT_CRITICAL();
+}
+
+U8 OS_EventWait(OS_EVENT* event, U32 timeout, OS_CPU_SR cpu_sr) {
+    OS_Task* task = os_kernel.current;
+    task->event = event;
+    task->timedOut = 0;
+    task->delay = timeout;
+    OS_SET_REMOVE(&os_kernel.ready, task->priority);
+    OS_SET_ADD(&event->waiting, task->priority);
+    OS_EXIT_CRITICAL();
+    OS_Sched();
+    return task->timedOut;
+}
+
+OS_Task* OS_EventWake(OS_EVENT* event) {
+    U8 priority = OS_Set_first(&event->waiting);
+    OS_Task* task = os_kernel.byPriority[priority];
+    OS_SET_REMOVE(&event->waiting, priority);
+    task->event = 0;
+    task->delay = 0;
+    OS_SET_ADD(&os_kernel.ready, priority);
+    return task;
 }
 
 void OSSchedLock(void) {
@@ -87,7 +92,7 @@ void OSTimeDly(INT32U ticks) {
         return;
     OS_ENTER_CRITICAL();
     os_kernel.current->delay = ticks;
-    OS_Set_remove(&os_kernel.ready, os_kernel.current->priority);
+    OS_SET_REMOVE(&os_kernel.ready, os_kernel.current->priority);
     OS_EXIT_CRITICAL();
     OS_Sched();
 }
@@ -105,11 +110,11 @@ INT32U OSTimeGet(void) {
  * wait. */
 static void expire(OS_Task* task) {
     if (task->event) {
-        OS_Set_remove(&task->event->waiting, task->priority);
+        OS_SET_REMOVE(&task->event->waiting, task->priority);
         task->event = 0;
         task->timedOut = 1;
     }
-    OS_Set_add(&os_kernel.ready, task->priority);
+    OS_SET_ADD(&os_kernel.ready, task->priority);
 }
 
 void OSTimeTick(void) {
@@ -126,9 +131,9 @@ void OSTimeTick(void) {
 }
 
 static void moveInSet(OS_Set* set, U8 from, U8 to) {
-    if (OS_Set_has(set, from)) {
-        OS_Set_remove(set, from);
-        OS_Set_add(set, to);
+    if (OS_SET_HAS(set, from)) {
+        OS_SET_REMOVE(set, from);
+        OS_SET_ADD(set, to);
     }
 }
 
@@ -142,4 +147,22 @@ void OS_ChangePriority(OS_Task* task, U8 priority) {
     task->priority = priority;
     if (task == os_kernel.current)
         OSPrioCur = priority;
+}
+
+void OS_MutexWait(OS_EVENT* event, U32 timeout, U8* error, OS_CPU_SR cpu_sr) {
+    OS_Task* owner = event->owner;
+    if (owner->priority > os_kernel.current->priority && owner->priority > event->ceiling)
+        OS_ChangePriority(owner, event->ceiling);
+    if (OS_EventWait(event, timeout, cpu_sr))
+        *error = OS_ERR_TIMEOUT;
+}
+
+U8 OS_MutexPass(OS_EVENT* event, OS_CPU_SR cpu_sr) {
+    OS_Task* self = os_kernel.current;
+    if (self->priority == event->ceiling && self->priority != self->base)
+        OS_ChangePriority(self, self->base);
+    event->owner = OS_IS_WAITED(event) ? OS_EventWake(event) : 0;
+    OS_EXIT_CRITICAL();
+    OS_Sched();
+    return OS_ERR_NONE;
 }

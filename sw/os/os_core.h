@@ -53,11 +53,37 @@ typedef struct OS_Kernel {
 
 extern OS_Kernel os_kernel;
 
-void OS_Set_add(OS_Set* set, U8 priority);
-void OS_Set_remove(OS_Set* set, U8 priority);
-int OS_Set_has(const OS_Set* set, U8 priority);
+/* Number of the lowest bit that is set in `bits`, which is not 0. */
+#define OS_LOWEST_BIT(bits) ((U32)__builtin_ctz(bits))
+
+/* Operations on sets. */
+#define OS_SET_WORD(set, priority) ((set)->word[(priority) >> 5])
+#define OS_SET_BIT(priority) (1U << ((priority) & 31U))
+#define OS_SET_ADD(set, priority) (OS_SET_WORD(set, priority) |= OS_SET_BIT(priority))
+#define OS_SET_REMOVE(set, priority) (OS_SET_WORD(set, priority) &= ~OS_SET_BIT(priority))
+#define OS_SET_HAS(set, priority) ((OS_SET_WORD(set, priority) & OS_SET_BIT(priority)) != 0)
 /* Returns the lowest number in the set, or OS_LOWEST_PRIO + 1 if the set is empty. */
 U8 OS_Set_first(const OS_Set* set);
+
+/* Whether tasks wait for an event. */
+#define OS_IS_WAITED(event) (((event)->waiting.word[0] | (event)->waiting.word[1]) != 0)
+/* Suspends the current task until the event is signalled or `timeout` ticks have passed. Returns 1
+ * after a time-out. Interrupts must be disabled; the function ends the critical section, which has
+ * saved `cpu_sr`. */
+U8 OS_EventWait(OS_EVENT* event, U32 timeout, OS_CPU_SR cpu_sr);
+/* Makes that task ready which has the highest priority of the tasks that wait for the event, and
+ * returns this task. At least one task must wait. Interrupts must be disabled. */
+OS_Task* OS_EventWake(OS_EVENT* event);
+
+/* The parts of OSMutexPend and OSMutexPost for a mutex for which a task waits. They are separate
+ * functions, so that the usual case saves no registers. Interrupts must be disabled; the functions
+ * end the critical section, which has saved `cpu_sr`. */
+
+/* Waits until the owner has released the mutex; raises the owner's priority if necessary. */
+void OS_MutexWait(OS_EVENT* event, U32 timeout, U8* error, OS_CPU_SR cpu_sr);
+/* Restores the priority of the current task, which owns the mutex, and passes the mutex to the next
+ * task that waits for it. Returns OS_ERR_NONE. */
+U8 OS_MutexPass(OS_EVENT* event, OS_CPU_SR cpu_sr);
 
 /* Returns 1 if a task or a mutex has this priority. */
 int OS_PriorityTaken(U8 priority);

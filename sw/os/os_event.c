@@ -33,38 +33,6 @@ static U8 pendError(const OS_EVENT* event, OS_EventType type) {
     return os_kernel.lockNesting ? OS_ERR_PEND_LOCKED : OS_ERR_NONE;
 }
 
-/* Suspends the current task until the event is signalled or `timeout` ticks have passed. Returns 1
- * after a time-out. Interrupts must be disabled before the call and are disabled after it; they are
- * enabled while the task waits. */
-static U8 waitFor(OS_EVENT* event, U32 timeout, OS_CPU_SR* cpu_sr) {
-    OS_Task* task = os_kernel.current;
-    task->event = event;
-    task->timedOut = 0;
-    task->delay = timeout;
-    OS_Set_remove(&os_kernel.ready, task->priority);
-    OS_Set_add(&event->waiting, task->priority);
-    OS_CPU_SR_Restore(*cpu_sr);
-    OS_Sched();
-    *cpu_sr = OS_CPU_SR_Save();
-    return task->timedOut;
-}
-
-/* Of the tasks that wait for the event, makes the task with the highest priority ready, and returns
- * this task. Returns 0 if no task waits. */
-static OS_Task* wake(OS_EVENT* event) {
-    U8 priority;
-    OS_Task* task;
-    if (!(event->waiting.word[0] | event->waiting.word[1]))
-        return 0;
-    priority = OS_Set_first(&event->waiting);
-    task = os_kernel.byPriority[priority];
-    OS_Set_remove(&event->waiting, priority);
-    task->event = 0;
-    task->delay = 0;
-    OS_Set_add(&os_kernel.ready, priority);
-    return task;
-}
-
 OS_EVENT* OSSemCreate(INT16U cnt) {
     OS_EVENT* event = create(OS_EVENT_SEM);
     if (event)
@@ -78,11 +46,12 @@ void OSSemPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr) {
     if (*perr != OS_ERR_NONE)
         return;
     OS_ENTER_CRITICAL();
-    if (pevent->count)
+    if (pevent->count) {
         --pevent->count;
-    else if (waitFor(pevent, timeout, &cpu_sr))
+        OS_EXIT_CRITICAL();
+    } else if (OS_EventWait(pevent, timeout, cpu_sr)) {
         *perr = OS_ERR_TIMEOUT;
-    OS_EXIT_CRITICAL();
+    }
 }
 
 INT16U OSSemAccept(OS_EVENT* pevent) {
@@ -105,14 +74,17 @@ INT8U OSSemPost(OS_EVENT* pevent) {
     if (pevent->type != OS_EVENT_SEM)
         return OS_ERR_EVENT_TYPE;
     OS_ENTER_CRITICAL();
-    if (!wake(pevent)) {
-        if (pevent->count < 65535U)
-            ++pevent->count;
-        else
-            error = OS_ERR_SEM_OVF;
+    if (OS_IS_WAITED(pevent)) {
+        (void)OS_EventWake(pevent);
+        OS_EXIT_CRITICAL();
+        OS_Sched();
+        return OS_ERR_NONE;
     }
+    if (pevent->count < 65535U)
+        ++pevent->count;
+    else
+        error = OS_ERR_SEM_OVF;
     OS_EXIT_CRITICAL();
-    OS_Sched();
     return error;
 }
 
@@ -134,7 +106,7 @@ OS_EVENT* OSMutexCreate(INT8U prio, INT8U* perr) {
     *perr = event ? OS_ERR_NONE : OS_ERR_PEVENT_NULL;
     if (event) {
         event->ceiling = prio;
-        OS_Set_add(&os_kernel.reserved, prio);
+        OS_SET_ADD(&os_kernel.reserved, prio);
     }
     return event;
 }
@@ -146,28 +118,20 @@ void OSMutexPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr) {
     if (*perr != OS_ERR_NONE)
         return;
     OS_ENTER_CRITICAL();
-    if (!pevent->owner) {
-        pevent->owner = self;
-        if (self->priority <= pevent->ceiling)
-            /* as in uC/OS-II, the task owns the mutex although this is an error */
-            *perr = OS_ERR_PIP_LOWER;
-    } else {
-        OS_Task* owner = pevent->owner;
-        if (owner->priority > self->priority && owner->priority > pevent->ceiling)
-            OS_ChangePriority(owner, pevent->ceiling);
-        if (waitFor(pevent, timeout, &cpu_sr))
-            *perr = OS_ERR_TIMEOUT;
+    if (pevent->owner) {
+        OS_MutexWait(pevent, timeout, perr, cpu_sr);
+        return;
     }
+    pevent->owner = self;
+    if (self->priority <= pevent->ceiling)
+        /* as in uC/OS-II, the task owns the mutex although this is an error */
+        *perr = OS_ERR_PIP_LOWER;
     OS_EXIT_CRITICAL();
 }
 
 INT8U OSMutexPost(OS_EVENT* pevent) {
     OS_CPU_SR cpu_sr;
     OS_Task* self = os_kernel.current;
-    U8 priority = self->priority;
-    /* 1 if another task may have to run: a task that has waited for the mutex, or a task that could
-     * not run while the priority was raised */
-    int mayRun;
     if (os_kernel.interruptNesting)
         return OS_ERR_POST_ISR;
     if (!pevent)
@@ -177,13 +141,11 @@ INT8U OSMutexPost(OS_EVENT* pevent) {
     if (pevent->owner != self)
         return OS_ERR_NOT_MUTEX_OWNER;
     OS_ENTER_CRITICAL();
-    if (self->priority == pevent->ceiling && self->priority != self->base)
-        OS_ChangePriority(self, self->base);
-    pevent->owner = wake(pevent);
-    mayRun = pevent->owner || self->priority != priority;
+    /* The usual case: no task has waited for the mutex, so the priority was not raised. */
+    if (OS_IS_WAITED(pevent) || self->priority != self->base)
+        return OS_MutexPass(pevent, cpu_sr);
+    pevent->owner = 0;
     OS_EXIT_CRITICAL();
-    if (mayRun)
-        OS_Sched();
     return OS_ERR_NONE;
 }
 
@@ -208,12 +170,12 @@ void* OSQPend(OS_EVENT* pevent, INT32U timeout, INT8U* perr) {
         message = pevent->slots[pevent->head];
         pevent->head = (U16)((pevent->head + 1U) % pevent->size);
         --pevent->count;
-    } else if (waitFor(pevent, timeout, &cpu_sr)) {
+        OS_EXIT_CRITICAL();
+    } else if (OS_EventWait(pevent, timeout, cpu_sr)) {
         *perr = OS_ERR_TIMEOUT;
     } else {
         message = os_kernel.current->message;
     }
-    OS_EXIT_CRITICAL();
     return message;
 }
 
@@ -226,8 +188,8 @@ INT8U OSQPost(OS_EVENT* pevent, void* pmsg) {
     if (pevent->type != OS_EVENT_Q)
         return OS_ERR_EVENT_TYPE;
     OS_ENTER_CRITICAL();
-    task = wake(pevent);
-    if (task) {
+    if (OS_IS_WAITED(pevent)) {
+        task = OS_EventWake(pevent);
         task->message = pmsg;
     } else if (pevent->count < pevent->size) {
         pevent->slots[(pevent->head + pevent->count) % pevent->size] = pmsg;

@@ -24,7 +24,7 @@ U8 OS_TaskMake(void (*task)(void*), void* argument, OS_STK* ptos, U8 priority,
         t->bottom[i] = 0;
     t->stack = OSTaskStkInit(task, argument, ptos, 0);
     os_kernel.byPriority[priority] = t;
-    OS_Set_add(&os_kernel.ready, priority);
+    OS_SET_ADD(&os_kernel.ready, priority);
     return OS_ERR_NONE;
 }
 

@@ -144,5 +144,6 @@ void UAV_irqHandler(void) {
         (void)Radio_interrupt();
         (void)OSSemPost(uav_radioWork);
     }
-    UAV_coresInterrupt(lines);
+    if ((lines[0] & ~(1U << MAP_SLOT_MODEM)) | lines[1])
+        UAV_coresInterrupt(lines);
 }

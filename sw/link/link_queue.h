@@ -65,10 +65,10 @@ void link_put(Link_Queue* queue, const U8* data, U32 size);
 /* Returns whether nothing is left to cut. */
 #define LINK_IS_ALL_CUT(queue) ((queue)->cutEntry == (queue)->count)
 
-/* Cuts the next chunk of a queue in which something is left to cut: a whole entry if the entry is shorter than `room` bytes, otherwise at most
- * `reduced` bytes of it. If `reduced` is 0, cuts only an entry that overtakes others. `overtaker`
- * is the size of the largest entry that may overtake, bytes; 0 disables overtaking. Returns 0 if
- * nothing was cut. */
+/* Cuts the next chunk of a queue in which something is left to cut: a whole entry if the entry is
+ * shorter than `room` bytes, otherwise at most `reduced` bytes of it. If `reduced` is 0, cuts only
+ * an entry that overtakes others. `overtaker` is the size of the largest entry that may overtake,
+ * bytes; 0 disables overtaking. Returns 0 if nothing was cut. */
 int link_cut(Link_Queue* queue, Link_Chunk* chunk, U32 room, U32 reduced, U32 overtaker);
 
 /* Copies the bytes of a chunk to `to`. */

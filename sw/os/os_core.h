@@ -58,7 +58,7 @@ extern OS_Kernel os_kernel;
 
 /* Operations on sets. */
 #define OS_SET_WORD(set, priority) ((set)->word[(priority) >> 5])
-#define OS_SET_BIT(priority) (1U << ((priority) & 31U))
+#define OS_SET_BIT(priority) (1U << (priority) % 32U)
 #define OS_SET_ADD(set, priority) (OS_SET_WORD(set, priority) |= OS_SET_BIT(priority))
 #define OS_SET_REMOVE(set, priority) (OS_SET_WORD(set, priority) &= ~OS_SET_BIT(priority))
 #define OS_SET_HAS(set, priority) ((OS_SET_WORD(set, priority) & OS_SET_BIT(priority)) != 0)

@@ -102,12 +102,12 @@ constexpr double serialLimit = 11'111; // number of bytes per second at 111,111 
 Figures figures("The firmware on the Cortex-M3 model against the RTL.");
 
 void say(const std::string& name, double value, const std::string& unit, double limit = 0,
-         const std::string& remark = "") {
+         const std::string& remark = "", bool isExact = false) {
     figures.add(name, value, unit, limit);
     if (!remark.empty())
         std::printf("    %s\n", remark.c_str());
     if (limit > 0 && value > limit)
-        figures.miss(name + " is over its limit");
+        figures.miss(name + " is over its limit", isExact);
 }
 
 struct Range {
@@ -172,8 +172,10 @@ void measureLatencies(MeasuredFlight& f) {
         "in " + f.machine.stm32().image()->functionAt(masked.from));
 }
 
-void measureCalls(MeasuredFlight& f, unsigned calls, const std::string& what, double cycles,
-                  double share) {
+// Measures calls of isAlive, and judges their cycles also with --brief, so that the regression
+// notices a slower firmware. `cycles` is the limit, a little above the present figure.
+void measureCalls(MeasuredFlight& f, const std::string& what, double cycles, double share) {
+    constexpr unsigned calls = 20;
     const uint32_t servant = f.machine.stm32().image()->symbol("Autopilot_Vehicle_isAlive"),
                    transmit = f.machine.stm32().image()->symbol("Radio_transmit");
     Range toServant, back;
@@ -205,7 +207,7 @@ void measureCalls(MeasuredFlight& f, unsigned calls, const std::string& what, do
     say(what + ": radio interrupt to servant, mean", toServant.mean(), "cycles");
     say(what + ": servant to first frame of the reply, mean", back.mean(), "cycles");
     say(what + ": all cycles of a call, without ticks", aCall, "cycles", cycles,
-        "with acknowledgements");
+        "with acknowledgements", true);
     say(what + ": share of the FSMC in these cycles", 100 * waiting / awake, "%");
     say(what + ": round trip", aTrip * 1e3, "ms");
     say(what + ": the platform's share of the round trip", 100 * aCall / hclk / aTrip, "%", share);
@@ -312,21 +314,20 @@ int main(int argc, char** argv) {
         const double scaled = hclk / (SocModel::clkHz * hclkPerClk);
         const std::vector<uint8_t> key(LINK_KEY_BYTES, 1);
         MeasuredFlight plain(elf, scaled, {}, true);
-        measureCalls(plain, figures.brief ? 1 : 20, "call, transparent, in the clear", 11865, 1);
+        measureCalls(plain, "call, transparent, in the clear", 11280, 1);
         if (!figures.brief)
             measureStream(plain, "full stream, transparent, in the clear");
         MeasuredFlight f(elf, scaled);
-        measureCalls(f, figures.brief ? 1 : 20, "call in the clear", 14250, 1);
+        measureCalls(f, "call in the clear", 13820, 1);
         if (!figures.brief)
             measureStream(f, "full stream in the clear");
         measureStacks(f, "stack used in the clear");
-        if (!figures.brief) {
-            MeasuredFlight keyedPlain(elf, scaled, key, true);
-            measureCalls(keyedPlain, 20, "call, transparent, with a key", 17697, 2);
-            MeasuredFlight keyed(elf, scaled, key);
-            measureCalls(keyed, 20, "call with a key", 20224, 2);
+        MeasuredFlight keyedPlain(elf, scaled, key, true);
+        measureCalls(keyedPlain, "call, transparent, with a key", 17120, 2);
+        MeasuredFlight keyed(elf, scaled, key);
+        measureCalls(keyed, "call with a key", 19650, 2);
+        if (!figures.brief)
             measureStream(keyed, "full stream with a key");
-            measureStacks(keyed, "stack used with a key");
-        }
+        measureStacks(keyed, "stack used with a key");
     });
 }

@@ -86,6 +86,12 @@ PLACES = {
         "| registrations per second and CPU | {registrations}, each written to disk |",
         "| {events.one} to one subscriber, {events.ten} to ten each |"],
     "docs/security.md": ["uses {stack.key} of its 2,048 bytes of stack, and {stack.clear} in open"],
+    "docs/firmware.md": [
+        "| task switch, mean, cycles | {m3.switch} |",
+        "| interrupts off, at most, µs | {m3.masked} |",
+        "| processor load with an idle link, % | {m3.idle} |",
+        "| all cycles of a call, in the clear | {m3.clear} |",
+        "| all cycles of a call, with a key | {m3.key} |"],
     "docs/hw-mapping.md": ["({soc.lut} LUTs, {soc.ff} flip-flops)"],
     PICTURE.format("utilisation"): [
         "{soc.lut} LUT ", " {soc.ff} FF ", " {soc.slices} slices ",
@@ -199,6 +205,11 @@ def values(tree):
             "down.limit": "limit of Ice, goodput UAV to ground with a key, bytes/s [loss 0.00]",
             "up.clear": "Ice, goodput ground to UAV in the clear, bytes/s [loss 0.00]",
             "up.key": "Ice, goodput ground to UAV with a key, bytes/s [loss 0.00]",
+            "m3.switch": "task switch (PendSV with entry and return), mean",
+            "m3.masked": "interrupts off, longest",
+            "m3.idle": "call: processor load without calls (1 kHz tick), % [with a key]",
+            "m3.clear": "call: all cycles of a call, without ticks, cycles [in the clear]",
+            "m3.key": "call: all cycles of a call, without ticks, cycles [with a key]",
             "stack.clear": "stack used: radioStack, bytes [in the clear]",
             "stack.key": "stack used: radioStack, bytes [with a key]"}.items():
         if row in measured:

@@ -90,14 +90,14 @@ icesoc_hdl_core(cdc TOP async_fifo FILES ${files} INCLUDES cdc/cdc_random.vh
 in_folder(files bus bus_decoder.v bus_registers.v bus_wrapper.v bus_window.v
   bus_crossing_core.v bus_crossing.v bus_to_wishbone.v bus_to_axi4lite.v)
 icesoc_hdl_core(bus TOP bus_decoder FILES ${files}
-  INCLUDES bus/slot_ports.vh bus/slot_connect.vh ddr/wrong_parameter.vh
+  INCLUDES bus/slot_ports.vh bus/slot_connect.vh bus/wrong_parameter.vh
   DEPENDS cdc PURPOSE "Register bus, its decoder, slots, and adapters to Wishbone and AXI4-Lite")
 
 in_folder(files ddr npi_fifo.v npi_write_fifo.v npi_queue.v npi_select.v npi_arbiter.v
   npi_stream.v)
-in_folder(includes ddr count_up.vh shift_order.vh wrong_parameter.vh npi_ports.vh memory_ports.vh
-  memory_connect.vh)
-icesoc_hdl_core(npi_arbiter TOP npi_arbiter FILES ${files} INCLUDES ${includes}
+in_folder(includes ddr count_up.vh shift_order.vh npi_ports.vh memory_ports.vh memory_connect.vh)
+icesoc_hdl_core(npi_arbiter TOP npi_arbiter FILES ${files}
+  INCLUDES ${includes} bus/wrong_parameter.vh
   PURPOSE "Arbiter between 64-bit memory ports (NPI)")
 
 in_folder(files ddr mcb_backend.v memory_mcb.v)
@@ -106,8 +106,9 @@ icesoc_hdl_core(memory_mcb TOP memory_mcb FILES ${files} INCLUDES ddr/mcb_ports.
 
 in_folder(files fsmc fsmc_parameter_rules.v fsmc_timeout.v fsmc_nwait.v fsmc_found.v fsmc_post.v
   fsmc_memory.v fsmc_registers.v fsmc_bridge.v fsmc_sync_bridge.v)
-in_folder(includes ddr count_up.vh shift_order.vh wrong_parameter.vh memory_ports.vh)
-icesoc_hdl_core(fsmc_bridge TOP fsmc_bridge FILES ${files} INCLUDES ${includes}
+in_folder(includes ddr count_up.vh shift_order.vh memory_ports.vh)
+icesoc_hdl_core(fsmc_bridge TOP fsmc_bridge FILES ${files}
+  INCLUDES ${includes} bus/wrong_parameter.vh
   DEPENDS cdc CONSTRAINTS platform.ucf
   PURPOSE "Bridge from the FSMC bus of an STM32 to memory and registers")
 

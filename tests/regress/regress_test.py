@@ -169,24 +169,29 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
 
     def test_stopped(self):
         """After Ctrl-C, or the end of the terminal, the page, JUnit and the history contain the
-        tests that had finished, and no process is left."""
-        self.tests('add_test(NAME script.Waits COMMAND sh -c "sleep 1234 & wait")\n')
+        tests that had finished, and no process is left. One test lists the tests of its build
+        folder, which must not overwrite the log of the run."""
+        lists = ("import pathlib; from icesoc.regress.tests import list_tests; "
+                 "list_tests(pathlib.Path('${CMAKE_BINARY_DIR}'))")
+        self.tests('add_test(NAME script.Waits COMMAND sh -c "sleep 1234 & wait")\n'
+                   f'add_test(NAME script.Lists COMMAND {TREE}/tools/python -c "{lists}")\n'
+                   "set_tests_properties(script.Lists PROPERTIES DEPENDS test_b.Bad)\n")
         self.regress("--name 'a.One|formal'")
         for number, status in ((signal.SIGINT, 130), (signal.SIGHUP, 129)):
             run = subprocess.Popen([REGRESS, "--seed", "5"], stdout=subprocess.PIPE,
                                    stderr=subprocess.STDOUT, text=True, start_new_session=True)
-            said = list(itertools.takewhile(lambda line: not line.startswith("6 of 7"), run.stdout))
+            said = list(itertools.takewhile(lambda line: not line.startswith("7 of 8"), run.stdout))
             os.killpg(run.pid, number)
             self.said = "".join(said) + run.communicate(timeout=LONGEST)[0]
             self.assertEqual(run.returncode, status, self.said)
             left = ["pgrep", "--session", str(run.pid), "--runstates", "D,I,R,S,T,t"]
             self.assertEqual(subprocess.run(left, stdout=subprocess.PIPE).stdout, b"")
-            self.has("^stopped after 6 of 7: 4 passed, 2 failed, 0 skipped in",
+            self.has("^stopped after 7 of 8: 5 passed, 2 failed, 0 skipped in",
                      "^1 x  value 5 is not 7 </script>$", "^tests  *red ",
-                     "^proofs *grey *stopped after 6 of 7: 1 passed$")
+                     "^proofs *grey *stopped after 7 of 8: 1 passed$")
             self.has("value 5 is not 7", file="build/regress/failures/test_b.Bad-5.log")
-            self.has('"stopped":"after 6 of 7"', file="build/regress/report.html")
-            self.has('tests="1" failures="1" ', 'name="stopped" value="after 6 of 7"',
+            self.has('"stopped":"after 7 of 8"', file="build/regress/report.html")
+            self.has('tests="1" failures="1" ', 'name="stopped" value="after 7 of 8"',
                      file="build/regress/junit.xml")
         self.regress("--rerun-failed", 1)
         self.has("^2 tests, SEED=1")

@@ -11,6 +11,7 @@ from icesoc import TREE
 from icesoc.mutants import model, results, run
 from icesoc.mutants.results import GATE
 from icesoc.proof import prove
+from icesoc.util.cmake import shown_tests
 from icesoc.util.lock import only_one
 from icesoc.util.process import tool
 from icesoc.util.progress import clock, is_tenth
@@ -294,12 +295,12 @@ def main():
                         help="number of mutants tried in parallel")
     options = parser.parse_args()
     out = pathlib.Path(options.out).resolve()
-    shown = subprocess.run(["ctest", "--test-dir", options.build, "--show-only=json-v1", "-R",
-                            rf"^formal\.({options.block})"], stdout=subprocess.PIPE)
-    if shown.returncode:
+    status, text = shown_tests(options.build, "--show-only=json-v1", "-R",
+                               rf"^formal\.({options.block})")
+    if status:
         sys.exit(f"mutants: --build: expected a build folder, got '{options.build}'; run "
                  "`./icesoc build` first")
-    proofs = [Proof(test, out / "drawn") for test in json.loads(shown.stdout)["tests"]
+    proofs = [Proof(test, out / "drawn") for test in json.loads(text[text.index("{"):])["tests"]
               if PROVE in test["command"]]
     # Proofs of several modules together, and proofs of generated modules, are left out.
     proofs = [proof for proof in proofs

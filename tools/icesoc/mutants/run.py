@@ -21,6 +21,7 @@ import threading, time
 from concurrent.futures import ThreadPoolExecutor
 
 from icesoc.mutants import results
+from icesoc.util.cmake import shown_tests
 from icesoc.util.errors import reason_of
 from icesoc.util.lock import only_one
 from icesoc.util.rooms import MEASURED
@@ -172,8 +173,7 @@ def check(chosen, build):
     folder `build` (if given) has its test. Returns 1 if a check fails."""
     bad, tests = 0, ""
     if build:
-        tests = subprocess.run(["ctest", "--test-dir", build, "-N"], stdout=subprocess.PIPE,
-                               check=True, text=True).stdout
+        tests = shown_tests(build, "-N")[1]
     for bug in chosen:
         try:
             bug.planted(TOP)

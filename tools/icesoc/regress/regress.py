@@ -24,8 +24,8 @@ from icesoc.regress.lights import text_of
 from icesoc.regress.report import gather, write_reports
 from icesoc.regress.junit import write_junit
 from icesoc.regress.execution import run_tests
-from icesoc.regress.tests import (Graph, Name, fingerprint, list_tests, read_plan, targets_of,
-                                  unmatched, write_numbers)
+from icesoc.regress.tests import (Finder, Graph, Name, fingerprint, list_tests, read_plan,
+                                  targets_of, unmatched, write_numbers)
 from icesoc.regress.waves import add_waves
 
 
@@ -325,8 +325,8 @@ def main(words):
     hear_signals()
     try:
         if options.plan:
-            plan, tests = read_plan(options.source), list_tests(options.build)
-            wrong = [line for each in plan for line in unmatched(each, tests)]
+            plan, finder = read_plan(options.source), Finder(list_tests(options.build))
+            wrong = [line for each in plan for line in unmatched(each, finder)]
             print("".join(line + "\n" for line in wrong) + f"{len(plan)} requirements")
             return 1 if wrong or not plan else 0
         if options.prepare or options.select:

@@ -11,7 +11,7 @@ import pathlib
 import re
 import tomllib
 
-from icesoc.util.cmake import cached
+from icesoc.util.cmake import cached, shown_tests
 from icesoc.util.errors import Stop
 from icesoc.util.files import digest, write
 from icesoc.util.process import collect
@@ -131,7 +131,7 @@ class Test:
 
 def list_tests(build):
     """Returns all tests of a build folder."""
-    status, text = collect(["ctest", "--test-dir", build, "--show-only=json-v1"])
+    status, text = shown_tests(build, "--show-only=json-v1")
     if status:
         raise Stop(f"ctest cannot list the tests of {build}; run `./icesoc build` first\n"
                    f"{text[:2000]}")
@@ -238,16 +238,22 @@ class Requirement:
     text: str
     patterns: list  # test names; * matches anything
 
-    def matches(self, test):
-        """Returns whether a test proves this requirement. A program that is not built matches if
-        one of its cases could match."""
-        return any(may_match(pattern, test) for pattern in self.patterns)
 
+class Finder:
+    """Finds the tests that match a pattern of the plan. A program that is not built matches if one
+    of its cases could match."""
+    def __init__(self, tests):
+        self.built = {test.name: test for test in tests if not test.unbuilt}
+        self.unbuilt = [test for test in tests if test.unbuilt]
 
-def may_match(pattern, test):
-    if test.unbuilt:
-        return fnmatch.fnmatchcase(test.program, pattern.split(".")[0])
-    return fnmatch.fnmatchcase(test.name, pattern)
+    def find(self, pattern):
+        if "*" in pattern:
+            match = re.compile(fnmatch.translate(pattern)).match
+            found = [test for name, test in self.built.items() if match(name)]
+        else:
+            found = [self.built[pattern]] if pattern in self.built else []
+        return found + [test for test in self.unbuilt
+                        if fnmatch.fnmatchcase(test.program, pattern.split(".")[0])]
 
 
 def read_plan(source):
@@ -267,18 +273,19 @@ def read_plan(source):
             for page, rows in pages.items() for text, patterns in rows.items()]
 
 
-def unmatched(requirement, tests):
+def unmatched(requirement, finder):
     return [f"no test is called {pattern}, which is to prove: {requirement.text}"
-            for pattern in requirement.patterns if not any(may_match(pattern, t) for t in tests)]
+            for pattern in requirement.patterns if not finder.find(pattern)]
 
 
 def judge_plan(plan, tests, history):
     """Returns a row for each requirement: proven if all its tests passed with the current sources,
     failed if one failed or a pattern matches no test, otherwise open."""
-    rows = []
+    rows, finder = [], Finder(tests)
     for each in plan:
-        mine = [test for test in tests if each.matches(test)]
-        failed = unmatched(each, tests) + [t.name for t in mine if history.now(t) == "f"]
+        mine = list({test.name: test for pattern in each.patterns
+                     for test in finder.find(pattern)}.values())
+        failed = unmatched(each, finder) + [t.name for t in mine if history.now(t) == "f"]
         not_run = [t.name for t in mine if t.unbuilt or history.now(t) not in ("p", "f")]
         rows.append({"page": each.page, "text": each.text, "patterns": each.patterns,
                      "tests": len(mine), "open": failed or not_run,

@@ -44,7 +44,7 @@ named event "'event' is a reserved word" wb_port wishbone wb_port.v
 named npi_fifo "'npi_fifo' is the name of this project's module in hdl" wb_port wishbone wb_port.v
 named wb_port "'wb_port' is also the name of a module of the core" wb_port wishbone wb_port.v
 refused "none.v': expected a Verilog or VHDL file" wb_port wishbone none.v
-refused "no module 'missing' in FILES; found wb_port" missing wishbone wb_port.v
+refused "no module 'missing' in --files; found wb_port" missing wishbone wb_port.v
 refused 'does not elaborate broken' broken wishbone broken.v
 refused "inout port 'sda'" pads wishbone pads.v
 refused 'has no port for awvalid' wb_port axil wb_port.v
@@ -56,29 +56,30 @@ refused "ours.v:1: module 'npi_fifo' has the same name as .*hdl/ddr/npi_fifo.v:"
     wb_port.v ours.v
 sed '1i `include "sizes.vh"' wb_port.v >head.v
 refused "sizes.vh.*" wb_port wishbone head.v
-refused 'FILES may also name headers' wb_port wishbone head.v
+refused 'files may also name headers' wb_port wishbone head.v
 refused 'only Verilog or only VHDL' wb_port wishbone wb_port.v lamps.vhd
-refused "TOP: expected the name of a module or an entity, got 'wb_port; x'" \
+refused "top: expected the name of a module or an entity, got 'wb_port; x'" \
     'wb_port; x' wishbone wb_port.v
-refused "no entity 'lamp' in FILES; found lamps" lamp own lamps.vhd
-refused 'no port for write, wdata, rdata; its ports are clock, .*PORTS=' req_words own cores.v
+refused "no entity 'lamp' in --files; found lamps" lamp own lamps.vhd
+refused 'no port for write, wdata, rdata; its ports are clock, .*--ports write=PORT' req_words own \
+    cores.v
 refused "'grant': expected one of .*select, strobe" req_words own grant=gnt cores.v
 refused "has no port 'go'; its ports are clock, " req_words own write=go cores.v
 refused "ack must be an output of the core, and 'req' is not" req_words own ack=req cores.v
 refused 'a strobe of one clock needs an ack' req_words own strobe=req write=wr wdata=value \
     rdata=held clock=clock cores.v
-refused "FILES lacks the file with module 'inner'" outer wishbone outer.v
-refused "PARAMS: axil_words has no 'WIDTH'" axil_words axil PARAM:WIDTH=8 axil_words.v
-refused 'PARAMS: WIDTH is given twice' axil_words axil PARAM:WIDTH=8 PARAM:WIDTH=16 axil_words.v
+refused "files lacks the file with module 'inner'" outer wishbone outer.v
+refused "params: axil_words has no 'WIDTH'" axil_words axil PARAM:WIDTH=8 axil_words.v
+refused 'params: WIDTH is given twice' axil_words axil PARAM:WIDTH=8 PARAM:WIDTH=16 axil_words.v
 for odd in '' 1X a-b; do
-    refused "PARAMS: expected a name, got '$odd'" axil_words axil "PARAM:$odd=8" axil_words.v
-    refused "DEFINES: expected a name, got '$odd'" axil_words axil "DEFINE:$odd" axil_words.v
+    refused "params: expected a name, got '$odd'" axil_words axil "PARAM:$odd=8" axil_words.v
+    refused "defines: expected a name, got '$odd'" axil_words axil "DEFINE:$odd" axil_words.v
 done
 refused "'my_wide' of .* has 64 bits" wide own select=clk_en write=we address=a wdata=my_wide \
     rdata=q wide.v
 echo 'module broad(input clk, we, input [31:0] d, output [31:0] q, output [127:0] pads,
     input [32:0] more); endmodule' >broad.v
-refused "'pads' of broad has 128 bits, but a pin has at most 32: PORTS='open=pads low=more'" broad \
+refused "'pads' of broad has 128 bits, but a pin has at most 32: --ports open=pads low=more" broad \
     own write=we wdata=d rdata=q broad.v
 refused 'include looks for timescale.v' apb_words apb "$here/apb_words.v"
 : >timescale.v
@@ -93,12 +94,12 @@ echo 'module odd(input clk, input [23:0] i_tdata, input i_tvalid, output [7:0] o
 refused 'more than one port for s_tdata: a_tdata, b_tdata' two axis two.v
 refused 'odd has 24 and 8 bits: expected 8, 16, 32 or 64' odd axis odd.v
 refused 'has no port for s_tdata' wb_port axis wb_port.v
-refused "CLOCK=fast: expected 3000000" wb_port wishbone CLOCK=fast wb_port.v
-refused 'ADDRESS=fast: expected words or bytes' wb_port wishbone ADDRESS=fast wb_port.v
+refused "clock: expected 3000000.*got 'fast'" wb_port wishbone CLOCK=fast wb_port.v
+refused "address: expected words or bytes.*got 'fast'" wb_port wishbone ADDRESS=fast wb_port.v
 refused 'leave out ack=' apb_words apb ack=1 pin=PREADY "$here/apb_words.v" timescale.v
-refused 'CLOCK: a core with AXI-Streams' axis_scale axis CLOCK=24000000 cores.v
-refused 'LIBRARY: expected VHDL files, got Verilog' req_words own LIBRARY=lights cores.v
-refused "expected 'setting' only with BUS=axis" req_words own setting=value cores.v
+refused 'clock: a core with AXI-Streams' axis_scale axis CLOCK=24000000 cores.v
+refused 'library: expected VHDL files, got Verilog' req_words own LIBRARY=lights cores.v
+refused "expected 'setting' only with --bus axis" req_words own setting=value cores.v
 refused "setting must be an input of the core, and 'over' is not" axis_scale axis setting=over \
     cores.v
 # The same module name in two cores of a chip is an error.
@@ -108,7 +109,7 @@ refused "setting must be an input of the core, and 'over' is not" axis_scale axi
 # Port names from which the command recognises the role of a port.
 new my_port wbs_names wishbone names ack=2 open=spare cores.v >log
 prints 'wbs_clk: clock' 'rst_ni: resetn' 'gate_clk_pad_i: pin' 'clk_div: pin' \
-    'wbs_cyc_i: cyc' 'wbs_adr_i: adr, counts words: it has 2 bits; if not, ADDRESS=bytes' \
+    'wbs_cyc_i: cyc' 'wbs_adr_i: adr, counts words: it has 2 bits; if not, --address bytes' \
     'wbs_cti_i: low' 'intr: interrupt' 'spare: open'
 # If macros are multiples of 4, they are byte addresses.
 printf '%s\n' "\`define PORT_MODE 8'h0" '  `define PORT_MODE_BITS 2' \
@@ -124,8 +125,8 @@ grep -q 'a: adr, counts bytes: PORT_MODE, PORT_LEVEL are multiples of 4; if not'
 echo 'module asked(input clk, we, input [31:0] d, output [31:0] q, output TIMERINT, irq_no, point,
     output [3:0] rx_events); endmodule' >asked.v
 new my_port asked own asked write=we wdata=d rdata=q asked.v >log
-prints "TIMERINT: pin timerint_o; if it is an interrupt: PORTS='interrupt=TIMERINT'" \
-    "rx_events: pin rx_events_o; if it is an interrupt: PORTS='interrupt=rx_events'" \
+prints "TIMERINT: pin timerint_o; if it is an interrupt: --ports interrupt=TIMERINT" \
+    "rx_events: pin rx_events_o; if it is an interrupt: --ports interrupt=rx_events" \
     'irq_no: interruptn$' 'point: pin point_o$'
 new my_port asked own open write=we wdata=d rdata=q 'open=*t*' asked.v >log
 prints 'TIMERINT: pin' 'rx_events: open' 'point: open' 'irq_no: interruptn'
@@ -247,7 +248,7 @@ module faced (input logic reset, bus_if.slave s); endmodule' >faced.sv
 refused "faced has the port 's', a SystemVerilog interface (bus_if.slave)" faced apb faced.sv
 refused 'bus_if s (...);' faced apb faced.sv
 # VHDL files in several libraries.
-refused 'LIBRARY: util=none.vhd: expected a library and a file of FILES' lamps own \
+refused "library: expected a library and one of the files, got 'util=none.vhd'" lamps own \
     LIBRARY=util=none.vhd lamps.vhd
 if [ -x "$ghdl" ]; then # the build downloads GHDL 5
     cp "$here/lamps_types.vhd" .
@@ -310,10 +311,10 @@ for value in FAST '"FAST"'; do
         [ "$(head -c 6 typed/copy_marked.v)" = module ] ||
         { cat log typed/my_port.v && echo 'parameters are not as typed' && exit 1; }
 done
-refused "PARAMS: INIT: expected a number such as .*, got '2[*]1'" typed own PARAM:INIT='2*1' \
+refused "params: INIT: expected a number such as .*, got '2[*]1'" typed own PARAM:INIT='2*1' \
     write=we wdata=d rdata=q typed.v
 while read -r value words; do
-    refused "PARAMS: INIT: $words, got '$value'" typed own PARAM:INIT="$value" \
+    refused "params: INIT: $words, got '$value'" typed own PARAM:INIT="$value" \
         write=we wdata=d rdata=q typed.v
 done <<'END'
 4'hFF expected a number of at most 4 bits
@@ -326,6 +327,23 @@ done <<'END'
 -2147483649 expected a number of at most 32 bits
 0x_ expected a number such as .*
 END
+# Slots are also written where /dev/shm is not writable, as in some containers, and a rejected core
+# is an error there. A container may not allow a mount.
+slots() { unshare --map-root-user --mount sh -c 'mount -t tmpfs -o ro none /dev/shm && exec "$@"' \
+    sh "$source/tools/python" "$here/write_slots.py" "$@" >log 2>&1; }
+if unshare --map-root-user --mount mount -t tmpfs -o ro none /dev/shm; then
+    slots -- my_port wb_port axil odd_bus wb_port.v -- my_port wb_port wishbone first wb_port.v &&
+        { cat log && echo 'a rejected core is accepted' && exit 1; }
+    grep -q 'core foreign: wb_port has no port for' log && rm -rf first &&
+        slots -- my_port wb_port wishbone first wb_port.v -- my_port wb_port wishbone second \
+            wb_port.v && [ -s first/core.toml ] && [ -s second/core.toml ] ||
+        { cat log && exit 1; }
+fi
+# Messages name the options as the user typed them: above as for ./icesoc, here as for make.
+refused "no port for write, wdata.*PORTS='write=PORT'" req_words own SPELLING=make cores.v
+refused 'CLOCK: expected 3000000' wb_port wishbone SPELLING=make CLOCK=fast wb_port.v
+new my_port asked own by_make SPELLING=make write=we wdata=d rdata=q asked.v >log
+prints "TIMERINT: pin timerint_o; if it is an interrupt: PORTS='interrupt=TIMERINT'"
 # The same command by make, and a core with a name that already exists.
 mkdir -p "$work/tree/ip"
 made() { "$source/tests/regress/make_in.sh" "$source" "$work/tree" build \

@@ -9,6 +9,7 @@ axis_filter moves the words.
 import re
 
 from icesoc.cores.foreign_files import connected_ports, pin_name, render
+from icesoc.cores.spelling import option
 
 SIGNALS = ("tdata", "tvalid", "tready", "tkeep", "tstrb", "tlast", "tuser", "tid", "tdest")
 ROLES = [f"{stream}_{signal}" for stream in "sm" for signal in SIGNALS]
@@ -31,13 +32,13 @@ def role(name, port):
 
 def problem(top, ports, roles):
     """Returns an error message if the module's streams or settings do not fit the slot, otherwise
-    None."""
+    an empty value."""
     widths = [len(p["bits"]) for n, p in ports.items() if roles[n] in ("s_tdata", "m_tdata")]
     if widths[0] != widths[1] or widths[0] not in ELEMENTS:
         return (f"tdata of {top} has {widths[0]} and {widths[1]} bits: expected 8, 16, 32 or 64 in "
                 "both directions")
     wide = [n for n, p in ports.items() if roles[n] == "setting" and len(p["bits"]) > 32]
-    return f"PORTS: a setting has 32 bits at most, '{wide[0]}' has more" if wide else None
+    return wide and f"{option('ports')}: a setting has 32 bits at most, '{wide[0]}' has more"
 
 
 def camel(name):

@@ -9,6 +9,7 @@ import json
 
 from icesoc.cores.foreign_roles import AXI, LOW, is_answer
 from icesoc.cores.foreign_files import connected_ports, pin_name, render, vector
+from icesoc.cores.spelling import option
 
 BUSES = {"wishbone": "Wishbone", "apb": "APB", "axil": "AXI4-Lite",
          "memory": "select, address and data",
@@ -77,7 +78,7 @@ class Core:
             # byte addresses, with a word of four bytes for each register
             unit, other = "bytes, each a register", "bytes"
         self.unit = f"counts {unit}: {reason}" + (
-            "" if reason == "as given" else f"; if not, ADDRESS={other}")
+            "" if reason == "as given" else f"; if not, {option('address', other)}")
         lsb = lsb if step > 1 else 0
         self.step, gap = step, step.bit_length() - 1
         self.word_bits = max(0, width + lsb - gap)

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 
 from icesoc import TREE
+from icesoc.cores.spelling import option
 from icesoc.util import templates
 from icesoc.util.rooms import PLATFORM
 
@@ -21,7 +22,7 @@ FLAGS = ["-Wno-fatal", "-Wno-lint", "-Wno-style",
 
 
 def fail(text):
-    sys.exit("new-foreign: " + text)
+    sys.exit("core foreign: " + text)
 
 
 def end_of(file):
@@ -63,9 +64,9 @@ def check_number(name, value):
     try:
         number = int(known, base)
     except ValueError:
-        fail(f"PARAMS: {name}: expected digits of base {base}, got '{value}'")
+        fail(f"{option('params')}: {name}: expected digits of base {base}, got '{value}'")
     if number > 2**(bits - 1) if m[1] == "-" and not m[4] else number >= 2**bits:
-        fail(f"PARAMS: {name}: expected a number of at most {bits} bits, got '{value}'")
+        fail(f"{option('params')}: {name}: expected a number of at most {bits} bits, got '{value}'")
 
 
 def verilog_params(params):
@@ -83,8 +84,8 @@ def verilog_params(params):
         elif not re.fullmatch(r"[-+]?\d[\d_]*(\.\d+)?([eE][-+]?\d+)?"
                               r"|\d*'[sS]?[bodhBODH][0-9a-fA-FxXzZ_?]+"
                               r'|"[^"\\\n]*"', value):
-            fail(f"PARAMS: {name}: expected a number such as -3, 8'hFF or 0xFF, or a text, got "
-                 f"'{value}'")
+            fail(f"{option('params')}: {name}: expected a number such as -3, 8'hFF or "
+                 f"0xFF, or a text, got '{value}'")
         check_number(name, value)
         found.append(f"{name}={value}")
     return found
@@ -127,7 +128,7 @@ def check_names(slot, top, files):
     if kind == "entity":  # names in VHDL are case-insensitive; GHDL writes them as declared
         top = next((n for n in names if n.lower() == top.lower()), top)
     if top not in names:
-        fail(f"no {kind} '{top}' in FILES; found {', '.join(names) or 'none'}")
+        fail(f"no {kind} '{top}' in {option('files')}; found {', '.join(names) or 'none'}")
     if slot in names:
         fail(f"'{slot}' is also the name of a {kind} of the core; give the slot another name")
     first = only_once(there, "leave one of the files out") if kind == "module" else {}

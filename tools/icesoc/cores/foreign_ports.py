@@ -14,18 +14,23 @@ from pathlib import Path
 from icesoc import TREE
 from icesoc.cores.foreign_files import (FLAGS, declared, end_of, fail, filled, folders_of, has_mark,
                                         is_vhdl, overrides, text_of)
+from icesoc.cores.spelling import option
 
 REPORT = 10  # s between progress messages about a tool that is still running
 LIMIT = 60   # s; if Yosys needs longer, Verilator reads the files instead
 
 # Messages of Verilator and Yosys, and what to do about them.
-HINTS = {r"[Ii]nclude file:? (?:`)?([^\s']+)": "FILES may also name headers: `include looks for "
-                                               "{0} in their folders (a timescale.v may be empty)",
-         r"(?:Module `\\|unknown type `|containing module: ')(\w+)":
-         "FILES lacks the file with module '{0}'",
-         r"object for defparam `(\w+)|no generic \"(\w+)\"": "PARAMS: {top} has no '{0}'",
-         r"find resource library \"(\w+)\"": "add LIBRARY={0} if all files are in that library, or "
-                                             "LIBRARY='{0}=FILE ...' for some of them"}
+HINTS = {
+    r"[Ii]nclude file:? (?:`)?([^\s']+)": lambda top, name: (
+        f"{option('files')} may also name headers: `include looks for {name} in their folders "
+        "(a timescale.v may be empty)"),
+    r"(?:Module `\\|unknown type `|containing module: ')(\w+)": lambda top, name: (
+        f"{option('files')} lacks the file with module '{name}'"),
+    r"object for defparam `(\w+)|no generic \"(\w+)\"": lambda top, name: (
+        f"{option('params')}: {top} has no '{name}'"),
+    r"find resource library \"(\w+)\"": lambda top, name: (
+        f"add {option('library', name)} if all files are in that library, or "
+        f"{option('library', name + '=FILE')} for some of them")}
 
 
 def run_tool(program, verb, top, command, is_needed=True, limit=None):
@@ -44,11 +49,11 @@ def run_tool(program, verb, top, command, is_needed=True, limit=None):
                 if limit and spent >= limit:
                     process.kill()
                     return None
-                print(f"new-foreign: waiting for {program} to {verb} {top}: {spent:.0f} s",
+                print(f"core foreign: waiting for {program} to {verb} {top}: {spent:.0f} s",
                       file=sys.stderr, flush=True)
     if process.returncode and is_needed:
         lines = output.splitlines()
-        hints = [hint.format(*filter(None, m.groups()), top=top) for words, hint in HINTS.items()
+        hints = [hint(top, *filter(None, m.groups())) for words, hint in HINTS.items()
                  if (m := re.search(words, output))]
         fail("\n".join([f"{program} does not {verb} {top}:", *lines[:12],
                         *(["..."] if len(lines) > 12 else []), *hints]))
@@ -120,7 +125,7 @@ def check_interfaces(top, files):
                 fail(f"{file}: {top} has the port '{port[2]}', a SystemVerilog interface "
                      f"({port[1]}), and a slot connects plain ports and packed structures only. "
                      "Write a module with the signals of the interface as ports, add its file to "
-                     f"FILES, and name it with TOP:\n"
+                     f"{option('files')}, and name it with {option('top')}:\n"
                      f"  module {top}_plain (input logic clk, input logic sel, ..., output logic "
                      "[31:0] rdata);\n"
                      f"    {kind} {port[2]} (...);             // an instance of the interface\n"
@@ -268,8 +273,8 @@ def modules_by_yosys(top, files, headers, params, defines, is_whole, work):
     if accepted is False and short != whole:
         accepted = elaborates(whole, not is_system)
     if accepted is None:
-        print(f"new-foreign: Yosys has not elaborated {top} in {LIMIT} s, so Verilator reads its "
-              "ports. Tests and flights work, but `make synth` takes long or does not end. Build "
+        print(f"core foreign: Yosys has not elaborated {top} in {LIMIT} s, so Verilator reads its "
+              "ports. Tests and flights work, but synthesis takes long or does not end. Build "
               "large memories without a reset and without loops over all their words",
               file=sys.stderr, flush=True)
     return json.loads(text_of(result))["modules"] if accepted else None

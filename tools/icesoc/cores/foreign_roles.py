@@ -6,6 +6,7 @@ import re
 
 from icesoc.cores import foreign_axis
 from icesoc.cores.foreign_files import fail
+from icesoc.cores.spelling import option
 
 CLOCK = r"[aph]?(clk|clock)g?"
 RESET = r"[aph]?n?(rst|reset)[nb]?"
@@ -147,7 +148,7 @@ def take_given(top, bus, ports, roles, given):
     for word in sorted(given, key=lambda word: "*" in word):
         what, port = word.split("=", 1)
         if what not in words:
-            fail(f"PORTS: '{what}': expected one of {', '.join(words)}")
+            fail(f"{option('ports')}: '{what}': expected one of {', '.join(words)}")
         if what == "ack" and re.fullmatch("[1-9]", port):
             latency = int(port)
             continue
@@ -158,13 +159,13 @@ def take_given(top, bus, ports, roles, given):
             roles.update(dict.fromkeys(found, words[what]))
             port = next(iter(found), port)
         if port not in ports:
-            fail(f"PORTS: {top} has no port '{port}'; its ports are {', '.join(ports)}")
+            fail(f"{option('ports')}: {top} has no port '{port}'; its ports are {', '.join(ports)}")
         if words[what] and is_output != (ports[port]["direction"] == "output"):
-            fail(f"PORTS: {what} must be an {'output' if is_output else 'input'} of the core, and "
-                 f"'{port}' is not")
+            fail(f"{option('ports')}: {what} must be an {'output' if is_output else 'input'} of "
+                 f"the core, and '{port}' is not")
         if what == "setting" and bus != "axis":
-            fail("PORTS: expected 'setting' only with BUS=axis; with this bus, use 'pin' for an "
-                 "input outside the bus")
+            fail(f"{option('ports')}: expected 'setting' only with {option('bus', 'axis')}; with "
+                 "this bus, use 'pin' for an input outside the bus")
         roles[port] = words[what]
         named.add(port)
     return latency
@@ -180,7 +181,7 @@ def check_needed(top, bus, ports, roles, latency):
     missing = [say.get(r, r) for r in NEEDED[bus] + ["clock"] if r not in there]
     if missing:
         fail(f"{top} has no port for {', '.join(missing)}; its ports are {', '.join(ports)}: name "
-             f"the port with PORTS='{missing[0]}=port ...'"
+             f"the port with {option('ports', missing[0] + '=PORT')}"
              + (", or give ack=1 if read data is valid one clock later"
                 if "ack" in missing else ""))
     often = {"", "clock", "reset", "resetn", "interrupt", "interruptn", "setting", "low", "high",
@@ -188,18 +189,18 @@ def check_needed(top, bus, ports, roles, latency):
     for r in there - often:
         if len(same := [n for n in ports if roles[n] == r]) > 1:
             fail(f"{top} has more than one port for {say.get(r, r)}: {', '.join(same)}; name the "
-                 f"role of each other port, such as PORTS='pin={same[-1]} ...'")
+                 f"role of each other port, such as {option('ports', f'pin={same[-1]}')}")
     if "strobe" in roles.values() and "ack" not in there:
-        fail("PORTS: a strobe of one clock needs an ack; for a core that answers in the same "
-             "clock, use select")
+        fail(f"{option('ports')}: a strobe of one clock needs an ack; for a core that answers in "
+             "the same clock, use select")
 
 
 def check_limits(top, bus, ports, roles, latency):
     """Fails if the ports exceed what the adapter of the bus supports."""
     if bus == "apb" and latency:
-        fail("PORTS: an APB core without PREADY ends each transfer in its access phase: leave out "
-             "ack=")
+        fail(f"{option('ports')}: an APB core without PREADY ends each transfer in its access "
+             "phase: leave out ack=")
     if wide := [n for n in ports if bus != "axis" and roles[n] in ("wdata", "rdata")
                 and len(ports[n]["bits"]) > 32]:
         fail(f"'{wide[0]}' of {top} has {len(ports[wide[0]]['bits'])} bits: a slot's bus has 32; "
-             "write a module that splits the words, and use it as TOP")
+             f"write a module that splits the words, and name it with {option('top')}")

@@ -3,7 +3,7 @@
 
     new_foreign.py NAME TOP wishbone|axil|apb|avalon|memory|own|axis FOLDER [CLOCK=Hz]
                    [GHDL=program] [LIBRARY=name|name=file...] [ADDRESS=words|bytes]
-                   [PARAM:NAME=value...] [DEFINE:NAME...] [ROLE=port...] FILE...
+                   [PARAM:NAME=value...] [DEFINE:NAME...] [SPELLING=make] [ROLE=port...] FILE...
 
 Reads the ports of the module or entity TOP, and writes these files into FOLDER, which must not
 exist: NAME.v, which connects TOP to the slot; a description of the registers, with the names that
@@ -11,6 +11,7 @@ TOP uses for their addresses; a test; ground.py, which calls the core in a missi
 that do not belong to the bus and are not a clock, reset or interrupt become pins. A core with
 AXI-Streams (axis) has an operation instead of registers: foreign_axis.py.
 
+SPELLING  make: messages name make's variables, not the options of ./icesoc
 CLOCK     the core has a separate clock with at most this frequency, in Hz
 GHDL      program that reads VHDL (ghdl)
 LIBRARY   VHDL library of the files; NAME=FILE puts one file, or the files of a pattern, into
@@ -29,12 +30,14 @@ from pathlib import Path
 
 from icesoc.cores import foreign_axis
 from icesoc.cores import foreign_bus
+from icesoc.cores import spelling
 from icesoc.util.reserved import REFUSAL, RESERVED
 from icesoc.cores.foreign_files import (FLAGS, check_names, fail, folders_of, is_vhdl, kind_of,
                                         macros_of, names_of, packages_first, pin_name,
                                         verilog_params)
 from icesoc.cores.foreign_ports import copies_for_verilator, read_module
 from icesoc.cores.foreign_roles import NEEDED, roles_of, with_members
+from icesoc.cores.spelling import option
 
 HEAD = "# SPDX-License-Identifier: MIT\n"
 USAGE = ("usage: ./icesoc core foreign my_uart --top MODULE "
@@ -46,14 +49,14 @@ ASKED = re.compile("irq|(?<!po)(?<!pr)(?<!h)int(r|errupt)?s?(_?n)?(_?o)?$|(^|_)i
                    "alarm|attention", re.I)
 
 
-def check_pairs(option, pairs):
+def check_pairs(called, pairs):
     """Ends the program if the name of a parameter or macro is invalid or occurs twice."""
     names = [pair.partition("=")[0] for pair in pairs]
     for name in names:
         if not re.fullmatch(r"[A-Za-z_]\w*", name, re.A):
-            fail(f"{option}: expected a name, got '{name}'")
+            fail(f"{called}: expected a name, got '{name}'")
         if names.count(name) > 1:
-            fail(f"{option}: {name} is given twice; give it once")
+            fail(f"{called}: {name} is given twice; give it once")
 
 
 class Request:
@@ -64,17 +67,18 @@ class Request:
             sys.exit(USAGE)
         self.name, self.top, self.bus, self.folder, *rest = words
         options = {"CLOCK=": [], "LIBRARY=": [], "ADDRESS=": [], "GHDL=": [], "PARAM:": [],
-                   "DEFINE:": []}
+                   "DEFINE:": [], "SPELLING=": []}
         self.ports, self.files = [], []
         for word in rest:
-            option = next((o for o in options if word.startswith(o)), None)
-            if option:
-                options[option].append(word[len(option):])
+            start = next((o for o in options if word.startswith(o)), None)
+            if start:
+                options[start].append(word[len(start):])
             else:
                 (self.ports if "=" in word else self.files).append(word)
         self.params, self.defines = options["PARAM:"], options["DEFINE:"]
-        check_pairs("PARAMS", self.params)
-        check_pairs("DEFINES", self.defines)
+        spelling.IS_MAKE = "make" in options["SPELLING="]
+        check_pairs(option("params"), self.params)
+        check_pairs(option("defines"), self.defines)
         self.library = next((o for o in options["LIBRARY="] if "=" not in o), "")
         self.members = [o.split("=", 1) for o in options["LIBRARY="] if "=" in o]
         self.clock, self.address, self.ghdl = (
@@ -85,18 +89,21 @@ class Request:
         """Ends the program if the request is impossible."""
         if self.clock and not (re.fullmatch("[0-9]{7,9}", self.clock)
                                and 3000000 <= int(self.clock) <= 100000000):
-            fail(f"CLOCK={self.clock}: expected 3000000 to 100000000 Hz, the frequency of the "
-                 "core's separate clock")
+            fail(f"{option('clock')}: expected 3000000 to 100000000 Hz, the frequency of the "
+                 f"core's separate clock, got '{self.clock}'")
         if self.clock and self.bus == "axis":
-            fail("CLOCK: a core with AXI-Streams uses a DDR3 port, which has the chip clock")
+            fail(f"{option('clock')}: a core with AXI-Streams uses a DDR3 port, which has the "
+                 "chip clock")
         if self.address not in ("", "words", "bytes") or self.address and self.bus == "axis":
-            fail(f"ADDRESS={self.address}: expected words or bytes, and a core with registers")
+            fail(f"{option('address')}: expected words or bytes, and a core with registers, got "
+                 f"'{self.address}'")
         if self.bus not in NEEDED:
-            fail(f"BUS: expected one of {', '.join(NEEDED)}, got '{self.bus}'")
+            fail(f"{option('bus')}: expected one of {', '.join(NEEDED)}, got '{self.bus}'")
         if not re.fullmatch(r"[a-z][a-z0-9]*(_[a-z0-9]+)*", self.name):
             fail(f"'{self.name}': expected words of small letters and digits, joined by _")
         if not re.fullmatch(r"[A-Za-z_]\w*", self.top):
-            fail(f"TOP: expected the name of a module or an entity, got '{self.top}'")
+            fail(f"{option('top')}: expected the name of a module or an entity, got "
+                 f"'{self.top}'")
         if os.path.exists(self.folder):
             fail(f"{self.folder} already exists; choose another name, or remove it first")
         if self.name in RESERVED:
@@ -112,20 +119,21 @@ class Request:
             if not kind_of(f) or not os.path.isfile(f):
                 fail(f"'{f}': expected a Verilog or VHDL file")
         if (self.library or self.members) and not any(map(is_vhdl, files)):
-            fail("LIBRARY: expected VHDL files, got Verilog, which has no libraries")
+            fail(f"{option('library')}: expected VHDL files, got Verilog, which has no libraries")
         self.libraries = []
         for library, pattern in self.members:
             found = [f for f in files if fnmatch.fnmatch(f, os.path.abspath(pattern))
                      or fnmatch.fnmatch(os.path.basename(f), pattern)]
             if not found or not re.fullmatch(r"[A-Za-z]\w*", library):
-                fail(f"LIBRARY: {library}={pattern}: expected a library and a file of FILES")
+                fail(f"{option('library')}: expected a library and one of the files, got "
+                     f"'{library}={pattern}'")
             self.libraries += [f"{library}={f}" for f in found]
             files = [f for f in files if f not in found]
         self.headers = [f for f in files if kind_of(f) == "header"]
         self.files = packages_first([f for f in files if f not in self.headers])
         if not self.files or len({is_vhdl(f) for f in self.files}) > 1:
-            fail("FILES: expected only Verilog or only VHDL files, and at least one in the library "
-                 "of TOP")
+            fail(f"{option('files')}: expected only Verilog or only VHDL files, and at least one "
+                 "in the library of the top module")
         self.is_vhdl, self.is_synthesised = is_vhdl(self.files[0]), True
         if not self.is_vhdl:
             self.params = verilog_params(self.params)
@@ -157,14 +165,13 @@ def slot_texts(asked, ports, params):
     interface, the meaning of each port, and the last line of the report."""
     roles, latency = roles_of(asked.top, asked.bus, ports, asked.ports)
     if wide := [n for n, p in ports.items() if not roles[n] and len(p["bits"]) > 32]:
-        left_out = " ".join(f"{'open' if ports[n]['direction'] == 'output' else 'low'}={n}"
-                            for n in wide)
+        left_out = [f"{'open' if ports[n]['direction'] == 'output' else 'low'}={n}" for n in wide]
         fail(f"'{wide[0]}' of {asked.top} has {len(ports[wide[0]]['bits'])} bits, but a pin has "
-             f"at most 32: PORTS='{left_out}' leaves such ports unconnected")
+             f"at most 32: {option('ports', left_out)} leaves such ports unconnected")
     said = {n: roles[n] or "pin " + pin_name(n, p) for n, p in ports.items()}
     for n, p in ports.items():
         if not roles[n] and p["direction"] == "output" and ASKED.search(n):
-            said[n] += f"; if it is an interrupt: PORTS='interrupt={n}'"
+            said[n] += f"; if it is an interrupt: {option('ports', f'interrupt={n}')}"
     if asked.bus == "axis":
         if wrong := foreign_axis.problem(asked.top, ports, roles):
             fail(wrong)
@@ -255,8 +262,8 @@ def main(words):
     print(f"  {last}")
     if not asked.is_synthesised:
         print("  Yosys cannot read this SystemVerilog. Tests and flights use it unchanged. For "
-              "make synth and the real chip, convert it with sv2v (github.com/zachjs/sv2v, not in "
-              "Debian), and give the result as FILES:")
+              "synthesis and the real chip, convert it with sv2v (github.com/zachjs/sv2v, not in "
+              f"Debian), and name the result with {option('files')}:")
         print(f"  sv2v --top={asked.top} {' '.join('-I ' + d for d in folders_of(asked.headers))} "
               f"{' '.join('-D ' + d for d in asked.defines)} {' '.join(asked.files)} "
               f">{asked.top}.v")

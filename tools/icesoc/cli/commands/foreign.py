@@ -22,7 +22,8 @@ def foreign_words(values):
             *(f"{name}={value}" for name, value in given.items() if value),
             *(f"LIBRARY={each}" for each in values.library),
             *(f"PARAM:{each}" for each in values.params),
-            *(f"DEFINE:{each}" for each in values.defines), *values.ports, *values.files]
+            *(f"DEFINE:{each}" for each in values.defines),
+            *(["SPELLING=make"] if values.given_by_make else []), *values.ports, *values.files]
 
 
 @command("core foreign", [
@@ -65,7 +66,8 @@ def foreign_core(values):
     if values.repository:
         return put_into_repository(values.repository, values.name)
     return say(f"Next: ./icesoc core test {values.name}; a line '{values.name}' in ip/cores.list "
-               f"puts it into the chip; make run CORES={values.name} calls it by radio")
+               f"puts it into the chip; ./icesoc run --cores {values.name} calls it by "
+               "radio")
 
 
 def into_slot(source, slot, words, folder, ghdl):

@@ -6,12 +6,14 @@ import concurrent.futures, contextlib, importlib.util, io, json, os, shutil, sub
 import time, unittest
 from pathlib import Path
 from types import SimpleNamespace
+from unittest import mock
 
 from icesoc import TREE
 from icesoc.cli import command, everything, flight  # noqa: F401
-from icesoc.cli.commands import core_folder, regression
+from icesoc.cli.commands import core_folder, fresh, regression
 from icesoc.cli.options import FLIGHT, SWITCH
 from icesoc.regress import regress
+from icesoc.util.errors import SKIPPED, Stop
 from icesoc.util.lock import lock
 from icesoc.util.ninja import explained
 from script import LONGEST
@@ -277,6 +279,14 @@ class Mistakes(Work):
             self.assertEqual(status, 2, words)
             self.assertIn(said, text, words)
             self.assertNotIn("Traceback", text, words)
+
+    def test_without_root_or_debootstrap_the_nightly_skips_the_empty_systems(self):
+        values = SimpleNamespace(folder=str(self.work), list=False, packages="", release="")
+        for user, said in ((1000, "expected root"), (0, "apt-get install debootstrap")):
+            with mock.patch("os.geteuid", return_value=user), mock.patch.dict(
+                    os.environ, {"PATH": str(self.work)}), self.assertRaisesRegex(Stop, said) as it:
+                fresh.fresh(values)
+            self.assertEqual(it.exception.status, SKIPPED)
 
     def test_the_probe_without_a_map_is_refused(self):
         status, text = ask("tools/python", "-m", "icesoc.cores.probe", "--proxy", "probe:default",

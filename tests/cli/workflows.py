@@ -17,6 +17,7 @@ from pathlib import Path
 import yaml
 
 from icesoc.cli.build_folder import BuildFolder
+from icesoc.cli.commands.fresh import RELEASES
 from icesoc.cli.flight import check_chip
 from icesoc.util.errors import Stop
 from script import TREE, Script, append, commit, fresh, git, main, repository, write
@@ -31,14 +32,18 @@ def container():
 
 
 def workflows(tree):
-    """Returns, for each workflow, its file, its image, its commands, and the paths of its
+    """Returns, for each workflow, its file, its images, its commands, and the paths of its
     artifacts."""
     hub, lab = (tree / name for name in (".github/workflows/icesoc.yml", ".gitlab-ci.yml"))
     job = yaml.safe_load(hub.read_text())["jobs"]["icesoc"]
-    yield (hub, job["container"], [step["run"] for step in job["steps"] if "run" in step],
+    images = [job["container"].replace("${{ matrix.debian }}", str(debian))
+              for debian in job["strategy"]["matrix"]["debian"]]
+    yield (hub, images, [step["run"] for step in job["steps"] if "run" in step],
            job["steps"][-1]["with"]["path"].split())
     job = yaml.safe_load(lab.read_text())["icesoc"]
-    yield (lab, job["image"], job["before_script"] + job["script"],
+    images = [job["image"].replace("$DEBIAN", debian)
+              for row in job["parallel"]["matrix"] for debian in row["DEBIAN"]]
+    yield (lab, images, job["before_script"] + job["script"],
            [*job["artifacts"]["paths"], job["artifacts"]["reports"]["junit"]])
 
 
@@ -137,16 +142,18 @@ class Cases(Script):
                 self.lacks("no packages found")  # dpkg-query's messages are left out
         self.has("install .* ca-certificates git make$", "^git config --system",
                  "install .* verilator .* chromium", file=work / "said")
-        self.has('"make", "run"', file=TREE / "Containerfile")
+        self.has('"make", "run"', "^FROM docker.io/library/debian:13$", file=TREE / "Containerfile")
         self.has("^make run ", "podman build .* podman run", file=TREE / "README.md")
 
     def carried_out(self, tree, **environment):
-        """Runs the commands of both workflows, and checks that all artifacts exist."""
-        images = [rest for name, rest in container() if name == "FROM"]
+        """Runs the commands of both workflows, and checks that all artifacts exist. The workflows
+        use each supported release of Debian, because each has faults that the other lacks."""
+        images = [f"docker.io/library/debian:{name.removeprefix('Debian ')}"
+                  for name in RELEASES.values()]
         before = [rest for name, rest in container() if name == "RUN" and "setup" not in rest]
-        for file, image, commands, kept in workflows(tree):
+        for file, used, commands, kept in workflows(tree):
             self.assertLess(len(file.read_text().splitlines()), 60)
-            self.assertEqual(([image], commands[:-2]), (images, before))
+            self.assertEqual((used, commands[:-2]), (images, before))
             self.assertEqual(commands[-2:], ["make run", "make test"])
             shutil.rmtree(tree / "build/run", ignore_errors=True)
             for junit in tree.glob("build/main/junit*.xml"):

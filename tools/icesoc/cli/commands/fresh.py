@@ -18,7 +18,7 @@ from icesoc.cli.command import command
 from icesoc.cli.options import FOLDER, INPUT_FOLDER, SWITCH, TEXT, Option, one_of
 from icesoc.release import build
 from icesoc.util.console import say
-from icesoc.util.errors import Stop
+from icesoc.util.errors import SKIPPED, Stop
 from icesoc.util.process import output, run
 
 RELEASES = {"bookworm": "Debian 12", "trixie": "Debian 13"}
@@ -50,7 +50,7 @@ def fresh(values):
     """run the README's commands on an empty Debian 12 and 13
 
     Also installs the packages there and uses them without the source tree. Needs root,
-    debootstrap and a network.
+    debootstrap and a network. Exit status 77: this user is not root, or debootstrap is missing.
     """
     top, failed = Path(values.folder), 0
     results = top / "results.json"
@@ -58,7 +58,10 @@ def fresh(values):
     if values.list:
         return say("\n".join(map(summary, rows)) or f"{top} contains no results")
     if os.geteuid():
-        raise Stop("check fresh: expected root, because it uses mount and chroot; use sudo", 2)
+        raise Stop("check fresh: expected root, because it uses mount and chroot; use sudo", SKIPPED)
+    if not shutil.which("debootstrap"):
+        raise Stop("check fresh: debootstrap not found; install it: apt-get install debootstrap",
+                   SKIPPED)
     for release in [values.release] if values.release else RELEASES:
         root = top / release
         steps = [PACKAGES] if values.packages else [

@@ -15,10 +15,8 @@ $(foreach each=,$(.VARIABLES),$(if $(filter command,$(firstword $(origin $(each=
 export ICESOC_GOALS := $(MAKECMDGOALS)
 %: export ICESOC_GOAL = $@
 
-# This rule applies to every goal, even if a file has the name of the goal. setup.sh runs first on
-# an empty Debian, which has no Python yet.
+# This rule applies to every goal, even if a file has the name of the goal.
 %: always
-	@[ -x /usr/bin/python3 ] || cmake/setup.sh
 	@./icesoc
 
 always: ;

@@ -136,7 +136,7 @@ if [ "$(id -u)" != 0 ]; then
         case $answer in [Nn]*) echo "setup: stopped; nothing was installed" >&2 && exit 1 ;; esac
     fi
 fi
-echo "Installing them with apt-get (a minute or two) ..."
+echo "Installing them with apt-get (2 to 10 minutes) ..."
 $sudo apt-get update -qq ||
     echo "setup: apt-get update failed: is there a network, and a mirror in /etc/apt?" >&2
 # Waits while another apt, such as unattended upgrades, is running.

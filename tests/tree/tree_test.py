@@ -76,6 +76,25 @@ class Cases(Script):
             self.has("apt-get install .* verilator", file="sudo")
             Path("sudo").unlink()
 
+    def test_no_python(self):
+        """On an empty Debian, which has no Python yet, ./icesoc first sets the machine up, also
+        when make calls it. In this test, set-up installs a Python that prints its arguments."""
+        work = fresh(WORK)
+        for file in "icesoc", "Makefile", "tools/python":
+            write(work / file, (TREE / file).read_text().replace("/usr/bin/", f"{work}/bin/"))
+        write(work / "cmake/setup.sh", f"""#!/bin/sh
+            mkdir bin && printf '#!/bin/sh\necho "runs $*"' >bin/python3 && chmod +x bin/python3""")
+        for script in "icesoc", "tools/python", "cmake/setup.sh":
+            (work / script).chmod(0o755)
+        for words in ("./icesoc", "run"), ("make", "run"):
+            self.ask(*words)
+            self.has("^runs -m icesoc")
+            shutil.rmtree("bin")
+        # A set-up that failed ends the command.
+        write("cmake/setup.sh", "#!/bin/sh\necho no sudo >&2\nexit 1\n")
+        self.ask("./icesoc", "run", status=1)
+        self.assertEqual(self.said, "no sudo\n")
+
     def test_skipped(self):
         """Skipped and failed tests are listed at the end with their reasons, the failed ones last
         (icesoc.regress.ctest)."""

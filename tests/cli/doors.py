@@ -139,6 +139,29 @@ class Values(Work):
                               cwd=place, capture_output=True, text=True, check=False).stderr
         self.assertIn("the current folder no longer exists", text)
 
+    def test_paths_are_relative_to_the_folder_of_the_caller(self):
+        """This also applies to lists of files, and to names that may also be paths. A file name may
+        contain spaces; the core's makefiles refuse it later, with a message that names it whole."""
+        place = self.work / "mis núcleos"
+        (place / "kit").mkdir(parents=True)
+        shutil.copy(TREE / "boards/nucleo-qmtech/board.toml", place / "kit")
+        for name in "a.v", "b.v", "two words.v":
+            (place / name).write_text("")
+
+        def values(*words):
+            return command.by_words(words, str(place))[1]
+        foreign = values("core", "foreign", "x", "--files", "a.v b.v", "two words.v", "/c.v")
+        self.assertEqual(foreign.files, [f"{place}/{name}" for name in (
+            "a.v", "b.v", "two words.v")] + ["/c.v"])
+        self.assertEqual(values("run", "--core-folders", "x;/y").core_folders, f"{place}/x;/y")
+        self.assertEqual(values("run", "--core-folders", "none").core_folders, "none")
+        self.assertEqual(values("run", "--board", "kit/board.toml").board,
+                         f"{place}/kit/board.toml")
+        self.assertEqual(values("run", "--board", "xynergy").board, "xynergy")
+        done = subprocess.run([TREE / "icesoc", "board", "check", "kit/board.toml"], cwd=place,
+                              env=clean(), capture_output=True, text=True, check=False)
+        self.assertEqual(done.stdout, "kit: 73 nets, no problem found\n", done.stderr)
+
     def test_a_missing_flight_in_the_default_folder_is_refused(self):
         status, text = ask("./icesoc", "replay", ICESOC_TREE=str(self.work / "tree"))
         self.assertEqual(status, 2)
@@ -216,6 +239,7 @@ MISTAKES = {
     "./icesoc run --again Makefile": "expected JSON, got other text in line 1",
     "./icesoc run --again nope": "cannot read the flight 'nope': No such file",
     "./icesoc build all --ucos2 nope": "--ucos2: expected an existing folder, got 'nope'",
+    "./icesoc board check": "NAME: expected one of the boards nucleo-qmtech, ",
     "./icesoc check fresh --packages nope": "--packages: expected an existing folder",
     "./icesoc run --wire=yes": "--wire: expected no value, got 'yes'",
     "./icesoc run --again tools/icesoc/cli/flight.schema.json":

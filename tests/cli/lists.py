@@ -100,8 +100,8 @@ class Lists(unittest.TestCase):
                         f"{name} --{option.name}: a noun or a verb comes first")
 
     def test_messages_and_pages_name_one_form_of_each_command(self):
-        """Messages and pages name `make` for the commands with which a user may begin, because
-        make first installs Python, and ./icesoc for all others."""
+        """Messages and pages name `make` for the commands with which a user may begin, and
+        ./icesoc for all others."""
         goals = {each.make for each in command.COMMANDS.values() if each.make}
         goals |= set(command.ALIASES)
         other = "|".join(sorted(goals - {"run", "test", "synth", "regress", "package"}))

@@ -10,7 +10,7 @@ import os
 import re
 import typing
 
-from icesoc.cli.options import ARGUMENTS, BUILT, PATHS, SWITCH
+from icesoc.cli.options import ARGUMENTS, BUILT, SWITCH
 from icesoc.util.console import warn
 from icesoc.util.errors import Stop, nearest
 
@@ -143,8 +143,8 @@ class Command:
             elif text in (None, "", []):
                 value = option.none()
             else:
-                if option.kind in PATHS and place != os.getcwd():
-                    text = os.path.join(place, text)
+                if option.kind.locate:
+                    text = option.kind.locate("" if place == os.getcwd() else place, text)
                 value = option.value(text, called)
             setattr(values, option.field, value)
         for option in self.options:

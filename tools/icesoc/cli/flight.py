@@ -13,8 +13,9 @@ from pathlib import Path
 from icesoc.board import make, model
 from icesoc.cli import choices, keys
 from icesoc.cli.build_folder import BuildFolder, read_list
-from icesoc.cli.options import (CORE_FOLDERS, COUNT, FILE, FOLDER, FRAME, KEY_FILE, PATH, SEED,
-                                SHARE, SWITCH, TEXT, UCOS2, WORDS, Option, matching, number, one_of)
+from icesoc.cli.options import (BOARD, CORE_FOLDERS, COUNT, FILE, FOLDER, FRAME, KEY_FILE, PATH,
+                                SEED, SHARE, SWITCH, TEXT, UCOS2, WORDS, Option, matching, number,
+                                one_of)
 from icesoc.regs.model import Wrong
 from icesoc.util import rows
 from icesoc.util.console import say
@@ -61,7 +62,7 @@ FIELDS = [
     Option("modem", one_of("s1", "s2c", "xb3"),
            "modems of vehicle and ground station: XBee series 1, S2C or XBee 3; --board changes "
            "the default to the board's modem", "s1"),
-    Option("board", TEXT,
+    Option("board", BOARD,
            "board of the vehicle: its name, its file board.toml, or a folder written by ./icesoc "
            "board make; the vehicle then runs the ARM binary", ""),
     Option("fault", WORDS,

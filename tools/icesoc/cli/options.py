@@ -24,6 +24,8 @@ class Kind:
     schema: dict = None  # JSON schema of the value in flight.json
     metavar: str = "VALUE"
     words: tuple = ()  # all possible values, if there are only a few
+    # function of the caller's folder and a value: returns the value with its paths in that folder
+    locate: typing.Callable = None
 
 
 @dataclasses.dataclass
@@ -52,7 +54,7 @@ class Option:
     def value(self, text, called):
         """Converts a text, or a list of texts from argparse, to the value of this option. `called`
         is the name of the option in messages."""
-        if self.kind is ARGUMENTS:
+        if self.kind in (ARGUMENTS, FILES):
             return [text] if isinstance(text, str) else text
         if isinstance(text, list):
             text = " ".join(text)
@@ -94,8 +96,8 @@ class Option:
     def explain(self):
         """Returns the help text: meaning, possible values, default."""
         shown = " ".join(self.default) if isinstance(self.default, list) else self.default
-        is_plain = self.choices or self.kind in (TEXT, WORDS, FILES, ARGUMENTS, SWITCH, FILE,
-                                                 KEY_FILE, FOLDER, INPUT_FOLDER, PATH, FLIGHT)
+        is_plain = self.choices or self.kind.locate or self.kind in (TEXT, WORDS, ARGUMENTS,
+                                                                     SWITCH)
         parts = [] if is_plain else [self.kind.expected]
         parts += [f"default {shown}"] if shown is not None and shown != "" else []
         return (self.help + (f" ({'; '.join(parts)})" if parts else "")).replace("%", "%%")
@@ -188,18 +190,44 @@ def _address(text):
     return f"0x{value:04X}"
 
 
+def _files(place, text):
+    """Returns the paths of a list of file names. A name may contain spaces if the file exists."""
+    return [os.path.join(place, name) for word in ([text] if isinstance(text, str) else text)
+            for name in ([word] if os.path.exists(os.path.join(place, word)) else word.split())]
+
+
+def _folders(place, text):
+    """Returns the paths of folders that are separated by semicolons."""
+    return text if text == "none" else ";".join(os.path.join(place, folder)
+                                                for folder in text.split(";"))
+
+
+def _board(place, text):
+    """Returns the name of a board, or the path of its file or folder."""
+    return os.path.join(place, text) if "/" in text or text.endswith(".toml") else text
+
+
 TEXT = Kind(str, "text", {"type": "string"})
 WORDS = Kind(str.split, "words separated by spaces",
              {"type": "array", "items": {"type": "string"}}, "WORD")
-FILES = Kind(str.split, "file names separated by spaces", metavar="FILE")
+FILES = Kind(list, "file names separated by spaces", metavar="FILE", locate=_files)
 ARGUMENTS = Kind(str, "words, each as it is", metavar="WORD")
 SWITCH = Kind(_switch, "1 or 0", {"type": "boolean"})
-FILE = Kind(_file, "a readable file", {"type": "string"}, "FILE")
-FOLDER = Kind(str, "a folder", {"type": "string"}, "FOLDER")
-INPUT_FOLDER = Kind(_folder, "an existing folder", {"type": "string"}, "FOLDER")
-PATH = Kind(str, "a file name", {"type": "string"}, "FILE")
-KEY_FILE = Kind(_key, "a readable file", {"type": "string"}, "FILE")
-FLIGHT = Kind(_flight, "the folder of a recorded flight", {"type": "string"}, "FOLDER")
+BOARD = Kind(str, "a board", {"type": "string"}, locate=_board)
+FOLDERS = Kind(str, "folders separated by semicolons", {"type": "string"}, "FOLDER",
+               locate=_folders)
+
+
+def path_kind(read, expected, metavar):
+    return Kind(read, expected, {"type": "string"}, metavar, locate=os.path.join)
+
+
+FILE = path_kind(_file, "a readable file", "FILE")
+FOLDER = path_kind(str, "a folder", "FOLDER")
+INPUT_FOLDER = path_kind(_folder, "an existing folder", "FOLDER")
+PATH = path_kind(str, "a file name", "FILE")
+KEY_FILE = path_kind(_key, "a readable file", "FILE")
+FLIGHT = path_kind(_flight, "the folder of a recorded flight", "FOLDER")
 FRAME = Kind(_frame, "WIDTHxHEIGHT, 8x8 to 1024x4096, WIDTH a multiple of 8", {"type": "string"},
              "WxH")
 ADDRESS = Kind(_address, "0 to 65535, or 0x0000 to 0xFFFF", {"type": "string"}, "N")
@@ -207,8 +235,6 @@ SHARE = number(0, 1, convert=float)
 COUNT = number(1)
 SECONDS = number(0, unit="s", convert=float)
 MINUTES = number(0.001, unit="minutes", convert=float)
-# Kinds with values that are paths relative to the caller's folder.
-PATHS = (FILE, KEY_FILE, FOLDER, INPUT_FOLDER, PATH, FLIGHT)
 
 BUILD = Option("build", FOLDER, "build folder", "build/main")
 JOBS = Option("jobs", COUNT, "number of parallel build processes", len(os.sched_getaffinity(0)))
@@ -231,7 +257,7 @@ UCOS2 = Option("ucos2", INPUT_FOLDER,
 FRESH = Option("fresh", SWITCH,
                "ignore cached results of proofs, lints and synthesis, and compute them again")
 CORE_FOLDERS = Option(
-    "core-folders", TEXT,
+    "core-folders", FOLDERS,
     "folders of cores outside ip/, or folders with a cores.list, separated by semicolons; later "
     "commands also use them, until --core-folders none")
 BUILT = Option("built", SWITCH, "use the existing build, without set-up and build", listed=False)

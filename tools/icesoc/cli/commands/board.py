@@ -5,7 +5,7 @@ from pathlib import Path
 from icesoc import TREE
 from icesoc.board import check, make, model, picture, wiring
 from icesoc.cli.command import GROUPS, command
-from icesoc.cli.options import FOLDER, SWITCH, TEXT, Option
+from icesoc.cli.options import BOARD, FOLDER, SWITCH, Option
 from icesoc.regs.model import Wrong
 from icesoc.util.console import say
 from icesoc.util.errors import Stop
@@ -18,14 +18,16 @@ def complete_name(**_):
     return model.names()
 
 
-NAME = Option("name", TEXT, "name of the board, such as nucleo-qmtech", "", positional=True,
+NAME = Option("name", BOARD, "name of the board, such as nucleo-qmtech", "", positional=True,
               completer=complete_name)
 
 
-def read(name):
-    """Returns the board with this name, or the board described in a file board.toml."""
+def read(values):
+    """Returns the board given by NAME: the name of a board, or a file board.toml."""
+    name = values.name
     if not name:
-        raise Stop(f"expected one of the boards {', '.join(model.names())}", 2)
+        raise Stop(f"NAME: expected one of the boards {', '.join(model.names())}, or a file "
+                   "board.toml, got none", 2)
     try:
         if name.endswith(".toml"):
             return model.read(name)
@@ -41,7 +43,7 @@ def board_list(_):
     Prints name, number of wires, title and state of each board. A board with facts missing
     from its description cannot be built."""
     for name in model.names():
-        board = read(name)
+        board = model.find(name)
         state = ("facts are missing; cannot be built" if board.facts.get("unknown")
                  else board.facts["status"])
         say(f"{name:22} {len(wiring.wires(board)):3} wires  {board.facts['title']} ({state})")
@@ -55,7 +57,7 @@ def board_show(values):
 
     NAME is the name of a board in boards/, or a file board.toml. The output is the same text as the
     board's page in the documentation."""
-    say(wiring.page(read(values.name)).rstrip())
+    say(wiring.page(read(values)).rstrip())
 
 
 @command("board check", [NAME], examples=[
@@ -68,9 +70,10 @@ def board_check(values):
     of pins, voltages of banks and signals, and clock inputs. It reports pins that are used twice,
     pins that the FPGA module or the microcontroller board already uses internally, inputs without a
     driver, and missing facts. Exit status 1: an error was found."""
-    board = read(values.name)
+    board = read(values)
     if found := check.problems(board):
-        raise Stop("\n".join([f"board check: {len(found)} problems in {board.path}",
+        raise Stop("\n".join([f"board check: {len(found)} problem{'s' * (len(found) > 1)} in "
+                              f"{board.path}",
                               *(f"  {text}" for text in found)]))
     say(f"{board.name}: {len(board.nets)} nets, no problem found")
 
@@ -87,7 +90,7 @@ def board_make(values):
     Also writes a configuration file for OpenOCD, and a page that describes the board. Nothing is
     written for a board with errors or missing facts; ./icesoc board check lists these errors and
     facts."""
-    board = read(values.name)
+    board = read(values)
     if values.docs:
         made = make.write(documents(board), PAGES)
     else:

@@ -52,7 +52,7 @@ def board_bringup(values):
     of synth/ise/lines.v in the FPGA, which tests the wires, then with the chip's bitstream. Then
     run the command with --cable, to load the firmware and to call it over a serial cable. With
     --simulated, all of this runs on a model of the board."""
-    board = read(values.name)
+    board = read(values)
     folder = Path(values.out or f"build/board/{board.name}")
     report = bringup.Report(board)
     report.data["date"] = datetime.datetime.now().strftime("%Y-%m-%d %H:%M")

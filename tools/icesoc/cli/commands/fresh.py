@@ -58,7 +58,8 @@ def fresh(values):
     if values.list:
         return say("\n".join(map(summary, rows)) or f"{top} contains no results")
     if os.geteuid():
-        raise Stop("check fresh: expected root, because it uses mount and chroot; use sudo", SKIPPED)
+        raise Stop("check fresh: expected root, because it uses mount and chroot; use sudo",
+                   SKIPPED)
     if not shutil.which("debootstrap"):
         raise Stop("check fresh: debootstrap not found; install it: apt-get install debootstrap",
                    SKIPPED)

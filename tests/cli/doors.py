@@ -304,6 +304,20 @@ class Mistakes(Work):
             self.assertIn(said, text, words)
             self.assertNotIn("Traceback", text, words)
 
+    def test_clean_reports_what_it_removed(self):
+        """The folder build may be a link. Clean ends with an error if an entry cannot be
+        removed."""
+        (self.work / "far/main").mkdir(parents=True)
+        (self.work / "tree/build").symlink_to(self.work / "far")
+        tree = {"ICESOC_TREE": str(self.work / "tree")}
+        self.assertEqual(ask("./icesoc", "clean", **tree), (0, "removed: build/main\n"))
+        self.assertEqual(os.listdir(self.work / "far"), [])
+        (self.work / "tree/build").unlink()
+        (self.work / "tree/build").symlink_to("/proc/sys/kernel/random")
+        status, text = ask("./icesoc", "clean", **tree)
+        self.assertEqual(status, 1)
+        self.assertRegex(text, "^icesoc: (Operation not permitted|Permission denied): build/")
+
     def test_without_root_or_debootstrap_the_nightly_skips_the_empty_systems(self):
         values = SimpleNamespace(folder=str(self.work), list=False, packages="", release="")
         for user, said in ((1000, "expected root"), (0, "apt-get install debootstrap")):

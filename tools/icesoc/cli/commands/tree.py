@@ -61,9 +61,13 @@ def clean(values):
     if not values.list:
         keys.rescue("build")
     for path in sorted(Path("build").glob("*")):
-        say(f"would be removed: {path}" if values.list else f"removed: {path}")
-    if not values.list:
-        shutil.rmtree("build", ignore_errors=True)
+        if values.list:
+            say(f"would be removed: {path}")
+        else:
+            shutil.rmtree(path) if path.is_dir() and not path.is_symlink() else path.unlink()
+            say(f"removed: {path}")
+    if Path("build").is_dir() and not Path("build").is_symlink() and not values.list:
+        Path("build").rmdir()
 
 
 @command("commands", [

@@ -240,6 +240,7 @@ MISTAKES = {
     "./icesoc run --again nope": "cannot read the flight 'nope': No such file",
     "./icesoc build all --ucos2 nope": "--ucos2: expected an existing folder, got 'nope'",
     "./icesoc board check": "NAME: expected one of the boards nucleo-qmtech, ",
+    "./icesoc core new low_pass": "--lang: expected verilog or vhdl, got none",
     "./icesoc check fresh --packages nope": "--packages: expected an existing folder",
     "./icesoc run --wire=yes": "--wire: expected no value, got 'yes'",
     "./icesoc run --again tools/icesoc/cli/flight.schema.json":
@@ -303,6 +304,18 @@ class Mistakes(Work):
             self.assertEqual(status, 2, words)
             self.assertIn(said, text, words)
             self.assertNotIn("Traceback", text, words)
+
+    def test_a_path_with_spaces_is_refused_before_packages_are_installed(self):
+        self.script("tree/cmake/setup.sh", "echo set up\n")
+        tree, folder = {"ICESOC_TREE": str(self.work / "tree")}, str(self.work / "mis núcleos")
+        (self.work / "mis núcleos/tree").mkdir(parents=True)
+        for words, where in ((("build", "all", "--build", folder), tree),
+                             (("core", "new", "x", "--lang", "vhdl", "--repository", folder), tree),
+                             (("core", "foreign", "x", "--repository", folder), tree),
+                             (("build", "all"), {"ICESOC_TREE": f"{folder}/tree"})):
+            status, text = ask("./icesoc", *words, **where)
+            self.assertEqual(status, 2, f"{words}: {text}")
+            self.assertRegex(text, f"^icesoc: '{folder}(/tree)?': expected a folder without spaces")
 
     def test_clean_reports_what_it_removed(self):
         """The folder build may be a link. Clean ends with an error if an entry cannot be

@@ -32,6 +32,15 @@ def writable(folder, otherwise):
         raise Stop(f"{folder} is not writable; {otherwise}")
 
 
+def check_spaces(folder):
+    """Fails if the path of a folder contains a space. Packages are installed only after this check,
+    because that takes minutes."""
+    if " " in os.path.abspath(folder):
+        raise Stop(f"'{os.path.abspath(folder)}': expected a folder without spaces in its path, "
+                   "because Verilator's makefiles do not support them; move or rename the folder",
+                   2)
+
+
 def read_list(path):
     """Returns the text of a cores.list. Its lines end with a newline only, so str.splitlines, which
     also splits at form feeds, must not be used."""
@@ -73,6 +82,8 @@ class BuildFolder:
         `core_tests`, a new folder is configured for the tests of cores only, which takes a third of
         the time; the next command of another kind configures the rest."""
         if not self.built:
+            check_spaces(".")
+            check_spaces(self.folder)
             words = ["cmake/setup.sh", *["--tests"] * tests, *["--packages"] * packages]
             checked, state = self / "packages.checked", packages_now(words)
             is_checked = checked.exists() and checked.read_text() == state

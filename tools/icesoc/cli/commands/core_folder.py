@@ -11,7 +11,7 @@ from pathlib import Path
 from icesoc import TREE
 from icesoc.chip import manifest
 from icesoc.cli import choices
-from icesoc.cli.build_folder import BuildFolder, read_list
+from icesoc.cli.build_folder import BuildFolder, check_spaces, read_list
 from icesoc.cli.command import command
 from icesoc.cli.options import BUILD, FILE, FOLDER, JOBS, SWITCH, TEXT, Option, one_of
 from icesoc.util.console import say
@@ -157,9 +157,11 @@ def new(values):
     """
     name, lang = values.name, values.lang
     if name and not lang:
-        raise Stop("--lang: expected verilog or vhdl (LANG=...), got nothing", 2)
+        raise Stop(f"{'LANG' if values.given_by_make else '--lang'}: expected verilog or vhdl, got "
+                   "none", 2)
     room = values.repository or "ip"
     check_name(name, room)
+    check_spaces(room)
     build = BuildFolder(values.build, values).prepare()
     if values.ice:
         build.ninja("slice2c")

@@ -3,7 +3,7 @@
 import shutil
 from pathlib import Path
 
-from icesoc.cli.build_folder import BuildFolder, fetch
+from icesoc.cli.build_folder import BuildFolder, check_spaces, fetch
 from icesoc.cli.command import command
 from icesoc.cli.commands.core_folder import NAME, REPOSITORY, put_into_repository
 from icesoc.cli.flight import FIELDS
@@ -56,6 +56,7 @@ def foreign_core(values):
     test and a manifest. docs/guides/foreign-core.md lists the buses. With --repository, source
     files inside the repository are stored as relative paths.
     """
+    check_spaces(values.repository or "ip")
     build = BuildFolder(values.build, values).prepare()
     if any(file.lower().endswith((".vhd", ".vhdl")) for file in values.files):
         build.ninja("ghdl")

@@ -45,6 +45,7 @@ install(FILES ${tools}/cli/commands/__init__.py ${tools}/cli/commands/call.py
   DESTINATION ${SHARE}/tools/icesoc/cli/commands COMPONENT ${component})
 install(FILES ${tools}/util/__init__.py ${tools}/util/chip.py ${tools}/util/console.py
   ${tools}/util/errors.py ${tools}/util/process.py ${tools}/util/rooms.py ${tools}/util/rows.py
+  ${tools}/util/spelling.py
   DESTINATION ${SHARE}/tools/icesoc/util COMPONENT ${component})
 install(PROGRAMS ${here}/ground/icesoc-call DESTINATION ${CMAKE_INSTALL_BINDIR}
   COMPONENT ${component})

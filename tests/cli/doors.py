@@ -208,8 +208,8 @@ class Values(Work):
                  "SEED: expected a whole number, at least 0, got 'x'"),
                 ("./icesoc fly", {"SEED": "x"}, "SEED: expected a whole number"),
                 ("make -s new-ip NAME=abc", {"LANG": "verilog"},
-                 "--lang: expected verilog or vhdl"),
-                ("make -s run OPEN=1 KEY=Makefile", {}, "OPEN=1 and KEY='")):
+                 "LANG: expected verilog or vhdl"),
+                ("make -s run OPEN=1 KEY=Makefile", {}, "OPEN=1 and KEY=")):
             self.assertIn(said, ask(*words.split(), **given)[1])
         self.assertNotIn("OPEN=1 flies",
                          ask("make", "-s", "run", "OPEN=0", "KEY=Makefile", "OUT=/proc/none")[1])
@@ -272,8 +272,12 @@ MISTAKES = {
     "./icesoc contract diff nowhere": "unknown commit BASE=nowhere",
     "./icesoc core remove fri": "ip/fri not found; did you mean fir?",
     "./icesoc core new Fir --lang vhdl": "expected words of small letters and digits",
-    "make -s run PROBE=fir.go=1": "PROBE='fir.go=1' needs a probe core: add --cores probe",
-    "make -s run OUT=/proc/none": "OUT='/proc/none': expected a folder",
+    "make -s run PROBE=fir.go=1": "PROBE='fir.go=1' needs a probe core: add CORES=probe",
+    "make -s run OUT=/proc/none": "OUT=/proc/none: expected a folder",
+    "./icesoc run --out /proc/none": "--out /proc/none: expected a folder",
+    "./icesoc run --open --key Makefile": "--open and --key Makefile: expected at most one",
+    "make -s run WIRE=1 LOSS=0.1": "WIRE=1 flies the mission without modems and radio: leave out "
+                                   "LOSS",
     "make -s run UPDATE=/none CPU=m3": "cannot read '/none'",
     "make -s run PINS=/none": "cannot read '/none'",
     "make -s run REPLAY=/none": "'/none' contains no recorded flight",
@@ -316,6 +320,13 @@ class Mistakes(Work):
             status, text = ask("./icesoc", *words, **where)
             self.assertEqual(status, 2, f"{words}: {text}")
             self.assertRegex(text, f"^icesoc: '{folder}(/tree)?': expected a folder without spaces")
+
+    def test_a_key_that_cannot_be_written_leaves_no_file(self):
+        """A limit of 0 bytes for files has the same effect as a full disk."""
+        file = self.work / "my.key"
+        self.assertEqual(ask("prlimit", "--fsize=0", "./icesoc", "key", str(file)),
+                         (1, f"icesoc: cannot write '{file}': File too large\n"))
+        self.assertEqual(list(self.work.glob("my.key*")), [])
 
     def test_clean_reports_what_it_removed(self):
         """The folder build may be a link. Clean ends with an error if an entry cannot be

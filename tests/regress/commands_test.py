@@ -81,7 +81,7 @@ class Cases(Project):
         for words, said in (
             # these errors are reported before a simulator for the replay is built
             (f"run REPLAY={flight} FROM=x", "FROM: expected a number, at least 0 s, got 'x'"),
-            (f"run REPLAY={flight} FROM=2 TO=1", "FROM=2.0 TO=1.0: expected FROM before TO"),
+            (f"run REPLAY={flight} FROM=2 TO=1", "FROM=2.0 TO=1.0: expected the start"),
             (f"run IMAGE=/none OUT={flight}", "cannot read '/none'"),
             ("synth BASE=none", "unknown commit BASE=none"),
             ("faults NAME=nonsense", "faults: none is called nonsense; there are clock_step")):

@@ -21,6 +21,7 @@ from icesoc.util import rows
 from icesoc.util.console import say
 from icesoc.util.errors import Stop, nearest, reason_of
 from icesoc.util.schema import limits, problems
+from icesoc.util.spelling import option, switch
 
 VERSION = 4
 RECORDING = "flight.jsonl"  # written by the simulator (testbench/sim/recording.h)
@@ -187,27 +188,27 @@ def complete(values):
                 setattr(values, name, value)
     take_board(values)
     if values.open and values.key:
-        raise Stop(f"OPEN=1 and KEY='{values.key}': expected at most one of the two, because "
-                   "OPEN=1 flies without a key", 2)
+        raise Stop(f"{switch('open')} and {option('key', values.key)}: expected at most one of the "
+                   f"two, because {switch('open')} flies without a key", 2)
     if values.app == "minimal" and values.cpu != "m3":
-        raise Stop("the minimal program is an ARM binary; add --cpu m3 (CPU=m3)", 2)
+        raise Stop("the minimal program is an ARM binary; add " + option("cpu", "m3"), 2)
     other = [name for name in ("loss", "interference", "distance", "trace", "update")
              if getattr(values, name)] + ["app"] * (values.app == "minimal")
     if values.wire and other:
-        raise Stop("WIRE=1 flies the mission without modems and radio: leave out "
-                   + ", ".join(f"--{name}" for name in other), 2)
+        raise Stop(f"{switch('wire')} flies the mission without modems and radio: leave out "
+                   + ", ".join(map(option, other)), 2)
     single = [name for name in ("wire", "update", "pins") if getattr(values, name)]
     if values.vehicles > 1 and (single or values.app == "minimal"):
-        raise Stop(f"VEHICLES={values.vehicles}: several vehicles can only fly the mission; "
-                   "leave out " + ", ".join(f"--{name}" for name in single or ["app"]), 2)
+        raise Stop(f"{option('vehicles', values.vehicles)}: several vehicles can only fly the "
+                   "mission; leave out " + ", ".join(map(option, single or ["app"])), 2)
     if values.camera and values.pins:
-        raise Stop("CAMERA=1 and PINS=file both drive the inputs of cores; give only one of "
-                   "them", 2)
+        raise Stop(f"{switch('camera')} and {option('pins', values.pins)} both drive the inputs of "
+                   "cores; give only one of them", 2)
     if values.camera and "camera" not in values.cores:
         values.cores = [*values.cores, "camera"]
     if values.probe and "probe" not in values.cores:
-        raise Stop(f"PROBE='{values.probe}' needs a probe core: add --cores probe "
-                   "(CORES=probe)", 2)
+        raise Stop(f"{option('probe', values.probe)} needs a probe core: add "
+                   f"{option('cores', 'probe')}", 2)
     build = BuildFolder(values.build, values)
     for at, core in enumerate(values.cores):
         folder = build.core(core)
@@ -221,7 +222,7 @@ def complete(values):
     except OSError:
         pass
     if not os.access(values.out, os.W_OK):
-        raise Stop(f"OUT='{values.out}': expected a folder that a flight can write to", 2)
+        raise Stop(f"{option('out', values.out)}: expected a folder that a flight can write to", 2)
 
 
 def take_board(values):
@@ -275,8 +276,8 @@ def take_key(values, build):
     keys.rescue(build.folder.parent)
     values.key = str(keys.folder() / "demo.key")
     if make_key(values.key):
-        say(f"made the demo key {values.key} for ground station and vehicle; KEY=file uses your "
-            "own key, and OPEN=1 flies without a key")
+        say(f"made the demo key {values.key} for ground station and vehicle; "
+            f"{option('key', 'FILE')} uses your own key, and {switch('open')} flies without a key")
 
 
 def take_observers_key(values):
@@ -290,13 +291,16 @@ def make_key(path):
     """Creates a key that only its owner may read; returns False if it exists."""
     keys.check_folder(path)
     temporary = f"{path}.{os.getpid()}"
-    with open(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
-        file.write(os.urandom(16).hex() + "\n")
+    descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     try:
+        with open(descriptor, "w") as file:
+            file.write(os.urandom(16).hex() + "\n")
         os.link(temporary, path)
         return True
     except FileExistsError:
         return False
+    except OSError as error:  # a write to a full disk has no file name
+        raise Stop(f"cannot write '{path}': {error.strerror}") from None
     finally:
         os.remove(temporary)
 

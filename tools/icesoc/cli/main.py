@@ -12,6 +12,7 @@ from pathlib import Path
 
 from icesoc import TREE
 from icesoc.cli import command
+from icesoc.util import spelling
 from icesoc.util.console import say, warn
 from icesoc.util.errors import Interrupted, Stop
 from icesoc.util.process import hear_signals, is_part
@@ -71,6 +72,7 @@ def act(words):
     if not words and (not made or made[0] == "help"):
         return say(command.overview())
     if made:
+        spelling.IS_MAKE = True
         found, values = command.by_make(*made)
     elif text := command.help_of(words):
         return say(text)

@@ -9,7 +9,7 @@ axis_filter moves the words.
 import re
 
 from icesoc.cores.foreign_files import connected_ports, pin_name, render
-from icesoc.cores.spelling import option
+from icesoc.util.spelling import option
 
 SIGNALS = ("tdata", "tvalid", "tready", "tkeep", "tstrb", "tlast", "tuser", "tid", "tdest")
 ROLES = [f"{stream}_{signal}" for stream in "sm" for signal in SIGNALS]

@@ -9,7 +9,7 @@ import json
 
 from icesoc.cores.foreign_roles import AXI, LOW, is_answer
 from icesoc.cores.foreign_files import connected_ports, pin_name, render, vector
-from icesoc.cores.spelling import option
+from icesoc.util.spelling import option
 
 BUSES = {"wishbone": "Wishbone", "apb": "APB", "axil": "AXI4-Lite",
          "memory": "select, address and data",

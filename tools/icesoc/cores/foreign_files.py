@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 from icesoc import TREE
-from icesoc.cores.spelling import option
+from icesoc.util.spelling import option
 from icesoc.util import templates
 from icesoc.util.rooms import PLATFORM
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from icesoc import TREE
 from icesoc.cores.foreign_files import (FLAGS, declared, end_of, fail, filled, folders_of, has_mark,
                                         is_vhdl, overrides, text_of)
-from icesoc.cores.spelling import option
+from icesoc.util.spelling import option
 
 REPORT = 10  # s between progress messages about a tool that is still running
 LIMIT = 60   # s; if Yosys needs longer, Verilator reads the files instead

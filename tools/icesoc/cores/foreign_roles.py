@@ -6,7 +6,7 @@ import re
 
 from icesoc.cores import foreign_axis
 from icesoc.cores.foreign_files import fail
-from icesoc.cores.spelling import option
+from icesoc.util.spelling import option
 
 CLOCK = r"[aph]?(clk|clock)g?"
 RESET = r"[aph]?n?(rst|reset)[nb]?"

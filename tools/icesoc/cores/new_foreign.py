@@ -30,14 +30,14 @@ from pathlib import Path
 
 from icesoc.cores import foreign_axis
 from icesoc.cores import foreign_bus
-from icesoc.cores import spelling
+from icesoc.util import spelling
 from icesoc.util.reserved import REFUSAL, RESERVED
 from icesoc.cores.foreign_files import (FLAGS, check_names, fail, folders_of, is_vhdl, kind_of,
                                         macros_of, names_of, packages_first, pin_name,
                                         verilog_params)
 from icesoc.cores.foreign_ports import copies_for_verilator, read_module
 from icesoc.cores.foreign_roles import NEEDED, roles_of, with_members
-from icesoc.cores.spelling import option
+from icesoc.util.spelling import option
 
 HEAD = "# SPDX-License-Identifier: MIT\n"
 USAGE = ("usage: ./icesoc core foreign my_uart --top MODULE "

@@ -299,7 +299,7 @@ def main(program="icesoc-live", build=None):
         server = server_at(host, port, words.certificate, program)
     except OSError as error:
         sys.exit(f"{program}: error: cannot listen on {host}: {error.strerror or error}: the port "
-                 "may be in use; PORT=0 selects a free port")
+                 "may be in use; port 0 selects a free one")
     if not words.only_try:
         shown = f"[{host}]" if ":" in host else host
         address = f"http{'s' if words.certificate else ''}://{shown}:{server.server_address[1]}/"

@@ -15,6 +15,7 @@ from icesoc.util import vcd
 from icesoc.util.console import say, warn
 from icesoc.util.errors import Stop, nearest
 from icesoc.util.process import output, run
+from icesoc.util.spelling import option
 
 GROUPS["core"] = "cores: create, test, view waveforms, remove"
 CORE = Option("ip", matching(r"\w+", "the name of a core"), "name of the core", "", positional=True,
@@ -90,8 +91,8 @@ def one_test(program, text):
     found = [name for name in names if text in (name, name.partition(".")[2])] or [
         name for name in names if re.search(text, name)]
     if len(found) != 1:
-        raise Stop(f"TEST={text}: expected an expression that matches one test, got {len(found)} "
-                   f"matches; the tests are:\n{listed}"
+        raise Stop(f"{option('test', text)}: expected an expression that matches one test, got "
+                   f"{len(found)} matches; the tests are:\n{listed}"
                    + nearest(text, names), 2)
     return found[0]
 

@@ -19,6 +19,7 @@ from icesoc.util.errors import Stop, nearest
 from icesoc.util.process import logged, output, run
 from icesoc.util.reserved import REFUSAL, RESERVED
 from icesoc.util.rooms import RTL
+from icesoc.util.spelling import switch
 
 TEMPLATE = TREE / "tools/icesoc/cores/template"
 NAME = Option("name", TEXT, "name of the core, such as low_pass", "", positional=True)
@@ -241,7 +242,7 @@ def remove(values):
     changed = core not in others and output(
         ["git", "status", "--porcelain", "--ignored", "--", core], check=False, stderr=-3)
     if changed and not values.force:
-        raise Stop(f"ip/{name} has uncommitted changes; FORCE=1 (--force) removes it "
+        raise Stop(f"ip/{name} has uncommitted changes; {switch('force')} removes it "
                    f"anyway:\n{changed}")
     users = sorted(set(users_of(name)))
     if users:

@@ -20,6 +20,7 @@ from icesoc.util.console import say, warn
 from icesoc.util.errors import Interrupted, Stop
 from icesoc.util.lock import lock
 from icesoc.util.process import end, run, start, tool, until, wait
+from icesoc.util.spelling import option, switch
 
 FROM = Option("from", SECONDS, "start of the waveform, simulated time")
 TO = Option("to", SECONDS, "end of the waveform, simulated time")
@@ -57,8 +58,8 @@ def fly_mission(values):
         raise Stop(f"limit of file descriptors: expected at least {DESCRIPTORS}, got "
                    f"{descriptors}; raise it by ulimit -n {DESCRIPTORS}")
     if values.netlist and values.bridge == "sync":
-        raise Stop("NETLIST=1 and BRIDGE=sync: expected at most one of the two, because netlists "
-                   "are only made of the chip with the other bridge", 2)
+        raise Stop(f"{switch('netlist')} and {option('bridge', 'sync')}: expected at most one of "
+                   "the two, because netlists are only made of the chip with the other bridge", 2)
     flight.complete(values)
     board = flight.kit(values.board, values.described)
     if board and (values.netlist or values.bridge == "sync"):
@@ -79,7 +80,7 @@ def fly_mission(values):
     flight.take_key(values, build)
     flight.take_observers_key(values)
     busy = (f"another flight is in progress in {values.out}; give this flight a separate folder: "
-            "OUT=build/other (--out)")
+            f"{option('out', 'build/other')}")
     with lock(Path(values.out) / "lock", refuse=busy) as held:  # the lock is held until the last
                                                                 # program has ended
         fly = minimal if values.app == "minimal" else update if values.update else mission
@@ -285,8 +286,8 @@ def replay(values):
         raise Stop(str(error), 2) from None
     span = values.given & {"from", "to"}
     if span and values.to is not None and values.to <= (getattr(values, "from") or 0):
-        raise Stop(f"FROM={getattr(values, 'from')} TO={values.to}: expected FROM before TO, in "
-                   "seconds, such as FROM=1.5 TO=1.6", 2)
+        raise Stop(f"{option('from', getattr(values, 'from'))} {option('to', values.to)}: expected "
+                   "the start of the span before its end, in seconds", 2)
     build = BuildFolder(values.build, values).prepare()
     chip = with_recorded(build, values.replay)
     words = ["--replay", values.replay, "--out", values.out]

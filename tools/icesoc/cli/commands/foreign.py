@@ -9,6 +9,7 @@ from icesoc.cli.commands.core_folder import NAME, REPOSITORY, put_into_repositor
 from icesoc.cli.flight import FIELDS
 from icesoc.cli.options import BUILD, COUNT, FILES, JOBS, SEED, SWITCH, TEXT, WORDS, Option, one_of
 from icesoc.cores import examples
+from icesoc.util import spelling
 from icesoc.util.console import say, warn
 from icesoc.util.errors import SKIPPED, Stop
 from icesoc.util.lock import lock
@@ -23,7 +24,7 @@ def foreign_words(values):
             *(f"LIBRARY={each}" for each in values.library),
             *(f"PARAM:{each}" for each in values.params),
             *(f"DEFINE:{each}" for each in values.defines),
-            *(["SPELLING=make"] if values.given_by_make else []), *values.ports, *values.files]
+            *(["SPELLING=make"] if spelling.IS_MAKE else []), *values.ports, *values.files]
 
 
 @command("core foreign", [

@@ -1,17 +1,22 @@
 # SPDX-License-Identifier: MIT
-"""spelling: writes the options of `core foreign` in messages, as the user types them: as options of
-./icesoc, or as variables of make."""
+"""spelling: writes options in messages as the user types them: as options of ./icesoc, or as
+variables of make."""
 import shlex
 
-IS_MAKE = False  # new_foreign.py sets this if make started it
+IS_MAKE = False  # make started this program; the entry points set it
 
 
 def option(name, values=()):
     """Returns an option with its values: `--ports open=a low=b` or `PORTS='open=a low=b'`."""
-    values = [values] if isinstance(values, str) else values
+    values = [str(values)] if not isinstance(values, (list, tuple)) else values
     if not IS_MAKE:
         return " ".join([f"--{name}", *map(shlex.quote, values)])
     return f"{name.upper()}={quoted(' '.join(values))}" if values else name.upper()
+
+
+def switch(name):
+    """Returns an option without a value: `--open` or `OPEN=1`."""
+    return option(name, "1" if IS_MAKE else ())
 
 
 def quoted(text):

@@ -15,6 +15,7 @@ from pathlib import Path
 
 PREFIX = Path(__file__).resolve().parents[1]
 SCHEMA = PREFIX / "share/icesoc/flight.schema.json"
+CORES = PREFIX / "share/icesoc/ip"
 REFERENCE = PREFIX / "libexec/icesoc/vision-reference"
 # Fields of the flight description that this program does not offer, because only programs of the
 # source tree use them.
@@ -35,7 +36,8 @@ def fields():
 
 def arguments(known):
     parser = argparse.ArgumentParser(
-        prog="icesoc-fly", description=__doc__.split("\n\n")[0].partition(": ")[2])
+        prog="icesoc-fly", allow_abbrev=False,
+        description=__doc__.split("\n\n")[0].partition(": ")[2])
     kinds = {"integer": int, "number": float}
     for name, field in known.items():
         if name in OTHER:
@@ -54,18 +56,22 @@ def arguments(known):
 
 def demo_key(name):
     """Returns the path of this user's key file; creates the file at first use."""
-    path = CONFIG / name
+    path, temporary = CONFIG / name, CONFIG / f"{name}.{os.getpid()}"
     try:
         CONFIG.mkdir(parents=True, exist_ok=True)
-        with open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
-            file.write(secrets.token_hex(16) + "\n")
+        try:
+            with open(os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w") as file:
+                file.write(secrets.token_hex(16) + "\n")
+            os.link(temporary, path)
+        finally:
+            temporary.unlink(missing_ok=True)
         print(f"icesoc-fly: created a demo key, {path}; --key FILE selects another key, --open "
               "flies without a key")
     except FileExistsError:
         pass
     except OSError as error:
-        sys.exit(f"icesoc-fly: cannot write {error.filename}: {error.strerror}; --key selects an "
-                 "existing key, --open flies without a key")
+        sys.exit(f"icesoc-fly: cannot write {error.filename or path}: {error.strerror}; --key "
+                 "selects an existing key, --open flies without a key")
     return str(path)
 
 
@@ -77,6 +83,11 @@ def main():
     if flight["image"] == known["image"]["default"] and not os.path.exists(flight["image"]):
         sys.exit(f"icesoc-fly: {flight['image']}: No such file or directory: install "
                  "xplanet-images, or select a picture with --image")
+    known_cores = sorted(path.parent.name for path in CORES.glob("*/ground.py"))
+    for core in flight["cores"]:
+        if core not in known_cores:
+            sys.exit(f"icesoc-fly: --cores: expected names of {', '.join(known_cores)}, got "
+                     f"'{core}'")
     if not flight["open"]:
         flight["key"] = flight["key"] or demo_key("demo.key")
         if flight["vehicles"] > 1:

@@ -75,18 +75,21 @@ static Ice_Status takeEvent(Ice_CommunicatorPtr ic, const Ice_Byte* in, const Ic
  * records that the heartbeat is sent. Returns -1 if no such connection exists. Reduces `waitMs`
  * to the time until the next heartbeat. The caller holds the state lock. */
 static int heartbeatDue(Ice_CommunicatorPtr ic, U32 now, Ice_Int* waitMs) {
-    Ice_Connection* c;
-    for (c = ic->connections; c < ic->connections + ICE_TRANSPORTS * ICE_CONNECTIONS; ++c)
-        if (c->pending && c->state == ICE_CONNECTION_OPEN) {
-            Ice_Int left = ICE_HEARTBEAT_MS - (Ice_Int)(now - c->signMs);
-            if (left <= 0) {
-                c->signMs = now;
-                return (int)(c - ic->connections);
-            }
-            if (left < *waitMs)
-                *waitMs = left;
+    int c, due = -1;
+    for (c = 0; c < ICE_TRANSPORTS * ICE_CONNECTIONS && due < 0; ++c) {
+        Ice_Connection* connection = &ic->connections[c];
+        Ice_Int left;
+        if (!connection->pending || connection->state != ICE_CONNECTION_OPEN)
+            continue;
+        left = ICE_HEARTBEAT_MS - (Ice_Int)(now - connection->signMs);
+        if (left <= 0) {
+            due = c;
+            connection->signMs = now;
+        } else if (left < *waitMs) {
+            *waitMs = left;
         }
-    return -1;
+    }
+    return due;
 }
 
 /* Sends the heartbeats that are due, and ends asynchronous calls that have timed out. Reduces

@@ -24,7 +24,7 @@ PICTURE = "docs/pictures/{}.png"
 MISSION = PICTURE.format("mission")
 
 # The output of `make run` in README.md. The picture of the same flight contains the same text.
-TRANSCRIPT = re.compile(r"(?<=Ice's log lines are left out here:\n\n```\n).*?(?=```)", re.S)
+TRANSCRIPT = re.compile(r"(?<=are left out here:\n\n```\n).*?(?=```)", re.S)
 
 # Page or picture -> texts that it contains. In these texts, a name in braces stands for a figure.
 # If a figure has no source, it must be the same in all texts that contain its name.
@@ -92,6 +92,8 @@ PLACES = {
         "| processor load with an idle link, % | {m3.idle} |",
         "| all cycles of a call, in the clear | {m3.clear} |",
         "| all cycles of a call, with a key | {m3.key} |"],
+    "docs/link.md": ["The smallest program has {minimal} bytes."],
+    "docs/icec.md": ["ours have {minimal} bytes."],
     "docs/hw-mapping.md": ["({soc.lut} LUTs, {soc.ff} flip-flops)"],
     PICTURE.format("utilisation"): [
         "{soc.lut} LUT ", " {soc.ff} FF ", " {soc.slices} slices ",

@@ -97,10 +97,12 @@ def folders_of(files):
 
 def declared(files, kind):
     """Returns the modules, entities or packages of the files: (name, file, line)."""
+    def lines_of(comment: re.Match[str]) -> str:
+        return "\n" * comment.group().count("\n")
+
     found = []
     for f in files:
-        text = re.sub(r"/\*.*?\*/|//[^\n]*", lambda m: "\n" * m.group().count("\n"), text_of(f),
-                      flags=re.S)
+        text = re.sub(r"/\*.*?\*/|//[^\n]*", lines_of, text_of(f), flags=re.S)
         found += [(m.group(1), f, text.count("\n", 0, m.start(1)) + 1)
                   for m in re.finditer(rf"^[ \t]*{kind}\s+(?:automatic\s+)?(\w+)", text,
                                        re.M | re.I)]

@@ -5,6 +5,7 @@ import functools
 import re
 import shlex
 import time
+import typing
 from pathlib import Path
 
 from icesoc.cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
@@ -249,7 +250,7 @@ def nightly(values):
         return max([run(["./icesoc", *shlex.split(line.format(day=day))], check=False,
                         env=long) for line in lines])
 
-    steps = {
+    steps: dict[str, typing.Callable] = {
         "kept": lambda: regression("--kept"),
         "random": lambda: regression("--seed", "random", "--repeat", values.nightly),
         "zeroc": lambda: suite("zeroc"), "missions": lambda: suite("nightly"), **{

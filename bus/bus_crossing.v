@@ -53,7 +53,7 @@ module bus_crossing #(
         owes     <= ask || (owes && !handed);
         asked    <= ask || (asked && !answered && bus_valid_i && !given_up);
         answered <= handed && asked && bus_valid_i && !given_up;
-        deaf     <= given_up || (deaf && !handed);
+        deaf     <= given_up || (deaf && owes && !handed);
         patience <= bus_valid_i && !bus_ready_o ? patience - 8'd1 : TIMEOUT[7:0];
         if (rst_i) begin
             asked    <= 1'b0;
@@ -104,13 +104,18 @@ module bus_crossing #(
         .addr_i({6'd0, bus_addr_i}), .wdata_i(bus_wdata_i), .ready_i(bus_ready_o),
         .rdata_i(bus_rdata_o), .error_i(bus_error_o));
     reg past = 1'b0;
+    // an access timed out one clock ago, or the core still owes the answer to it
+    reg late = 1'b0;
     reg [15:0] used = 16'd0; // number of clocks for which the access has waited before this clock
     initial assume (rst_i);
     always @(posedge clk_i) begin
         past <= 1'b1;
+        late <= !rst_i && (given_up || (late && owes && !handed));
         used <= bus_valid_i && !bus_ready_o && !rst_i ? used + 16'd1 : 16'd0;
         if (past && $past(given_up) && !$past(rst_i))
             assert (!asked && !irq_o);
+        if (past && !rst_i && !$past(given_up) && !$past(rst_i))
+            assert (owes || irq_o == irq);
         cover (past && !rst_i && $past(given_up) && handed && !asked);
         cover (bus_valid_i && bus_ready_o && !bus_error_o && !rst_i);
     end
@@ -122,6 +127,8 @@ module bus_crossing #(
             // the request of a waiting access is not answered yet, or was answered one clock ago
             assert (!asked || owes || answered);
             assert (!answered || !owes);
+            // After a time-out, the interrupt line is low while the core owes an answer.
+            assert (irq_o == (irq && !late));
             // An access succeeds only with the answer to its own request.
             assert (!(bus_valid_i && bus_ready_o && !bus_error_o) || asked);
         end

@@ -18,7 +18,7 @@ own=$1
 mkdir "$own" || exit 1 # fails if the folder was not emptied
 [ ! -e wait ] || { mkfifo "$own/gate" && touch "$own/waits" && read -r _ <"$own/gate"; }
 for f in first second; do [ ! -f $f/b.vh ] || { cat $f/b.vh; break; }; done
-echo "$(ls second | wc -l) names, $(tool), ${PROVE_LIMIT:-no limit}, ${OTHER:-nothing else}, $own"
+echo "$(ls second | wc -l) names, $(tool), ${OTHER:-nothing else}, $own"
 ls "$(dirname "$(command -v tool)")" >"$own/tools" # lists a folder outside the tree
 [ ! -e linked ] || { ln -s ../prog "$own/link" && "$own/link" 'by a link'; }
 ! grep -q wrong second/b.vh || exit 3
@@ -43,7 +43,7 @@ same() {
     { [ $status -eq 0 ] && head -1 "$work/said" | grep -q '^kept: cached result of 20.*FRESH=1' &&
         grep -q "$2" "$work/said"; } || fail "not kept: $1"
 }
-computed 'never run' "^1 names, one, no limit, nothing else, $PWD/own$"
+computed 'never run' "^1 names, one, nothing else, $PWD/own$"
 sed -i 's/1/2/' second/b.vh && computed 'one byte of an included file' '^b 2$'
 sed -i 's/2/1/' second/b.vh && same 'as it was before' '^b 1$'
 OTHER=1 && export OTHER && same 'a variable that no test is given' 'nothing else'
@@ -53,7 +53,6 @@ touch second/c.vh && computed 'a name more in a folder that is listed' '^2 names
 touch "$work/bin/game" && same 'a program of a package that it does not use' '^2 names'
 mkdir "$work/bin/__pycache__" && same 'a cache there' '^2 names'
 sed -i 's/one/three/' "$work/bin/tool" && computed 'another tool' 'three'
-PROVE_LIMIT=5 && export PROVE_LIMIT && computed 'another setting' ', 5,'
 FRESH=1 && export FRESH && run && ! grep -q '^kept:' "$work/said" || fail "FRESH=1"
 unset FRESH
 cp -r "$work/a" "$work/b" && cd "$work/b" && same 'another clone' ", $PWD/own$" && cd "$work/a"

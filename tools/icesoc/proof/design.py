@@ -76,9 +76,27 @@ def header(path):
     return Header(int(words[2]), int(words[3]))
 
 
+def named_files(files, modules, folders):
+    """Returns the given files and all files to which they refer, directly or through other files:
+    files of the modules whose names they contain, and included files (*.vh) of the folders."""
+    found, todo = set(), list(files)
+    while todo:
+        file = todo.pop()
+        if file in found:
+            continue
+        found.add(file)
+        for word in re.findall(r"//.*|(\w+(?:\.vh\b)?)", file.read_text()):
+            if word in modules:
+                todo.append(modules[word])
+            elif word.endswith(".vh"):
+                todo += [path for folder in folders if (path := folder / word).exists()]
+    return found
+
+
 class Module:
-    """The module to prove: its file, and the files of the modules that it may instantiate."""
-    def __init__(self, name, source, generated):
+    """The module to prove: its file, and the files of the modules that it instantiates. `read`:
+    files and macros that read_verilog gets in addition."""
+    def __init__(self, name, source, generated, read):
         self.name = name
         self.source, self.generated = Path(source).absolute(), Path(generated).absolute()
         bus, system, cdc, ddr, sim = (self.source / folder for folder in (
@@ -89,13 +107,20 @@ class Module:
         if not found and (self.generated / f"{name}.v").exists():
             self.file, folders = self.generated / f"{name}.v", [bus]
         elif not found:
-            sys.exit(f"{name}: no {name}.v below bus, hdl, ip or testbench/sim")
+            print(f"{name}: no {name}.v below bus, hdl, ip or testbench/sim", file=sys.stderr)
+            sys.exit(2)
         else:
             self.file = found[0]
             # a proof of the simulator uses the modules of the memory controller
             folders = [bus, system, cdc, ddr if self.file.parent == sim else self.file.parent]
-        files = sorted({file for folder in folders for file in folder.glob("*.v")})
-        self.files = files if self.file in files else [*files, self.file]
+        # Only files that the proof needs are read, because Yosys is slow, and because a cached
+        # result is lost if any of its files changes.
+        modules = {file.stem: file for folder in [self.generated, *folders]
+                   for file in folder.glob("*.v")}
+        extra = {Path(word) for word in read if word.endswith(".v")}
+        named = named_files({self.file, *extra}, modules, [self.file.parent, *self.includes])
+        self.files = sorted(file for file in named - extra if file.suffix == ".v" and
+                            (file == self.file or file.parent in folders))
         # In a proof with several clocks (`gclk`), every edge is a separate input.
         self.has_clocks = "gclk" in self.file.read_text()
 

@@ -5,6 +5,7 @@ import re
 import subprocess
 from pathlib import Path
 
+from icesoc.proof import ahead
 from icesoc.proof.design import header
 
 INDUCTION = """\
@@ -16,6 +17,7 @@ sat -tempinduct -prove-asserts -set-assumes -seq 1 -maxsteps 4
 """
 NO_FAILURE = re.compile("No output failed|No output asserted|Explored all reachable states")
 ANSWER = re.compile("output failed|output asserted|was asserted|Explored all reachable states")
+ASSERTED = re.compile("was asserted")
 PROVED = re.compile("Property proved|UNSATISFIABLE")
 
 
@@ -72,15 +74,23 @@ class Engines:
                         "write_cex -a assert.aiw", "bounded.log")
         return bool(NO_FAILURE.search(said)) if ANSWER.search(said) else None
 
-    def reachability(self, options):
+    def reachability(self, options, has_clocks):
         """Returns the size of an inductive invariant that property-directed reachability has found
         and checked; None if it has not found any. The log is induction.log."""
-        # sat: scorr may already find that the output is constant; newer versions of abc then have
-        # nothing left to prove
-        said = self.abc(f"read_aiger assert.aig; fold; strash; scorr -F 2; pdr {options}; "
-                        "write_cex -a assert.aiw; sat", "induction.log")
+        if has_clocks:
+            model = ahead.ahead(ahead.read(self.work / "assert.aig"))
+            ahead.write(model, self.work / "ahead.aig")
+            said = self.pdr("ahead.aig; fold; retime -M 3 -f", options)
+        if not has_clocks or ASSERTED.search(said):  # a counterexample needs the original model
+            said = self.pdr("assert.aig; fold", options)
         found = re.search(r"^Invariant[^:]*: (\d* clauses with \d* flops)", said, re.M)
         return (found[1] if found else "no clause needed") if PROVED.search(said) else None
+
+    def pdr(self, model, options):
+        # sat: scorr may already find that the output is constant; newer versions of abc then have
+        # nothing left to prove
+        return self.abc(f"read_aiger {model}; strash; scorr -F 2; pdr {options}; "
+                        "write_cex -a assert.aiw; sat", "induction.log")
 
     def covers(self, clocks):
         """Returns the names of the cover statements, and of those that are not reached within a

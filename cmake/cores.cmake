@@ -161,6 +161,7 @@ macro(icesoc_core_test)
     endif()
     icesoc_test(test_ip_${name} SOURCES ${test} ${state}_state.h
       LIBS ${libs} ${name}_slot bench fsmc hw_core icec LABELS ${labels})
+    icesoc_core_program(test_ip_${name})
     if(A_CLK_HZ)
       set(clock CORE_CLK_HZ=100000000)
     endif()

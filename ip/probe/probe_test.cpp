@@ -142,7 +142,7 @@ TYPED_TEST(ProbeTest, StoresWhatWasThereBeforeAndAfterTheTrigger) {
     auto fits = [](const auto& given) { return (given->second[0] & 0x15) == 0x11; };
     for (auto i = std::next(this->given_.find(all[0].clock)); i->first < at; ++i)
         EXPECT_FALSE(fits(i) && !fits(std::prev(i))) << "the trigger condition occurred earlier";
-    EXPECT_EQ(s.words, int{this->words});
+    EXPECT_EQ(s.words, static_cast<int>(this->words));
     EXPECT_EQ(s.clkHz, 100000000);
 }
 

@@ -8,6 +8,7 @@
 
 #include "bus_master.h"
 #include "npi_memory.h"
+#include "precompiled.h"
 #include "same.h"
 #include <functional>
 #include <gtest/gtest.h>

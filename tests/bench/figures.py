@@ -25,7 +25,8 @@ TITLES = {
     "load": "Load on the ground's engine and gateway", "modem": "Modem set-up",
     "directory": "IceGrid's registry and IceStorm",
     "fsmc": "FSMC bridge", "memory": "Memory ports", "firmware": "Firmware on the Cortex-M3",
-    "cores": "Cores", "slice": "Slice compiler", "size": "Bytes of the firmware's layers",
+    "cores": "Cores", "edits": "Edits, from the edit to the result", "slice": "Slice compiler",
+    "size": "Bytes of the firmware's layers",
 }
 
 NOTES = {  # notes that are printed below the titles

@@ -269,6 +269,12 @@ MISTAKES = {
     "./icesoc check mutants --block busses": "got 'busses'; did you mean bus",
     "./icesoc check sanitizers --kinds adress": "got 'adress'; did you mean address?",
     "./icesoc check netlist --family ecp6": "--family: expected xc6s or ecp5, got 'ecp6'",
+    "./icesoc test hdl/fsmcc":
+    "expected a folder of tests, got 'hdl/fsmcc'; did you mean hdl/fsmc?",
+    "./icesoc run --core-folders ip/fri":
+    "--core-folders: expected folders with core.toml or cores.list, got '",
+    "./icesoc board show nucleo-qmtec": "did you mean nucleo-qmtech?",
+    "./icesoc core wave frr Impulse": "; did you mean fir?",
     "./icesoc contract diff nowhere": "unknown commit BASE=nowhere",
     "./icesoc core remove fri": "ip/fri not found; did you mean fir?",
     "./icesoc core new Fir --lang vhdl": "expected words of small letters and digits",

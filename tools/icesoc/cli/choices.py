@@ -87,6 +87,20 @@ def labels(values=None):
     return sorted({label for each in found for label in each.split(";") if label})
 
 
+@expecting("a folder of tests")
+def test_folders(values=None):
+    """Returns the folders whose tests can be run, such as hdl/fsmc and ip/fir."""
+    folders = {path.parent for path in files(("tests",), "CMakeLists.txt", "_test.cpp", "_test.py")}
+    return sorted([*(str(path.relative_to("tests")) for path in folders if path.name != "tests"),
+                   *(f"ip/{core}" for core in cores(values))])
+
+
+def has_tests(text, values):
+    """Returns whether a text is a folder of tests or contains one, in one of its spellings."""
+    folder = text.strip("/").removeprefix("tests/")
+    return Path("tests", folder).is_dir() or folder in ("ip", *test_folders(values))
+
+
 def has_label(text, values):
     """Returns whether a regular expression matches a label."""
     try:

@@ -8,6 +8,7 @@ import dataclasses
 import os
 import re
 import typing
+from pathlib import Path
 
 from icesoc.cli import choices
 from icesoc.util.errors import Stop, nearest
@@ -202,6 +203,14 @@ def _folders(place, text):
                                                 for folder in text.split(";"))
 
 
+def _core_folders(text):
+    """Checks folders of cores, which are separated by semicolons."""
+    for folder in text.split(";") if text != "none" else ():
+        if folder and not any(Path(folder, name).is_file() for name in ("core.toml", "cores.list")):
+            raise ValueError
+    return text
+
+
 def _board(place, text):
     """Returns the name of a board, or the path of its file or folder."""
     return os.path.join(place, text) if "/" in text or text.endswith(".toml") else text
@@ -214,7 +223,7 @@ FILES = Kind(list, "file names separated by spaces", metavar="FILE", locate=_fil
 ARGUMENTS = Kind(str, "words, each as it is", metavar="WORD")
 SWITCH = Kind(_switch, "1 or 0", {"type": "boolean"})
 BOARD = Kind(str, "a board", {"type": "string"}, locate=_board)
-FOLDERS = Kind(str, "folders separated by semicolons", {"type": "string"}, "FOLDER",
+FOLDERS = Kind(_core_folders, "folders with core.toml or cores.list", {"type": "string"}, "FOLDER",
                locate=_folders)
 
 

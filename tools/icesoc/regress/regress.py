@@ -12,7 +12,7 @@ import re
 import sys
 import time
 
-from icesoc.util.errors import Interrupted, Stop
+from icesoc.util.errors import Interrupted, Stop, nearest
 from icesoc.util.lock import lock, only_one
 from icesoc.util.ninja import run_ninja
 from icesoc.util.process import (adopt_orphans, collect, end_descendants, end_orphans, hear_signals,
@@ -191,9 +191,11 @@ class Regression:
             ("--block", o.block), ("--label", o.label.pattern), ("--name", o.name.text),
             ("--folder", o.folder)) if value)
         labels = sorted({label for test in tests for label in test.labels})
-        print(f"regress: no test matches{given}; `ctest --test-dir {o.build} -N` lists the "
-              "names. A plain word is a whole word of a name; --name 'fir.*' also matches parts of "
-              "words.\n"
+        similar = nearest(o.block, {word for test in tests for word in test.blocks()}) \
+            if o.block else ""
+        print(f"regress: no test matches{given}{similar}; `ctest --test-dir {o.build} -N` lists "
+              "the names. A plain word is a whole word of a name; --name 'fir.*' also matches parts "
+              "of words.\n"
               f"labels: {' '.join(labels)}\n"
               f"folders: {' '.join(sorted({test.place for test in tests}))}", file=sys.stderr)
         return 2

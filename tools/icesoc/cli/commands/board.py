@@ -33,7 +33,7 @@ def read(values):
             return model.read(name)
         return model.find(name)
     except Wrong as error:
-        raise Stop(str(error)) from None
+        raise Stop(str(error), 2) from None
 
 
 @command("board list", [], examples=["board list"], brief="board list")

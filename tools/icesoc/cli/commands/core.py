@@ -37,7 +37,8 @@ def known(values, core_tests=False):
         build.ninja("build.ninja")
         cores = build.known_cores()
     if values.ip not in cores:
-        raise Stop(f"unknown core '{values.ip}': expected one of {' '.join(cores)}", 2)
+        raise Stop(f"unknown core '{values.ip}': expected one of {' '.join(cores)}"
+                   + nearest(values.ip, cores), 2)
     return build
 
 

@@ -8,6 +8,7 @@ import time
 import typing
 from pathlib import Path
 
+from icesoc.cli import choices
 from icesoc.cli.build_folder import ROOMS_OF_PROGRAMS, BuildFolder, configured
 from icesoc.cli.command import COMMANDS, command
 from icesoc.cli.options import (BLOCK, BUILD, CORE_FOLDERS, COUNT, FRESH, JOBS, LABEL, SEED, SWITCH,
@@ -38,7 +39,8 @@ def selection(values, *more):
 
 @command("test", [
     Option("folder", TEXT, "folder of the tests, such as hdl/fsmc or ip/fir (default: all)", "",
-           positional=True), LABEL, TEST_NAME,
+           positional=True, choices=choices.test_folders, has_name=choices.has_tests),
+    LABEL, TEST_NAME,
     Option("all", SWITCH, "run all tests, also those that have passed with the same inputs"),
     SEED, FRESH, TESTS, UCOS2, BUILD, JOBS], make="test",
          brief="test tree", examples=[

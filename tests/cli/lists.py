@@ -5,7 +5,7 @@ terminals."""
 import ast, contextlib, io, json, re, shlex, shutil, subprocess, sys, tempfile, unittest
 from pathlib import Path
 
-from doors import TREE, ask
+from doors import TREE, ask, quickly
 from icesoc.cli import command, flight
 from icesoc.cli.commands import figures
 from icesoc.cli.commands.tree import manual
@@ -187,7 +187,7 @@ class Lists(unittest.TestCase):
     def test_a_certificate_is_signed_by_the_authority_beside_it(self):
         with tempfile.TemporaryDirectory() as work:
             for name in ("pilot", "observer"):
-                status, _ = ask("./icesoc", "key", f"{work}/{name}.pem", "--certificate")
+                status, _ = quickly("./icesoc", "key", f"{work}/{name}.pem", "--certificate")
                 self.assertEqual(status, 0)
             status, said = ask("openssl", "verify", "-CAfile", f"{work}/authority.pem",
                                f"{work}/pilot.pem", f"{work}/observer.pem")
@@ -198,11 +198,11 @@ class Lists(unittest.TestCase):
             self.assertIn("CA:FALSE", ask("openssl", "x509", "-noout", "-text", "-in",
                                           f"{work}/pilot.pem")[1])
             self.assertEqual(Path(work, "pilot.pem").stat().st_mode & 0o777, 0o600)
-            self.assertIn("never overwritten", ask("./icesoc", "key", f"{work}/pilot.pem",
-                                                   "--certificate")[1])
+            self.assertIn("never overwritten", quickly("./icesoc", "key", f"{work}/pilot.pem",
+                                                       "--certificate")[1])
             Path(work, "authority.key").unlink()
-            self.assertIn("restore the missing file", ask("./icesoc", "key", f"{work}/new.pem",
-                                                        "--certificate")[1])
+            self.assertIn("restore the missing file", quickly(
+                "./icesoc", "key", f"{work}/new.pem", "--certificate")[1])
 
     def test_a_build_is_one_line_and_a_file(self):
         with tempfile.TemporaryDirectory() as work:
@@ -235,7 +235,7 @@ class Lists(unittest.TestCase):
 
     def test_help_fits_a_screen_and_lists_the_commands_of_a_group(self):
         for words in ("--help",), ("help",), ():
-            status, text = ask("./icesoc", *words)
+            status, text = quickly("./icesoc", *words)
             self.assertEqual(status, 0)
             self.assertLess(len(text.splitlines()), 40)
             self.assertLess(max(map(len, text.splitlines())), 81, text)
@@ -243,13 +243,13 @@ class Lists(unittest.TestCase):
             self.assertIn(f"  {name.split()[0]} ", text)
         for group in command.GROUPS:
             for words in (group, "--help"), (group, "-h"), ("help", group):
-                status, text = ask("./icesoc", *words)
+                status, text = quickly("./icesoc", *words)
                 self.assertEqual(status, 0)
                 for name in command.COMMANDS:
                     first, _, second = name.partition(" ")
                     self.assertTrue(first != group or f"  {second} " in text, f"{words}: {second}")
         self.assertEqual(ask("./icesoc", "help", "core", "new"),
-                         ask("./icesoc", "core", "new", "--help"))
+                         quickly("./icesoc", "core", "new", "--help"))
 
     def test_version_and_manual_are_there(self):
         self.assertRegex(ask("./icesoc", "--version")[1], r"^icesoc \d+\.\d+\.\d+\n")
@@ -257,7 +257,7 @@ class Lists(unittest.TestCase):
                               capture_output=True, text=True).stderr \
             if shutil.which("groff") else ""
         self.assertEqual(said, "")
-        shown = ask("./icesoc", "run", "--help")[1]
+        shown = quickly("./icesoc", "run", "--help")[1]
         for option in command.COMMANDS["run"].options:
             self.assertTrue(not option.listed or f"--{option.name}" in shown, option.name)
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """client: calls new cores in a UAV's FPGA by radio. Usage: client.py DEVICE GUARD STATUS PLUGIN
-FOLDER TRACE|NETLIST File.ice ..."""
+FOLDER GENERATED TRACE|NETLIST File.ice ..."""
 
 import os
 import sys
@@ -15,7 +15,7 @@ import mission
 from icesoc.cores import probe
 from icesoc.util.errors import Stop
 
-device, guard, status, plugin, folder, chip, *files = sys.argv[1:]
+device, guard, status, plugin, folder, generated, chip, *files = sys.argv[1:]
 clocked = ["my_requests"] if chip == "TRACE" else []
 for file in files:
     Ice.loadSlice("", [file])
@@ -63,7 +63,7 @@ with Ice.initialize(data) as ic:
     # A probe records the inputs and outputs of the first core; cores.sh compares the recording with
     # the simulator's trace.
     said = []
-    signals = probe.Signals(os.path.join(folder, "build/gen/chip.json"), "probe")
+    signals = probe.Signals(os.path.join(generated, "chip.json"), "probe")
     prober = Probes.ProbePrx.checkedCast(ic.stringToProxy("probe" + where))
     settings = types.SimpleNamespace(trigger="u_sample_verilog.bus_valid_i=1", level=False,
                                      before=4, after=150, wait=600,

@@ -5,7 +5,10 @@
 # netlist, and calls the cores by radio.
 set -eu
 source=$1 build=$2 work=$3 chip=$4
-mkdir -p "$work/build"
+# This folder is as deep in the tree as build/main, so that the compiler cache has many of its
+# object files: their sources have the same relative paths.
+own=$source/build/cores_$(echo "$chip" | tr '[:upper:]' '[:lower:]')
+mkdir -p "$own" "$work"
 # fresh NAME: replaces NAME by fresh/NAME if their contents differ. Otherwise NAME keeps its file
 # times and is not built again.
 fresh() {
@@ -56,24 +59,24 @@ logged "$source/tools/python" -m icesoc.cores.new_foreign \
     LIBRARY=lights PARAM:lamps_lit=4 read=request_rd write=request_wr address=request_a \
     wdata=request_d rdata=q "$lamps.vhd" "${lamps}_types.vhd"
 fresh my_lamps
-[ -e "$work/build/ghdl" ] || ln -s "$build/ghdl" "$work/build/ghdl"
+[ -e "$own/ghdl" ] || ln -s "$build/ghdl" "$own/ghdl"
 # CLK_HZ is low, because the servo core counts in every clock, so that the simulator cannot skip any
 # clock.
-logged cmake -S "$source" -B "$work/build" -G Ninja "-D$chip=ON" -DCLK_HZ=2000000 \
+logged cmake -S "$source" -B "$own" -G Ninja "-D$chip=ON" -DCLK_HZ=2000000 \
     "-DCORES=$work/cores.list" "-DCORE_FOLDERS=$folders" \
     "-DROOMS=bus;slice;ip;sw;hdl;synth;testbench"
 tested='test_ip_servo test_ip_crc32 test_ip_my_lamps'
 # shellcheck disable=SC2086 # a list of words
-logged ninja -C "$work/build" icesoc-sim firmware_uav $tested
-logged ctest --test-dir "$work/build" --output-on-failure --no-tests=error \
+logged ninja -C "$own" icesoc-sim firmware_uav $tested
+logged ctest --test-dir "$own" --output-on-failure --no-tests=error \
     -R "^($(echo $tested | tr ' ' '|'))[.]"
 echo '1000 servo.fault_i 1 # milliseconds' >"$work/pins"
 echo '1001 servo.fault_i 0' >>"$work/pins"
 echo '500 port.port_in_i 0x83' >>"$work/pins"
-simulator=$work/build/testbench/sim/icesoc-sim
+simulator=$own/testbench/sim/icesoc-sim
 logged "$simulator" --pins "$work/pins" --size 96x64 --image /usr/share/xplanet/images/earth.jpg \
     --out "$work" --seed "${SEED:-1}" --guard 20 -- "$source/tools/python" "$here/client.py" \
-    '{device}' '{guard}' '{status}' "$build/ground/xbeeat:createXBeeAT" "$work" "$chip" \
+    '{device}' '{guard}' '{status}' "$build/ground/xbeeat:createXBeeAT" "$work" "$own/gen" "$chip" \
     "$samples/sample_verilog/sample_verilog.ice" "$golden/scaler.ice" "$golden/many.ice" \
     "$here/servo/servo.ice" "$here/crc32/crc32.ice" "$samples/sample_vhdl/sample_vhdl.ice" \
     "$source/sw/hw/registers/Registers.ice" "$source/ip/probe/Probe.ice"
@@ -109,5 +112,5 @@ traced() {
 # the captured outputs.
 "$source/tools/python" -m icesoc.cores.replay "$work/probe.vcd" \
     --scope u_sample_verilog --top sample_verilog \
-    --out "$work/replay" -I "$work/build/gen" -I "$source/bus" \
-    "$samples/sample_verilog/sample_verilog.v" "$work/build/gen/sample_verilog_wrapper.v"
+    --out "$work/replay" -I "$own/gen" -I "$source/bus" \
+    "$samples/sample_verilog/sample_verilog.v" "$own/gen/sample_verilog_wrapper.v"

@@ -194,8 +194,8 @@ class Regression:
         similar = nearest(o.block, {word for test in tests for word in test.blocks()}) \
             if o.block else ""
         print(f"regress: no test matches{given}{similar}; `ctest --test-dir {o.build} -N` lists "
-              "the names. A plain word is a whole word of a name; --name 'fir.*' also matches parts "
-              "of words.\n"
+              "the names. A plain word is a whole word of a name; --name 'fir.*' also matches "
+              "parts of words.\n"
               f"labels: {' '.join(labels)}\n"
               f"folders: {' '.join(sorted({test.place for test in tests}))}", file=sys.stderr)
         return 2

@@ -161,7 +161,8 @@ class Values(Work):
         foreign = values("core", "foreign", "x", "--files", "a.v b.v", "two words.v", "/c.v")
         self.assertEqual(foreign.files, [f"{place}/{name}" for name in (
             "a.v", "b.v", "two words.v")] + ["/c.v"])
-        self.assertEqual(values("run", "--core-folders", "x;/y").core_folders, f"{place}/x;/y")
+        self.assertEqual(values("run", "--core-folders", "kit;/usr").core_folders,
+                         f"{place}/kit;/usr")
         self.assertEqual(values("run", "--core-folders", "none").core_folders, "none")
         self.assertEqual(values("run", "--board", "kit/board.toml").board,
                          f"{place}/kit/board.toml")
@@ -280,7 +281,7 @@ MISTAKES = {
     "./icesoc test hdl/fsmcc":
     "expected a folder of tests, got 'hdl/fsmcc'; did you mean hdl/fsmc?",
     "./icesoc run --core-folders ip/fri":
-    "--core-folders: expected folders with core.toml or cores.list, got '",
+    "--core-folders: expected existing folders of cores, got '",
     "./icesoc board show nucleo-qmtec": "did you mean nucleo-qmtech?",
     "./icesoc core wave frr Impulse": "; did you mean fir?",
     "./icesoc contract diff nowhere": "unknown commit BASE=nowhere",
@@ -507,9 +508,11 @@ class Trees(Work):
         with open(new / "CMakeLists.txt", "a") as file:
             file.write('if(CORE_FOLDERS)\n'
                        '  message(FATAL_ERROR "CORE_FOLDERS is ${CORE_FOLDERS}")\nendif()\n')
-        status, text = ask("./icesoc", "core", "test", "here", "--core-folders", "/here", "--build",
-                           "build", ICESOC_TREE=str(new))
-        self.assertIn("CORE_FOLDERS is /here", text)
+        here = self.work / "here"
+        here.mkdir()
+        status, text = ask("./icesoc", "core", "test", "here", "--core-folders", str(here),
+                           "--build", "build", ICESOC_TREE=str(new))
+        self.assertIn(f"CORE_FOLDERS is {here}", text)
         self.assertEqual(ask("cmake", str(new / "build"))[0], 0)
 
     def test_of_two_at_once_in_a_new_tree_one_configures(self):

@@ -206,7 +206,7 @@ def _folders(place, text):
 def _core_folders(text):
     """Checks folders of cores, which are separated by semicolons."""
     for folder in text.split(";") if text != "none" else ():
-        if folder and not any(Path(folder, name).is_file() for name in ("core.toml", "cores.list")):
+        if folder and not Path(folder).is_dir():
             raise ValueError
     return text
 
@@ -223,7 +223,7 @@ FILES = Kind(list, "file names separated by spaces", metavar="FILE", locate=_fil
 ARGUMENTS = Kind(str, "words, each as it is", metavar="WORD")
 SWITCH = Kind(_switch, "1 or 0", {"type": "boolean"})
 BOARD = Kind(str, "a board", {"type": "string"}, locate=_board)
-FOLDERS = Kind(_core_folders, "folders with core.toml or cores.list", {"type": "string"}, "FOLDER",
+FOLDERS = Kind(_core_folders, "existing folders of cores", {"type": "string"}, "FOLDER",
                locate=_folders)
 
 

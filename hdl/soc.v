@@ -55,13 +55,7 @@ module soc #(
     localparam SLOTS = MAP_SLOT_COUNT;
     localparam PORTS = MAP_NPI_PORT_COUNT;
     localparam SYSTEM = MAP_SLOT_SYSTEM, MODEM = MAP_SLOT_MODEM, MODEM_PORT = MAP_NPI_PORT_MODEM;
-    // The bridge and the modem take each read word in the cycle in which it arrives, so they need
-    // no FIFO.
-    localparam [31:0] NO_READ_FIFO = 1 << MAP_NPI_PORT_FSMC | 1 << MODEM_PORT;
-    localparam [PORTS-1:0] READ_FIFO = ~NO_READ_FIFO[PORTS-1:0];
-    // The modem writes single bytes, so its write FIFO stores one lane.
-    localparam [31:0] WRITES_BYTES = 1 << MODEM_PORT;
-    localparam [PORTS-1:0] BYTES = WRITES_BYTES[PORTS-1:0];
+    `include "memory_fifos.vh"
 
     // A flip-flop drives the reset of all blocks, so that no combinational path leads from the
     // reset pin through their logic. A simulator would have to evaluate such a path at each

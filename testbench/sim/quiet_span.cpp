@@ -55,9 +55,10 @@ template <size_t count> bool isIn(const char* path, const char* const (&blocks)[
     });
 }
 
-// Adds a member to a list of ranges. `joins` is true if the member before was in the list.
-void add(std::vector<std::pair<size_t, size_t>>& ranges, size_t offset, size_t size, bool joins) {
-    if (joins)
+// Adds a member to a list of ranges. Variables that are not members, such as Verilator's scratch,
+// may lie between two members, so only adjacent members share a range.
+void add(std::vector<std::pair<size_t, size_t>>& ranges, size_t offset, size_t size) {
+    if (!ranges.empty() && ranges.back().second == offset)
         ranges.back().second = offset + size;
     else
         ranges.emplace_back(offset, offset + size);
@@ -107,18 +108,15 @@ std::vector<std::string> SocState::differences(const Image& a, const Image& b) {
 
 QuietSpan::QuietSpan(VSoc& top)
     : top_(top), image_(sizeof(VSoc___024root)), othersImage_(image_.size()) {
-    bool wasResting = false, wasOther = false; // true if the previous member is in the list
     for (const Member& m : members) {
         const bool isResting = isIn(m.path, resting);
         // All registers are in instances of soc.v, except for the output of the interrupt.
         const bool isOther =
             !isResting && std::string(m.path).rfind("u_", 0) == 0 && !isIn(m.path, alone);
         if (isResting)
-            add(platform_, m.offset, m.size, wasResting);
+            add(platform_, m.offset, m.size);
         if (isOther)
-            add(others_, m.offset, m.size, wasOther);
-        wasResting = isResting;
-        wasOther = isOther;
+            add(others_, m.offset, m.size);
     }
 }
 

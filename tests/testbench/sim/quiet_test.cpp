@@ -302,6 +302,11 @@ TEST(Quiet, AMemoryThatHungGoesOnInItsClock) {
 // memory and ticks of the baud rate, at the end of frames, and while the memory hangs, so that
 // pixels are lost.
 TEST(Quiet, ACameraAloneWorksAsInTheChip) {
+    // All chips of a process draw the delays of their synchronisers from one sequence of random
+    // numbers, so two chips with a running pixel clock get different delays. A chip with such
+    // delays never evaluates its camera alone.
+    if (numberFromEnvironment("CDC_SEED", 0))
+        GTEST_SKIP() << "with CDC_SEED, the synchronisers of the two chips have different delays";
     TwoChips pair;
     EXPECT_THAT(pair.quick.camera().missing(), testing::IsEmpty());
     Frame frame{64, 24, {}};
@@ -311,7 +316,7 @@ TEST(Quiet, ACameraAloneWorksAsInTheChip) {
         // After 120 frames the sensor is quiet for long enough that its pins are driven only once
         // per millisecond.
         auto sends = [asked = 0u]() mutable { return ++asked % 137 < 120; };
-        connectSensor(*soc, frame, sends, [](uint32_t) {});
+        connectSensor(*soc, frame, sends);
         passUntil(*soc, McbModel::startClocks + 1000);
         for (unsigned word = 0; word < 5; ++word) // the FIFOs do not stand at their first place
             TwoChips::write(*soc);
@@ -353,8 +358,9 @@ TEST(Quiet, ACameraAloneWorksAsInTheChip) {
     EXPECT_EQ(std::memcmp(pair.quick.memory().data(), pair.slow.memory().data(),
                           pair.slow.memory().size()),
               0);
-    if (pair.quick.camera().exists())
-        EXPECT_GT(pair.quick.evaluatedAlone() * 2, pair.quick.evaluated());
+    if (pair.quick.camera().exists()) {
+        EXPECT_GT(pair.quick.evaluatedAlone() * 4, pair.quick.evaluated() * 3);
+    }
     EXPECT_EQ(pair.slow.evaluatedAlone(), 0u);
     std::printf("%lu clocks, %lu evaluated, %lu of them alone, %lu frames\n", pair.quick.cycles(),
                 pair.quick.evaluated(), pair.quick.evaluatedAlone(), frames);

@@ -322,8 +322,9 @@ function(icesoc_chip)
     set(check COMMAND slice2c --one-program ${slice_includes} ${slice_files})
   endif()
   add_custom_command(OUTPUT ${GEN_DIR}/map.regs.json ${GEN_DIR}/soc_cores.vh ${GEN_DIR}/soc_cores.c
-                     ${GEN_DIR}/soc_pins.h ${GEN_DIR}/core_pins.ucf ${GEN_DIR}/icesoc.svd
-                     ${GEN_DIR}/chip.json ${GEN_DIR}/icesoc.rdl ${GEN_DIR}/icesoc.ipxact.xml
+                     ${GEN_DIR}/soc_pins.h ${GEN_DIR}/core_pins.vh ${GEN_DIR}/core_pins.ucf
+                     ${GEN_DIR}/icesoc.svd ${GEN_DIR}/chip.json ${GEN_DIR}/icesoc.rdl
+                     ${GEN_DIR}/icesoc.ipxact.xml
                      ${check}
     COMMAND ${PYTHON} -m icesoc.chip.coremap ${CORES}
             --base ${CMAKE_SOURCE_DIR}/bus/map.regs.json ${options}

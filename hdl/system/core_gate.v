@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
 //
-// core_gate: gates the clock of a core. With GATED, the clock stops 16 clocks after the core has
-// become idle.
+// core_gate: gates the clock of a core. With GATED, the clock stops 2**LOG2 clocks after the core
+// has become idle.
 //
-// During these 16 clocks the pipelines of an idle core become empty. On Xilinx FPGAs the gate is a
+// During these clocks the pipelines of an idle core become empty. On Xilinx FPGAs the gate is a
 // BUFGCE, and its enable comes from flip-flops of clk_i and a few LUTs.
 
 `default_nettype none
 
 module core_gate #(
-    parameter GATED = 0 // 1: the clock is gated; 0: it is passed on without any logic
+    parameter GATED = 0, // 1: the clock is gated; 0: it is passed on without any logic
+    parameter LOG2  = 4  // log2 of the number of clocks; every core relies on at least 16
 ) (
     input  wire clk_i,
     input  wire rst_i,
     input  wire access_i, // high during an access to the core's slot
     // high while the core is idle: unless an access follows, its registers may change for at most
-    // 16 more clocks
+    // 2**LOG2 more clocks
     input  wire idle_i,
     output wire clk_o
 );
@@ -24,12 +25,12 @@ module core_gate #(
             assign clk_o = clk_i;
             wire unused = &{1'b0, rst_i, access_i, idle_i, 1'b0};
         end else begin : g_gate
-            reg  [4:0] rest; // number of clocks since the core became idle, up to 16
+            reg  [LOG2:0] rest; // number of clocks since the core became idle, up to 2**LOG2
             wire       active = rst_i || access_i || !idle_i;
             (* keep *) wire run; // net name is kept, because core_pins.ucf uses it
-            assign     run    = active || !rest[4];
+            assign     run    = active || !rest[LOG2];
             always @(posedge clk_i)
-                rest <= active ? 5'd0 : rest + {4'd0, !rest[4]};
+                rest <= active ? {(LOG2+1){1'b0}} : rest + {{LOG2{1'b0}}, !rest[LOG2]};
 `ifdef VERILATOR
             reg open; // `run` as sampled before the rising edge of clk_i, as in a BUFGCE
             reg ungated;
@@ -45,17 +46,18 @@ module core_gate #(
             always @(posedge clk_i)
                 closed <= !run;
             assign clk_o = !run && !closed;
-            // The gate is open while the core is active and for 16 clocks after that; then it is
-            // closed.
-            reg [4:0] since = 5'd16; // number of clocks since the core was last active
+            // The gate is open while the core is active and for 2**LOG2 clocks after that; then it
+            // is closed.
+            localparam [LOG2:0] LAST = 1 << LOG2;
+            reg [LOG2:0] since = LAST; // number of clocks since the core was last active
             wire f_active = rst_i || access_i || !idle_i;
             reg past = 1'b0;
             initial assume (rst_i);
             always @(posedge clk_i) begin
                 past <= 1'b1;
-                since <= f_active ? 5'd0 : since + {4'd0, since != 5'd16};
+                since <= f_active ? {(LOG2+1){1'b0}} : since + {{LOG2{1'b0}}, since != LAST};
                 if (past) begin
-                    assert (run == (f_active || since != 5'd16));
+                    assert (run == (f_active || since != LAST));
                     assert (rest == since);
                 end
                 cover (past && !run);

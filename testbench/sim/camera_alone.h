@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 //
 // camera_alone: simulates only the camera core and the memory while the rest of the chip would not
-// change. A second Verilated model (sim_camera.v) contains these two blocks. A picture takes
-// hundreds of thousands of clocks, and this small model needs a fraction of the time that the model
-// of the whole chip needs.
+// change. Each of the two blocks has a small Verilated model (sim_camera.v, sim_memory.v). A
+// picture takes hundreds of thousands of clocks, and the small models need a fraction of the time
+// that the model of the whole chip needs. The memory is only evaluated while it has a clock: the
+// clock stops soon after each word that the camera writes (rests.vh).
 //
-// The state of the registers of both blocks is copied from the chip to the small model (load), and
-// back (store). The small model may compute clocks alone if it has followed the chip for one clock
-// (follows), and if in this clock neither the rest of the chip nor the outputs of the two blocks to
-// the rest have changed. The next state of the rest depends only on its state and its inputs, so it
-// does not change until one of these outputs does. Then clock() returns false.
+// The state of the registers of both blocks is copied from the chip to the small models (load), and
+// back (store). The small models may compute clocks alone if they have followed the chip for one
+// clock (follows), and if in this clock neither the rest of the chip nor the outputs of the two
+// blocks to the rest have changed. The next state of the rest depends only on its state and its
+// inputs, so it does not change until one of these outputs does. Then clock() returns false.
 
 #pragma once
 
@@ -29,8 +30,8 @@ public:
     // Returns false if the chip has no camera, or if every clock of the chip must be evaluated for
     // another reason: a waveform, coverage, or random delays of synchronisers.
     bool exists() const;
-    // Returns the registers that are only in one of the two models. The small model can then not be
-    // used.
+    // Returns the registers that are only in the chip, or only in a small model. The small models
+    // can then not be used.
     std::vector<std::string> missing();
 
     // Copies the state of the chip, which has just been evaluated.

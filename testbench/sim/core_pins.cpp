@@ -135,7 +135,8 @@ void connectSensor(SocModel& soc, const Frame& frame, std::function<bool()> send
                              uint32_t(pins.href) << MAP_PIN_CAMERA_HREF_I |
                              uint32_t(pins.data) << MAP_PIN_CAMERA_DATA_I;
         soc.setCorePins(all, true);
-        note(all);
+        if (note)
+            note(all);
         // VSYNC goes high after the last line; the core needs a few more clocks to notice this.
         still = sensor.isIdle() && pins.vsync ? still + 1 : 0;
         return soc.cycles() + (still > 32 ? SocModel::clkHz / 1000 : 1);

@@ -16,8 +16,7 @@ void connectPins(SocModel& soc, const std::string& script, const std::string& lo
 
 // Calls `sends` every two milliseconds. If it returns true, sends the frame to the camera core, one
 // pixel every second clock. Between frames the sensor clock stops, as in many sensors. `note`
-// receives the levels of the pins in each clock. Throws std::runtime_error if the chip has no
-// camera core.
-void connectSensor(
-    SocModel& soc, const Frame& frame, std::function<bool()> sends,
-    std::function<void(uint32_t pins)> note = [](uint32_t) {});
+// receives the levels of the pins in each clock (default: none). Throws std::runtime_error if the
+// chip has no camera core.
+void connectSensor(SocModel& soc, const Frame& frame, std::function<bool()> sends,
+                   std::function<void(uint32_t pins)> note = nullptr);

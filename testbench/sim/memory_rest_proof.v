@@ -41,7 +41,7 @@ module memory_rest_proof #(
     (* hierconn *) wire [8*PORTS-1:0] \u_core.npi_wr_be_i ;
 
     wire closes;
-    core_gate #(.GATED(1)) u_gate ( // the same gate as in sim_soc.v
+    core_gate #(.GATED(1), .LOG2(`MEMORY_REST_LOG2)) u_gate ( // the same gate as in sim_soc.v
         .clk_i(clk_i), .rst_i(rst_i), .access_i(1'b0), .idle_i(`MEMORY_RESTS(u_core)),
         .clk_o(closes));
     initial assume (rst_i);

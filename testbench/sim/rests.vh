@@ -12,6 +12,9 @@
         memory.npi_rd_flush_i, memory.u_arbiter.u_queue.moving, memory.u_arbiter.u_queue.coming, \
         memory.u_arbiter.u_queue.cmd_valid_o, memory.npi_wr_be_i[7:0]})
 
+// The clock of the memory stops 2**MEMORY_REST_LOG2 clocks later (core_gate.v).
+`define MEMORY_REST_LOG2 1
+
 // PLATFORM_STIRS is true while an access to the memory or to the register bus of the platform `p`
 // may change the state of the bridge, the decoder, the modem or the system slot. Memory port 0
 // belongs to the bridge, port 1 to the modem.

@@ -13,6 +13,7 @@
 `default_nettype none
 `ifdef RESTS
 `include "rests.vh"
+`include "core_pins.vh"
 `endif
 
 module sim_soc #(
@@ -56,6 +57,9 @@ module sim_soc #(
 `ifdef RESTS
     input  wire        rests_i,
     output wire        stirs_o,
+`ifdef CORE_CAMERA_FROM_BITS
+    output wire [`CORE_CAMERA_FROM_BITS-1:0] camera_from_o, // inputs of the camera from other cores
+`endif
 `endif
     output wire        irq_o
 );
@@ -85,12 +89,15 @@ module sim_soc #(
     // clock stops while rests_i is high; the memory clock stops while the memory would not change.
     wire platform_clk = clk_i && !rests_i;
     wire memory_clk;
-    core_gate #(.GATED(1)) u_gate_memory (
+    core_gate #(.GATED(1), .LOG2(`MEMORY_REST_LOG2)) u_gate_memory (
         .clk_i(clk_i), .rst_i(soc.rst), .access_i(1'b0),
         .idle_i(`MEMORY_RESTS(soc.u_platform.u_memory)), .clk_o(memory_clk));
     // A probe may record the platform's counters. These would stand still while the clock is
     // stopped, so with a probe the clock is never stopped.
     assign stirs_o = MAP_PROBES != 0 || `PLATFORM_STIRS(soc.u_platform);
+`ifdef CORE_CAMERA_FROM_BITS
+    assign camera_from_o = `CORE_CAMERA_FROM(soc);
+`endif
 
     soc #(.CLK_HZ(CLK_HZ), .GATES(1))
 `elsif TABLE1

@@ -155,6 +155,22 @@ def verilog_of(chip, slots):
         empty=[slot for slot in range(chip.first, chip.slots) if slot not in used])
 
 
+def alone_pins(core):
+    """Returns the connections of a core's pins in a model of this core alone (core_pins.vh.j2)."""
+    lsb = {"from": 1, "to": 1}
+    nets, connections = [], []
+    for pin in core.pins:
+        net = net_of(core, pin)
+        if pin.direction == "o" or not pin.is_pin:
+            side = "to" if pin.direction == "o" else "from"
+            if side == "from":
+                nets.append(net if "'" in net else "soc." + net)
+            net, lsb[side] = side + bits(lsb[side], pin.width), lsb[side] + pin.width
+        connections.append(f".{pin.name}({net})")
+    return {"name": "CORE_" + core.name.upper(), "connections": connections,
+            "nets": [*reversed(nets), "1'b0"], "from_bits": lsb["from"], "to_bits": lsb["to"]}
+
+
 def pads(pin):
     return [f"core_pins_{pin.direction}<{pin.lsb + bit}>" for bit in range(pin.width)]
 
@@ -250,4 +266,6 @@ def files(chip, slots, base):
     """Returns all files about the chip: name -> text."""
     return {"map.regs.json": map_of(chip, base),
             "soc_pins.h": render("soc_pins.h.j2", chip=chip), "core_pins.ucf": constraints_of(chip),
+            "core_pins.vh": render("core_pins.vh.j2",
+                                   cores=[alone_pins(core) for core in chip.cores]),
             "soc_cores.vh": verilog_of(chip, slots), "soc_cores.c": instances_of(chip, slots)}

@@ -2,9 +2,9 @@
 """coremap: builds the chip from the cores in ip/cores.list, one per line (docs/hw-mapping.md).
 
 Writes map.regs.json (slots, memory ports, buffers in DDR3, pins), soc_cores.vh (instances, for
-soc.v), soc_cores.c (servants), soc_pins.h (for the simulator), core_pins.ucf (for ISE), chip.json
-(slots, objects and probes, for the programs on the PC), and register descriptions for other tools
-and for people.
+soc.v), soc_cores.c (servants), soc_pins.h and core_pins.vh (for the simulator), core_pins.ucf (for
+ISE), chip.json (slots, objects and probes, for the programs on the PC), and register descriptions
+for other tools and for people.
 """
 import argparse
 import os

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """simulator: measures simulated clocks per second, as the best of three alternating runs. It
-measures the UAV without a ground station (with quiet clocks skipped, and with each clock
-evaluated) and the replay of a mission (with the firmware's host build, and with the model of the
-Cortex-M3).
+measures the UAV without a ground station (with quiet clocks skipped, with each clock evaluated, and
+with a camera that sends pictures which the vehicle ignores) and the replay of a mission (with the
+firmware's host build, with the model of the Cortex-M3, and with pictures from a camera).
 
     simulator.py SOURCE-FOLDER BUILD-FOLDER OUTPUT.json [--brief]
 """
@@ -25,15 +25,19 @@ def logged(*words):
 def main(source, build, output, brief=""):
     runs, seconds = (1, "0.5") if brief else (3, "5")
     work = tempfile.TemporaryDirectory()
-    for cpu in "host", "m3":
-        logged(f"{source}/icesoc", "run", "--built", "--build", build, *IMAGE, "--cpu", cpu,
-               "--out", f"{work.name}/{cpu}",
-               *("--size 96x64 --guard 20".split() if brief else ()))
+    camera = "--camera", "--size", "96x64" if brief else "640x480"
+    flown = {"host": (), "m3": ("--cpu", "m3"), "camera": camera}
+    for flight, options in flown.items():
+        logged(f"{source}/icesoc", "run", "--built", "--build", build, *IMAGE, "--out",
+               f"{work.name}/{flight}", *("--size 96x64 --guard 20".split() if brief else ()),
+               *options)
     long = *IMAGE, "--duration", seconds
     kinds = {"quiet": (build, *long), "m3": (build, *long, "--cpu", "m3"),
              "every": (build, *IMAGE, "--duration", "0.02", "--every-clock"),
+             "camera": (build, *long, *camera),
              "flight": (build, "--replay", f"{work.name}/host"),
-             "flight m3": (build, "--replay", f"{work.name}/m3")}
+             "flight m3": (build, "--replay", f"{work.name}/m3"),
+             "flight camera": (build, "--replay", f"{work.name}/camera")}
     # millions of clocks per second, and percentage of skipped clocks, of each kind
     best = dict.fromkeys(kinds, (0, 0))
     for run in range(runs):
@@ -60,7 +64,11 @@ def main(source, build, output, brief=""):
         real_time("replay of the default mission", "flight"),
         row("clocks evaluated in that replay", active["flight"]),
         real_time("replay of the mission, firmware on the Cortex-M3 model", "flight m3"),
-        row("clocks evaluated in that replay, Cortex-M3", active["flight m3"])])
+        row("clocks evaluated in that replay, Cortex-M3", active["flight m3"]),
+        real_time("vehicle with a camera, 640 x 480, 4 pictures/s, no capture", "camera"),
+        row("clocks evaluated by that vehicle", active["camera"]),
+        real_time("replay of the mission with that camera", "flight camera"),
+        row("clocks evaluated in that replay, camera", active["flight camera"])])
     print(f"the mission: {rate['flight']} million clocks/s, on the Cortex-M3 {rate['flight m3']}; "
           "100 are wanted and are real time")
 

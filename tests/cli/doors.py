@@ -105,6 +105,8 @@ class Values(Work):
         self.assertEqual((self.work / "cores.list").read_text(), "fir\nlow_pass\n")
 
     def test_both_doors_give_the_same_values(self):
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(TREE)  # with the names that options accept
         samples = {"N": "3", "VALUE": "a", "FOLDER": str(TREE / "tools"), "WxH": "96x64",
                    "TIME": "60s", "N|random": "random", "WORD": "a b"}
         for each in command.COMMANDS.values():

@@ -86,7 +86,7 @@ class Cases(Project):
         # get them.
         write("plain.html", re.sub("(?m)^(!function.*Tabulator=|.*var uPlot=).*\n", "", page))
         self.browse("plain.html")
-        self.has("Tabulator and uPlot could not be fetched. With a network",
+        self.has("Tabulator and uPlot could not be downloaded",
                  "<td>test_c.Flicker</td>", 'class="dot dp"')
         if not (BUILD / "page/libraries.js").stat().st_size:
             self.skipTest("Tabulator and uPlot could not be fetched")

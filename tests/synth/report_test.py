@@ -252,7 +252,7 @@ class Cases(Script):
             "^!function.*Tabulator=|^.*var uPlot=", line)))
         seen = re.search('<p class="soft">.*?(?=<script id)', self.dump("plain.html"), re.S)[0]
         self.said = re.sub(r"\s+", " ", re.sub("<[^>]*>", " ", seen))
-        self.has("Tabulator and uPlot could not be fetched. With a network")
+        self.has("Tabulator and uPlot could not be downloaded")
         self.lacks("NaN|undefined")
         self.has(r"after routing: [0-9]+ to [0-9]+ MHz; nine of ten published designs \(of "
                  r"[0-9]+\) are in this range",

@@ -29,7 +29,7 @@ refused() { # message, arguments
 }
 refused './icesoc core new low_pass'
 refused './icesoc core new low_pass' '' --lang verilog
-refused 'expected verilog or vhdl (LANG=' fir
+refused '--lang: expected verilog or vhdl' fir
 refused "got 'c'" fir --lang c
 refused 'small letters' Fir --lang verilog
 refused 'small letters' 2fir --lang verilog

@@ -3,8 +3,8 @@
 # editors.cmake: lists files that CMake does not compile itself in compile_commands.json, so that
 # editors know their compiler options.
 
-# icesoc_for_editors(SOURCES file... [OPTIONS word...] [LIBS lib...]): remembers files of this tree
-# with the options for clang. C++ and C files of one call must not be mixed.
+# icesoc_for_editors(SOURCES file... [OPTIONS word...] [LIBS lib...]): remembers files of this tree,
+# and the options with which clang accepts them. One call names either C or C++ files, not both.
 function(icesoc_for_editors)
   cmake_parse_arguments(A "" "" "SOURCES;OPTIONS;LIBS" ${ARGN})
   set(files)

@@ -39,8 +39,8 @@ VHDL = ("ip/fir/fir_filter.vhd",
         ("result_ready_i or not full(5);", "result_ready_i or not full(5) or (rst_i and full(4));"))
 OWN = "OWN/low_pass/"  # a core that `core new` has created in a separate repository
 TEST_OWN = ["core", "test", "low_pass", "--core-folders", OWN]
-# Name, command, file and replacements of each edit, and the wanted time in seconds. No edit changes
-# what the program does, but each changes what the compiler gets.
+# Name, command, file and replacements of each edit, and the wanted time in seconds. The edits
+# leave the behaviour as it is, but the edited files have to be compiled again.
 EDITS = (
     ("no edit, fir to its verdict", TEST_FIR, (), None),
     ("line of Verilog in fir to its verdict", TEST_FIR, LINE, 2),

@@ -106,7 +106,7 @@ class Values(Work):
 
     def test_both_doors_give_the_same_values(self):
         self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(TREE)  # with the names that options accept
+        os.chdir(TREE)  # options accept names of things in the tree
         samples = {"N": "3", "VALUE": "a", "FOLDER": str(TREE / "tools"), "WxH": "96x64",
                    "TIME": "60s", "N|random": "random", "WORD": "a b"}
         for each in command.COMMANDS.values():

@@ -6,6 +6,7 @@
 #include "forwarder.h"
 #include "packet_line.h"
 #include "passed_proxies.h"
+#include "reason.h"
 
 #include <algorithm>
 #include <iostream>
@@ -20,44 +21,10 @@ const char* const maintenanceType = "::IceSoC::Maintenance";
 
 // size in bytes above which a call or reply uses the lane for long messages
 constexpr size_t longBytes = 512;
-constexpr size_t mostUnderWay = 8; // limit of the requests in flight on one lane
-// limits of the bytes in flight, for the lane of short calls and the lane of long calls; if no
-// request is in flight on a lane, the lane accepts a request of any size
-constexpr size_t mostBytesUnderWay[] = {1536, 8192};
-// number of one-way requests after which a ping is sent; the reply to the ping confirms that the
-// requests have arrived
-constexpr size_t mostUnconfirmed = 4;
 
 std::exception_ptr refusal(const Ice::Identity& maintained) {
     return unknown("'" + Ice::identityToString(maintained) +
                    "' is a maintenance object: call it at the endpoint given with --maintenance");
-}
-
-std::exception_ptr unreachable(const std::string& why) {
-    return std::make_exception_ptr(Ice::UnknownLocalException(
-        __FILE__, __LINE__, "icesoc-gateway: cannot reach the vehicle: " + why));
-}
-
-// Returns the exception that a client gets if its request could not be sent, or if the connection
-// was lost before the reply. If the connection to the vehicle has failed, the text of the exception
-// explains the error to the user.
-std::exception_ptr explained(std::exception_ptr why) {
-    try {
-        std::rethrow_exception(why);
-    } catch (const Ice::ConnectTimeoutException&) {
-        return unreachable("it does not answer: check that it is on, in range, and has the same "
-                           "key as this gateway");
-    } catch (const Ice::ConnectFailedException& e) {
-        return unreachable(e.error == EBUSY
-                               ? "another ground station with the same address is connected to it"
-                               : "the modem is lost or does not answer: check its cable and its "
-                                 "power; the gateway's log has the reason");
-    } catch (const Ice::ConnectionLostException&) {
-        return unreachable("the connection was lost during the call; the vehicle may have executed "
-                           "the call");
-    } catch (...) {
-        return why;
-    }
 }
 
 // Reports the loss of a one-way request. It has no reply, so the client only notices the loss if
@@ -140,9 +107,7 @@ bool Forwarder::mayGo(const Client& client) const {
     const Request& request = *client.requests.front();
     const int number = laneOf(request);
     const Lane& lane = lanes_[number];
-    return lane.connection && (client.underWay == 0 || client.lane == number) &&
-           (lane.requests == 0 || (lane.requests < mostUnderWay &&
-                                   lane.bytes + request.bytes <= mostBytesUnderWay[number]));
+    return (client.underWay == 0 || client.lane == number) && lane.accepts(request.bytes);
 }
 
 // Returns a lane that has no connection although requests wait for this lane; -1 if no such
@@ -168,22 +133,8 @@ std::shared_ptr<Request> Forwarder::nextRequest() {
     room_.notify_all();
     request->lane = request->client->lane = laneOf(*request);
     ++request->client->underWay;
-    ++lanes_[request->lane].requests;
-    lanes_[request->lane].bytes += request->bytes;
-    request->isCounted = true;
+    lanes_[request->lane].count(*request);
     return request;
-}
-
-// Stops counting a request as in flight, because the request has arrived or can no longer
-// arrive.
-void Forwarder::release(Request& request) {
-    if (!request.isCounted)
-        return;
-    request.isCounted = false;
-    --lanes_[request.lane].requests;
-    lanes_[request.lane].bytes -= request.bytes;
-    if (request.client)
-        --request.client->underWay;
 }
 
 // Sends all requests that may be sent. Only one thread at a time executes this loop. This thread
@@ -319,9 +270,9 @@ void Forwarder::sendOne(const std::shared_ptr<Request>& request) {
         std::lock_guard<std::mutex> lock(mutex_);
         Lane& lane = lanes_[request->lane];
         connection = lane.connection;
-        lane.underWay.push_back(request);
+        lane.begin(request);
         if (request->isOneway())
-            isUnsure = request->lane == longCalls || lane.underWay.size() >= mostUnconfirmed;
+            isUnsure = request->lane == longCalls || lane.inFlight() >= Lane::mostUnconfirmed;
     }
     try {
         if (!connection)
@@ -369,9 +320,7 @@ void Forwarder::confirm(int number, const Ice::Current& of) {
         if (lane.isConfirming || !lane.connection)
             return;
         lane.isConfirming = true;
-        ++lane.requests;
-        lane.bytes += ping->bytes;
-        ping->isCounted = true;
+        lane.count(*ping);
         sent_.insert(ping);
     }
     sendOne(ping);
@@ -384,17 +333,7 @@ void Forwarder::finish(const std::shared_ptr<Request>& request, bool hasArrived,
     bool isAwaited; // false if giveUp has already failed this request
     {
         std::lock_guard<std::mutex> lock(mutex_);
-        auto& underWay = lanes_[request->lane].underWay;
-        const auto at = std::find(underWay.begin(), underWay.end(), request);
-        if (hasArrived && at != underWay.end()) {
-            for (auto each = underWay.begin(); each != std::next(at); ++each)
-                release(**each);
-            underWay.erase(underWay.begin(), std::next(at));
-        } else if (!request->isOneway() || at == underWay.end()) {
-            release(*request);
-            if (at != underWay.end())
-                underWay.erase(at);
-        }
+        lanes_[request->lane].end(request, hasArrived);
         isAwaited = sent_.erase(request) != 0;
     }
     if (isAwaited)
@@ -422,11 +361,7 @@ void Forwarder::closed(int number, const Connection& connection) {
         std::lock_guard<std::mutex> lock(mutex_);
         Lane& lane = lanes_[number];
         if (lane.connection == connection) {
-            for (const auto& request : lane.underWay)
-                release(*request);
-            lane.underWay.clear();
-            lane.connection = nullptr;
-            lane.isConfirming = false;
+            lane.disconnect();
             refuses = holds_ && number == shortCalls;
             if (number == shortCalls) {
                 types_.clear();
@@ -525,15 +460,15 @@ void Forwarder::failLateRequests() {
     // vehicle replies late. A ping is therefore sent: its reply confirms that these calls have
     // arrived.
     for (int number = 0; number < lanes; ++number) {
-        Ice::Current last;
+        std::shared_ptr<Request> latest;
         {
             std::lock_guard<std::mutex> lock(mutex_);
-            if (isSending_ || lanes_[number].underWay.empty())
+            latest = lanes_[number].latest();
+            if (isSending_ || !latest)
                 continue;
-            last = lanes_[number].underWay.back()->current;
             isSending_ = true;
         }
-        confirm(number, last);
+        confirm(number, latest->current);
         {
             std::lock_guard<std::mutex> lock(mutex_);
             isSending_ = false;

@@ -3,17 +3,15 @@
 // forwarder: passes the requests of many clients to the vehicle, and the vehicle's requests back to
 // the clients.
 //
-// The clients' requests wait in queues (client_queues.h). On one connection, a short message would
-// wait for the long messages before it. There are therefore two connections to the vehicle, called
-// lanes: one for short calls, and one for calls that are long or have long replies. Few requests
-// are in flight on each lane. A one-way request counts as in flight until a reply to a later
-// request shows that it has arrived. Each request is sent at most once, and the requests of one
-// client are sent in order.
+// The clients' requests wait in queues (client_queues.h), and are sent on two connections to the
+// vehicle, called lanes (lane.h). Each request is sent at most once, and the requests of one client
+// are sent in order.
 
 #pragma once
 
 #include "addressees.h"
 #include "client_queues.h"
+#include "lane.h"
 #include "object_types.h"
 
 #include <array>
@@ -57,23 +55,11 @@ public:
 
 private:
     using Object = ObjectTypes::Object;
-    enum { shortCalls, longCalls, lanes };
-    struct Lane {
-        Connection connection;
-        // isMissing: the lane has no connection, because no channel was free
-        bool isConnecting = false, isMissing = false;
-        std::deque<std::shared_ptr<Request>> underWay; // requests that were sent, oldest first
-        // number of requests that have been chosen for sending or are in flight, and the sum of
-        // their bytes
-        size_t requests = 0, bytes = 0;
-        bool isConfirming = false;
-    };
     void forget(const Connection& connection);
     int laneOf(const Request& request) const;
     bool mayGo(const Client& client) const;
     int laneToConnect() const;
     std::shared_ptr<Request> nextRequest();
-    void release(Request& request);
     void send();
     void ask(const Connection& connection, const Object& object);
     void answered(const Object& object, bool isKnown, bool isMaintenance, std::exception_ptr why);
@@ -96,8 +82,8 @@ private:
     ClientQueues queues_{[this](const Connection& closed) { forget(closed); }};
     Addressees addressees_;
     ObjectTypes types_;
-    std::array<Lane, lanes> lanes_;
-    std::set<std::shared_ptr<Request>> sent_; // requests that have no reply yet
+    std::array<Lane, lanes> lanes_{Lane(1536), Lane(8192)}; // limits of the bytes in flight
+    std::set<std::shared_ptr<Request>> sent_;               // requests that have no reply yet
     // requests that may be sent now, in the order of sending
     std::deque<std::shared_ptr<Request>> ready_;
     std::set<std::pair<Ice::Identity, std::string>> longReplies_; // operations with long replies

@@ -5,9 +5,19 @@
 #include "reason.h"
 
 #include <cctype>
+#include <cerrno>
 #include <system_error>
 
 namespace gateway {
+
+namespace {
+
+std::exception_ptr unreachable(const std::string& why) {
+    return std::make_exception_ptr(Ice::UnknownLocalException(
+        __FILE__, __LINE__, "icesoc-gateway: cannot reach the vehicle: " + why));
+}
+
+} // namespace
 
 std::string nameInWords(const std::string& id) {
     std::string words;
@@ -58,6 +68,25 @@ std::exception_ptr inWords(std::exception_ptr why) {
     } catch (const Ice::LocalException& e) {
         return std::make_exception_ptr(
             Ice::UnknownLocalException(__FILE__, __LINE__, "icesoc-gateway: " + reasonOf(e)));
+    } catch (...) {
+        return why;
+    }
+}
+
+std::exception_ptr explained(std::exception_ptr why) {
+    try {
+        std::rethrow_exception(why);
+    } catch (const Ice::ConnectTimeoutException&) {
+        return unreachable("it does not answer: check that it is on, in range, and has the same "
+                           "key as this gateway");
+    } catch (const Ice::ConnectFailedException& e) {
+        return unreachable(e.error == EBUSY
+                               ? "another ground station with the same address is connected to it"
+                               : "the modem is lost or does not answer: check its cable and its "
+                                 "power; the gateway's log has the reason");
+    } catch (const Ice::ConnectionLostException&) {
+        return unreachable("the connection was lost during the call; the vehicle may have executed "
+                           "the call");
     } catch (...) {
         return why;
     }

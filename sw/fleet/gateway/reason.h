@@ -23,4 +23,9 @@ std::string reasonOf(const Ice::Exception& e);
 // protocol can express, such as "object does not exist", stay as they are.
 std::exception_ptr inWords(std::exception_ptr why);
 
+// Returns the exception that a client gets if its request could not be sent, or if the connection
+// was lost before the reply. If the connection to the vehicle has failed, the text of the exception
+// explains the error to the user.
+std::exception_ptr explained(std::exception_ptr why);
+
 } // namespace gateway

@@ -82,6 +82,8 @@ python3-yaml reads the CI workflows in tests
 ca-certificates verifies the servers of downloads: scripts of the pages, third-party cores
 gdb-multiarch debugs the firmware in the simulator
 qemu-system-arm runs the examples of docs/porting.md
+python3-argcomplete completes the words of ./icesoc in bash and zsh
+zsh shell in which the completion is tested
 gtkwave shows waveforms, and converts waveforms of failures for the page
 python3-sphinx renders the documentation site
 python3-myst-parser reads its Markdown pages

@@ -394,10 +394,16 @@ class Mistakes(Work):
                              ("make run CP", "CPU="), ("make run CPU=", "host m3"),
                              ("make test LABEL=firm", "firmware"),
                              ("make synth DESIGN=modem_ba", "modem_baud"),
-                             ("make run CORES=as", "ascon"), ("make run NONE=", "")):
+                             ("make run CORES=as", "ascon"), ("make run NONE=", ""),
+                             ("make run BOARD=xyn", "xynergy"),
+                             ("make -s run OUT='a b' LIVE=1 CPU=m", "m3")):
             self.assertEqual(quickly("./icesoc", _ICESOC_MAKE=line),
                              (0, "\n".join(wanted.split()) + "\n"), line)
+        # of a value of several words, the last one is completed
+        for line in ('make run CORES="fir as', "make run CORES='fir as", r"make run CORES=fir\ as"):
+            self.assertEqual(quickly("./icesoc", _ICESOC_MAKE=line), (0, "fir ascon\n"), line)
         for line, wanted in (("./icesoc core test f", "fir"), ("./icesoc run --cpu ", "host"),
+                             ("./icesoc run --board xy", "xynergy"),
                              ("./icesoc test --label firm", "firmware"),
                              ("./icesoc synth --design modem_ba", "modem_baud"),
                              ("./icesoc regress --name IsReportedOn", "IsReportedOnceWith")):

@@ -66,6 +66,12 @@ def flown(values=None):
     return [name for name in cores() if Path("ip", name, "ground.py").is_file()]
 
 
+def boards(values=None):
+    """Returns the names of the boards that are described in the folder boards/."""
+    from icesoc.board import model  # not part of the installed icesoc-call
+    return model.names()
+
+
 @expecting("the name of a design")
 def designs(values=None):
     """Returns the names that can be synthesised: designs of synth/designs.json, modules, entities,

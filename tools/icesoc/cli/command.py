@@ -11,7 +11,6 @@ import re
 import typing
 
 from icesoc.cli.options import ARGUMENTS, BUILT, SWITCH
-from icesoc.util.console import warn
 from icesoc.util.errors import Stop, nearest
 
 COMMANDS = {}  # name such as "core new" -> Command, in the order of declaration
@@ -217,59 +216,6 @@ def by_make(goal, goals, makes):
     chosen = sorted(of(goal), key=lambda each: not (each.when and os.environ.get(each.when)))
     found = next(each for each in chosen if not each.when or os.environ.get(each.when))
     return found, found.values({}, makes, os.getcwd())
-
-
-def complete():
-    """Completes the words in a shell, if Debian's argcomplete is installed."""
-    import argcomplete
-    top = argparse.ArgumentParser()
-    within = {"": top.add_subparsers()}
-    for name, each in COMMANDS.items():
-        first, _, last = name.rpartition(" ")
-        if first not in within:
-            group = within[""].add_parser(first, help=GROUPS[first])
-            if first in DEFAULTS:
-                COMMANDS[DEFAULTS[first]].parser(group)
-            within[first] = group.add_subparsers()
-        each.parser(within[first].add_parser(last, help=each.help))
-    argcomplete.autocomplete(top)
-
-
-def complete_make(line):
-    """Returns the words that may follow in a command line of make: goals, `VARIABLE=`, or values.
-    Bash treats = as the end of a word."""
-    words = line.split(" ")[1:]
-    last = words.pop()
-    goals = [word for word in words if word and "=" not in word and not word.startswith("-")]
-    commands = [each for each in COMMANDS.values() if each.make and each.make in goals]
-    options = {option.variable: option for each in commands for option in each.options
-               if option.listed}
-    name, has_value, prefix = last.partition("=")
-    if has_value:
-        return options[name].completions(prefix) if name in options else []
-    if commands:
-        return sorted(f"{variable}=" for variable in options if variable.startswith(last))
-    return sorted({each.make for each in COMMANDS.values() if (each.make or "").startswith(last)
-                   and each.make})
-
-
-def completion_code():
-    """Returns the code that a shell evaluates to complete ./icesoc, and make in this project."""
-    code = """
-_icesoc_make() {
-    [ -x ./icesoc ] && grep -qs '^# Makefile: .*icesoc' Makefile || return
-    local IFS=$'\\n'
-    COMPREPLY=($(_ICESOC_MAKE="${COMP_LINE:0:$COMP_POINT}" ./icesoc 2>/dev/null))
-    [ ${#COMPREPLY[@]} != 1 ] || [ "${COMPREPLY[0]%=}" = "${COMPREPLY[0]}" ] || compopt -o nospace
-}
-complete -o bashdefault -o default -F _icesoc_make make
-"""
-    try:
-        from argcomplete import shellcode
-    except ImportError:
-        warn("./icesoc setup --tests installs python3-argcomplete, which completes ./icesoc")
-        return code
-    return shellcode(["./icesoc"], shell="bash") + code
 
 
 def short(text, width):

@@ -65,7 +65,8 @@ FIELDS = [
            "the default to the board's modem", "s1"),
     Option("board", BOARD,
            "board of the vehicle: its name, its file board.toml, or a folder written by ./icesoc "
-           "board make; the vehicle then runs the ARM binary", ""),
+           "board make; the vehicle then runs the ARM binary", "",
+           choices=choices.boards, is_checked=False),
     Option("fault", WORDS,
            "faults of the vehicle's board, such as D3:open D1-D2:short NWE:late=12ns "
            "(docs/simulation.md); the vehicle then runs the ARM binary"),

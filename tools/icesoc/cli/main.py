@@ -11,7 +11,7 @@ import traceback
 from pathlib import Path
 
 from icesoc import TREE
-from icesoc.cli import command
+from icesoc.cli import command, completion
 from icesoc.util import spelling
 from icesoc.util.console import say, warn
 from icesoc.util.errors import Interrupted, Stop
@@ -66,9 +66,9 @@ def act(words):
     made = make_gave()
     declare(words)
     if "_ARGCOMPLETE" in os.environ:
-        return command.complete()
+        return completion.complete()
     if line := os.environ.get("_ICESOC_MAKE"):
-        return say("\n".join(command.complete_make(line)))
+        return say("\n".join(completion.complete_make(line)))
     if not words and (not made or made[0] == "help"):
         return say(command.overview())
     if made:

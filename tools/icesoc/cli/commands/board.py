@@ -4,6 +4,7 @@ from pathlib import Path
 
 from icesoc import TREE
 from icesoc.board import check, make, model, picture, wiring
+from icesoc.cli import choices
 from icesoc.cli.command import GROUPS, command
 from icesoc.cli.options import BOARD, FOLDER, SWITCH, Option
 from icesoc.regs.model import Wrong
@@ -14,12 +15,8 @@ GROUPS["board"] = "boards: wiring, constraints, pins, self-test"
 PAGES = TREE / "docs/boards"
 
 
-def complete_name(**_):
-    return model.names()
-
-
 NAME = Option("name", BOARD, "name of the board, such as nucleo-qmtech", "", positional=True,
-              completer=complete_name)
+              choices=choices.boards, is_checked=False)
 
 
 def read(values):

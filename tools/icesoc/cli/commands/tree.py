@@ -8,7 +8,7 @@ import time
 from pathlib import Path
 
 from icesoc import TREE
-from icesoc.cli import command as doors
+from icesoc.cli import command as doors, completion
 from icesoc.cli import flight, keys
 from icesoc.cli.command import COMMANDS, command
 from icesoc.cli.options import PATH, SWITCH, TEXT, Option
@@ -75,7 +75,7 @@ def clean(values):
            "run a quick example of every command, and write the results to build/commands.md"),
     Option("only", TEXT, "only commands with this text in their name", ""),
     Option("man", PATH, "write the manual page to this file, such as icesoc.1", ""),
-    Option("completion", SWITCH, "print code for bash, and zsh with bashcompinit, that completes "
+    Option("completion", SWITCH, "print code for bash or zsh that completes "
                                  "./icesoc and make"),
     Option("schema", PATH, "write the JSON schema of a flight to this file "
                            "(tools/icesoc/cli/flight.schema.json)", "")],
@@ -89,7 +89,7 @@ def commands(values):
     CI runs all quick examples.
     """
     if values.completion:
-        return say(doors.completion_code())
+        return say(completion.code())
     if values.man:
         Path(values.man).write_text(manual())
     if values.schema:

@@ -100,11 +100,11 @@ class Cases(Script):
     def test_counts(self):
         """The figures must agree with the sources of the blocks, and with Yosys' own `stat`."""
         # A package must be read before the module that uses it, and does not count as a design.
-        write("far/typed_sizes.sv", "package typed_sizes; typedef logic [2:0] t; endpackage\n")
-        write("far/typed.sv", "module typed(input logic clk_i, input typed_sizes::t d_i, output "
+        write("gen/typed_sizes.sv", "package typed_sizes; typedef logic [2:0] t; endpackage\n")
+        write("gen/typed.sv", "module typed(input logic clk_i, input typed_sizes::t d_i, output "
               "typed_sizes::t q_o); always_ff @(posedge clk_i) q_o <= d_i; endmodule\n")
         self.files = ";".join(str(Path(file).resolve()) for file in (
-            BLOCKS / "store.v", "far/typed_sizes.sv", "far/typed.sv"))
+            BLOCKS / "store.v", "gen/typed_sizes.sv", "gen/typed.sv"))
         write("gen/clocks.v", """module clocks (input clk_i, output pll_o, output reg q_o);
             wire clk;
             PLL_BASE u_pll (.CLKIN(clk_i), .CLKOUT0(pll_o)); // in Yosys' second library

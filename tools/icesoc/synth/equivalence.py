@@ -121,12 +121,12 @@ def solved(file, commands, is_plain, options, seconds):
         raise Stop(said)
     with open(f"{file}.aig", "rb") as aiger:
         has_state = aiger.readline().split()[3] != b"0"
-    # bmc3 finds most differences soon, and pdr then looks for a proof. If scorr has removed all
-    # registers, newer versions of pdr give no result, and sat is used instead. The option -T limits
-    # only the wall-clock time, which depends on the load of the machine; ulimit limits the CPU
-    # time.
+    # bmc3 finds most differences within a second, scorr proves most netlists that are equal, and
+    # bmc3 and pdr then decide the others. If scorr has removed all registers, newer versions of
+    # pdr give no result, and sat is used instead. The option -T limits only the wall-clock time,
+    # which depends on the load of the machine; ulimit limits the CPU time.
     whole, less = f"{file}.aig", f"{file}.less.aig"
-    steps = ([(whole, "bmc3 -F 20 -T 10"),
+    steps = ([(whole, "bmc3 -F 20 -T 1"),
               (whole, f"lcorr -C 30000; scorr; write_aiger {less}; bmc3 -F 50 -T {seconds // 5}"),
               (less, f"pdr -T {9 * seconds}; sat")] if has_state else
              [(whole, "ifraig; iprove; sat")])

@@ -50,9 +50,10 @@ esac
 search=$(for f in $folders "$gen"; do echo "-y $f -I$f"; done)
 libraries=$(for f in $folders "$gen"; do echo "-libdir $f"; done)
 each() { echo "$1" | tr , ' '; }
+# The script `verilator` only starts this program, and takes as long as the lint of a small module.
 verilate() { # variant [switches]
     # shellcheck disable=SC2086,SC2046
-    verilator --lint-only -Wall ${2-} $search --top-module "$module" \
+    verilator_bin --lint-only -Wall ${2-} $search --top-module "$module" \
         $(for p in $(each "$1"); do echo "-G$p"; done) "$file"
 }
 # elaboration VARIANT: prints the commands with which Yosys elaborates one variant. Modules below
@@ -68,13 +69,15 @@ checks=''
 for variant in '' $variants; do
     verilate "$variant"
     checks="$checks log variant $(each "$variant"); design -load read; $(elaboration "$variant")
-        proc; opt; check -assert; select -assert-none t:\$dlatch;"
+        proc; opt_clean; check -assert; select -assert-none t:\$dlatch;"
 done
 # The design is also linted with the cover points of coverage builds. It is linted without them as
 # well, because each signal must be used even without cover points.
 verilate '' '-DCOVER_POINTS --coverage --assert -Wno-SYNCASYNCNET'
-# One process for all variants, because starting Yosys takes longer than a variant.
-yosys -q -p "$read_file design -save read; $checks"
+# One process for all variants, in which the files below the top are read once: starting Yosys and
+# reading takes longer than the checks of a variant. Without optimisations, Yosys checks more logic
+# than with them, in less time.
+yosys -q -p "$read_file hierarchy $(echo $libraries); design -save read; $checks"
 icarus() { # [variant]
     # shellcheck disable=SC2086,SC2046
     iverilog -g2005 -Wall -Wno-timescale -t null $search -s "$module" \

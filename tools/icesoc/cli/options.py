@@ -248,7 +248,7 @@ MINUTES = number(0.001, unit="minutes", convert=float)
 BUILD = Option("build", FOLDER, "build folder", "build/main")
 JOBS = Option("jobs", COUNT, "number of parallel build processes", len(os.sched_getaffinity(0)))
 TESTS = Option("tests", COUNT,
-               "number of tests run in parallel (default: CPUs + 2, since some tests spend time "
+               "number of tests run in parallel (default: CPUs + 4, since some tests spend time "
                "waiting)", None)
 SEED = Option("seed", number(0), "seed of all random numbers", 1)
 FAMILY = Option("family", one_of("xc6s", "ecp5"), "FPGA family of netlists", "xc6s")

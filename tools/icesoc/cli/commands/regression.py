@@ -27,7 +27,7 @@ WAVES = Option("waves", number(0), "number of failures for which waveforms are r
 
 
 def at_once(values):
-    return values.tests or values.jobs + 2
+    return values.tests or values.jobs + 4
 
 
 def selection(values, *more):

@@ -58,7 +58,7 @@ TEST(AsconServant, SealsOpensAndHashes) {
     EXPECT_EQ(Cores_Ascon_setKey(&core.servant, &k, nullptr), ICE_UNKNOWN_EXCEPTION);
 }
 
-TEST(AsconServant, WhileTheCoreHangsNothingIsTakenForAnAnswer) {
+TEST(AsconServant, AHungCoreGivesNoResult) {
     CoreSlot<Vascon_slot> slot;
     static Ascon_Core core;
     ASSERT_EQ(Ascon_Core_init(&core, coreSlot, coreMemory, &slot.port, &slot), HW_OK);

@@ -93,7 +93,7 @@ AsconBytes together(const AsconSealed& sealed) {
     return bytes;
 }
 
-TEST(AsconModel, GivesTheKnownAnswers) {
+TEST(AsconModel, MatchesTheKnownAnswers) {
     EXPECT_EQ(aeadAnswers([](const AsconBytes& associated, const AsconBytes& message) {
                   return together(asconEncrypt(sixteen(0), sixteen(0x10), associated, message));
               }),
@@ -168,7 +168,7 @@ TEST_F(AsconTest, EqualsTheModelForRandomMessages) {
     }
 }
 
-TEST_F(AsconTest, ADigestWaitsForRoomInTheMemorysFifo) {
+TEST_F(AsconTest, ADigestWaitsForRoomInTheMemoryFifo) {
     auto message = counted(1, 30);
     auto digest = asconHash(message);
     memory_.store(source_, message);
@@ -236,7 +236,7 @@ TEST_F(AsconTest, WorksInPlace) {
     EXPECT_SAME(memory_.bytes(source_, 777), asconEncrypt(key, nonce, {}, message).text);
 }
 
-TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
+TEST_F(AsconTest, RefusesToStartWithoutAKeyOrAFreshNonce) {
     sizes(0, 4);
     auto start = [&](uint32_t how) {
         bus_.write(ASCON_CONTROL, how);
@@ -300,7 +300,7 @@ TEST_F(AsconTest, RefusesWithoutKeyOrFreshNonce) {
     EXPECT_EQ(start(ASCON_CONTROL_HASH_MASK), ASCON_EVENT_DONE_MASK);
 }
 
-TEST_F(AsconTest, SettingsWrittenBehindTheStartAreIgnored) {
+TEST_F(AsconTest, SettingsWrittenAfterTheStartAreIgnored) {
     auto key = randomKey(), nonce = randomKey();
     put(ASCON_KEY, key);
     for (int clocks = 0; clocks < 300; clocks += 7) {
@@ -323,7 +323,7 @@ TEST_F(AsconTest, SettingsWrittenBehindTheStartAreIgnored) {
     }
 }
 
-TEST_F(AsconTest, AbortEndsAMessageAndLeavesNoPlaintext) {
+TEST_F(AsconTest, AnAbortLeavesNoPlaintext) {
     auto key = randomKey(), nonce = randomKey();
     auto message = random(3000);
     put(ASCON_KEY, key);
@@ -344,7 +344,7 @@ TEST_F(AsconTest, AbortEndsAMessageAndLeavesNoPlaintext) {
     EXPECT_SAME(memory_.bytes(target_, 3000), message);
 }
 
-TEST_F(AsconTest, SpeedWhenTheMemoryKeepsUp) {
+TEST_F(AsconTest, ReachesItsRateIfTheMemoryKeepsUp) {
     memory_.setStall(0);
     put(ASCON_KEY, sixteen(0));
     auto clocksOf = [&](uint32_t how, size_t size) {

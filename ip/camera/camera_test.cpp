@@ -112,7 +112,7 @@ TEST_F(CameraTest, EveryFrameIsInMemoryAsTheSensorSentIt) {
     }
 }
 
-TEST_F(CameraTest, FramesMayBeAsWideAndAsHighAsTheRegistersSay) {
+TEST_F(CameraTest, FramesMayHaveTheLargestSizeOfTheRegisters) {
     sensor_ = SensorModel({60, 1});
     for (auto [wide, lines] : {std::pair{8, 4095}, {2048, 1}, {2040, 2}, {8, 1}}) {
         configure(static_cast<uint32_t>(wide), static_cast<uint32_t>(lines));
@@ -152,7 +152,7 @@ TEST_F(CameraTest, FramesAreCountedModulo65536) {
     }
 }
 
-TEST_F(CameraTest, FramesCloseTogetherAreAllCaught) {
+TEST_F(CameraTest, FramesWithShortGapsAreAllCaptured) {
     sensor_ = SensorModel({70, 3});
     start();
     std::vector<uint8_t> last;
@@ -163,7 +163,7 @@ TEST_F(CameraTest, FramesCloseTogetherAreAllCaught) {
     expectAt(latest(), last);
 }
 
-TEST_F(CameraTest, BrokenFramesAreToldAndNeverHandedOn) {
+TEST_F(CameraTest, BrokenFramesAreReportedAndNeverPassedOn) {
     start();
     auto good = picture();
     sensor_.addFrame(good, width, height);
@@ -194,7 +194,7 @@ TEST_F(CameraTest, BrokenFramesAreToldAndNeverHandedOn) {
         << "a frame with too many lines is complete, and is not dropped";
 }
 
-TEST_F(CameraTest, AMemoryThatIsTooSlowIsToldAndTheNextFrameIsRight) {
+TEST_F(CameraTest, ASlowMemoryIsReportedAndTheNextFrameIsCorrect) {
     start();
     memory_.hold(true);
     sensor_.addFrame(picture(), width, height);
@@ -214,7 +214,7 @@ TEST_F(CameraTest, AMemoryThatIsTooSlowIsToldAndTheNextFrameIsRight) {
     expectAt(latest(), pixels);
 }
 
-TEST_F(CameraTest, TheFrameThatAnotherCoreHasIsNotOverwritten) {
+TEST_F(CameraTest, AFrameInUseByAnotherCoreIsNotOverwritten) {
     start();
     auto pixels = picture();
     sensor_.addFrame(pixels, width, height);
@@ -241,7 +241,7 @@ TEST_F(CameraTest, TheFrameThatAnotherCoreHasIsNotOverwritten) {
 
 // In each run, the core completes the next frame in a different clock. The frame that the other
 // core has taken must be complete, and must not change until the other core takes the next frame.
-TEST_F(CameraTest, AnotherCoreTakesAFrameInAnyClock) {
+TEST_F(CameraTest, AnotherCoreMayClaimAFrameInAnyClock) {
     constexpr int w = 8, h = 1;
     slowest_ = 1;
     configure(w, h);
@@ -286,7 +286,7 @@ TEST_F(CameraTest, StopsAndStartsInTheMiddleOfAFrame) {
     }
 }
 
-TEST_F(CameraTest, RefusesWhatItCannotCapture) {
+TEST_F(CameraTest, RefusesInvalidSettings) {
     auto refused = [&] {
         start();
         // the settings are checked in the clock of START; REFUSED is set one clock later, and stays
@@ -326,7 +326,7 @@ TEST_F(CameraTest, RefusesWhatItCannotCapture) {
     EXPECT_TRUE(bus_.transfer(false, 11, 0).error);
 }
 
-TEST_F(CameraTest, APixelEachFabricClockWhenTheMemoryKeepsUp) {
+TEST_F(CameraTest, StoresOnePixelPerClockIfTheMemoryKeepsUp) {
     constexpr uint32_t wide = 2048, lines = 6, words = wide / 8;
     memory_.setStall(0);
     configure(wide, lines);

@@ -43,7 +43,7 @@ protected:
     int saturations_ = 0;
 };
 
-TEST_F(FirCore, EqualsTheModelAndGoesOnFromCallToCall) {
+TEST_F(FirCore, EqualsTheModelAcrossSeveralCalls) {
     Random random(testSeed());
     for (int round = 0; round < 60; ++round) {
         if (round % 4 == 0)
@@ -57,7 +57,7 @@ TEST_F(FirCore, EqualsTheModelAndGoesOnFromCallToCall) {
     EXPECT_GT(model_.saturations, 0u);
 }
 
-TEST_F(FirCore, TheAnswerToAnImpulseIsTheCoefficients) {
+TEST_F(FirCore, TheImpulseResponseEqualsTheCoefficients) {
     for (int k = 0; k < 16; ++k)
         core_.setCoefficient(static_cast<Ice_Byte>(k), 100 * k - 800);
     for (int k = 16; k < 256; ++k)
@@ -82,7 +82,7 @@ TEST_F(FirCore, BuffersMayBeAnywhereInMemory) {
     }
 }
 
-TEST_F(FirCore, EveryResultMayBeTooLarge) {
+TEST_F(FirCore, EveryResultMaySaturate) {
     for (size_t k = 0; k < FirModel::taps; ++k) {
         model_.coefficients[k] = 131071;
         core_.setCoefficient(static_cast<Ice_Byte>(k), 131071);
@@ -91,13 +91,13 @@ TEST_F(FirCore, EveryResultMayBeTooLarge) {
     EXPECT_EQ(saturations_, 256);
 }
 
-TEST_F(FirCore, HasNoWordBehindItsResults) {
+TEST_F(FirCore, AccessesAfterTheLastRegisterAreErrors) {
     for (unsigned word = 0; word < 16; ++word)
         for (bool write : {false, true})
             EXPECT_EQ(core_.bus_.transfer(write, word, 0).error, word > FIR_FILTER_OUT1) << word;
 }
 
-TEST_F(FirCore, RefusesNothingAtAllAndTooMuch) { // a block has at most 256 samples
+TEST_F(FirCore, RefusesEmptyAndTooLongBlocks) { // a block has at most 256 samples
     auto statusOf = [&](size_t count) {
         try {
             filter(std::vector<Ice_Short>(count));
@@ -111,7 +111,7 @@ TEST_F(FirCore, RefusesNothingAtAllAndTooMuch) { // a block has at most 256 samp
     EXPECT_EQ(statusOf(256), ICE_OK);
 }
 
-TEST_F(FirCore, WhatIsGivenUpLeavesTheMemoryPortInOrder) {
+TEST_F(FirCore, AnAbortedCallLeavesTheMemoryPortUsable) {
     Random random(testSeed());
     auto list = random.items<Ice_Short>(256);
     for (int clocks = 1; clocks < 190; clocks += 7) {
@@ -128,7 +128,7 @@ TEST_F(FirCore, WhatIsGivenUpLeavesTheMemoryPortInOrder) {
     }
 }
 
-TEST_F(FirCore, ACountWrittenBehindTheStartDoesNotChangeTheCall) {
+TEST_F(FirCore, ACountWrittenAfterTheStartDoesNotChangeTheCall) {
     Random random(testSeed());
     const uint32_t results = 512; // byte offset of the results; the samples are in front of them
     for (int clocks = 10; clocks < 100; clocks += 7) {
@@ -151,7 +151,7 @@ TEST_F(FirCore, ACountWrittenBehindTheStartDoesNotChangeTheCall) {
     }
 }
 
-TEST_F(FirCore, OneSampleAClockWhenTheMemoryKeepsUp) {
+TEST_F(FirCore, ProcessesOneSamplePerClockIfTheMemoryKeepsUp) {
     core_.memory_.setStall(0);
     // Starts the core again on data that is already in memory, so copying is not counted. The
     // difference between a long and a short block leaves only the time per sample.

@@ -129,7 +129,7 @@ protected:
 using Widths = ::testing::Types<Vprobe_1, Vprobe_slot, Vprobe_4>;
 TYPED_TEST_SUITE(ProbeTest, Widths);
 
-TYPED_TEST(ProbeTest, StoresWhatWasThereBeforeAndAfterTheTrigger) {
+TYPED_TEST(ProbeTest, StoresSamplesBeforeAndAfterTheTrigger) {
     ASSERT_EQ(this->arm(0x15, 0x11, true, 300), ICE_OK);
     this->slot_.bus_.write(PROBE_BASE, coreMemory + (1u << PROBE_LOG2_BYTES)); // too late
     auto s = this->finish();
@@ -146,7 +146,7 @@ TYPED_TEST(ProbeTest, StoresWhatWasThereBeforeAndAfterTheTrigger) {
     EXPECT_EQ(s.clkHz, 100000000);
 }
 
-TYPED_TEST(ProbeTest, ALevelThatIsThereTriggersAtOnce) {
+TYPED_TEST(ProbeTest, APresentLevelTriggersAtOnce) {
     ASSERT_EQ(this->arm(0, 0, false, 4), ICE_OK); // the last burst to memory is not full
     auto s = this->finish();
     EXPECT_EQ(s.trigger, 0);
@@ -154,7 +154,7 @@ TYPED_TEST(ProbeTest, ALevelThatIsThereTriggersAtOnce) {
     this->expectGiven(this->capture(s));
 }
 
-TYPED_TEST(ProbeTest, AnEdgeIsNoLevel) {
+TYPED_TEST(ProbeTest, AnEdgeTriggerNeedsAChange) {
     this->quiet_ = 1u << 31; // signals change only when the test sets them
     auto become = [&](uint32_t value) {
         this->value_[0] = value;
@@ -173,7 +173,7 @@ TYPED_TEST(ProbeTest, AnEdgeIsNoLevel) {
 
 // No test can detect whether `settled` in probe.v stops at 7 or wraps around: the capture would
 // only end up to 7 clocks later, and flushing a second time has no effect.
-TYPED_TEST(ProbeTest, TheRingKeepsTheNewest) {
+TYPED_TEST(ProbeTest, TheRingKeepsTheNewestSamples) {
     this->quiet_ = 2 * this->words;
     ASSERT_EQ(this->arm(0, 1, true, static_cast<int>(this->ring) - 100),
               // with mask 0 the condition is always met, so it never changes, and an edge never
@@ -191,7 +191,7 @@ TYPED_TEST(ProbeTest, TheRingKeepsTheNewest) {
     this->expectGiven(all);
 }
 
-TYPED_TEST(ProbeTest, SaysWhereChangesWereLost) {
+TYPED_TEST(ProbeTest, ReportsLostChanges) {
     this->quiet_ = 1;
     this->slot_.memory_.hold(true);
     ASSERT_EQ(this->arm(0, 0, false, 2000), ICE_OK);
@@ -207,7 +207,7 @@ TYPED_TEST(ProbeTest, SaysWhereChangesWereLost) {
         ASSERT_EQ(all[i + 1].clock - all[i].clock <= 3, true) << i;
 }
 
-TYPED_TEST(ProbeTest, CountsOnWhereTheClockCountTurnsRound) {
+TYPED_TEST(ProbeTest, TimesAreCorrectAfterTheClockCountOverflows) {
     this->quiet_ = 1u << 31; // no signal changes by itself
     this->cycles_ = 0x7FFFFF00;
     ASSERT_EQ(this->arm(0, 0, false, 2), ICE_OK);
@@ -221,7 +221,7 @@ TYPED_TEST(ProbeTest, CountsOnWhereTheClockCountTurnsRound) {
     EXPECT_EQ(all[2].clock + 2, 0x100000000u);
 }
 
-TYPED_TEST(ProbeTest, RefusesWhatIsNotThere) {
+TYPED_TEST(ProbeTest, RefusesSignalsThatDoNotExist) {
     EXPECT_EQ(this->arm(0, 0, false, -1), ICE_UNKNOWN_EXCEPTION);
     EXPECT_EQ(this->arm(0, 0, false, static_cast<int>(this->ring)), ICE_UNKNOWN_EXCEPTION);
     EXPECT_EQ(this->state().phase, Probes_off);
@@ -239,7 +239,7 @@ TYPED_TEST(ProbeTest, RefusesWhatIsNotThere) {
               HW_UNALIGNED);
 }
 
-TYPED_TEST(ProbeTest, BeginsAnewWhileACaptureIsUnderWay) {
+TYPED_TEST(ProbeTest, ANewCaptureReplacesTheCurrentOne) {
     for (int round = 0; round < 20; ++round) {
         this->quiet_ = 1 + this->random_.below(8);
         ASSERT_EQ(this->arm(0, 1, true, 5), ICE_OK);

@@ -93,7 +93,7 @@ protected:
     std::vector<uint8_t> pixels_;
 };
 
-TEST_F(VisionServant, GivesTheStrongestCornersOfThePicture) {
+TEST_F(VisionServant, ReturnsTheStrongestCornersOfThePicture) {
     for (int i = 0; i < 4; ++i) {
         loadAtHeader();
         ASSERT_EQ(start(), ICE_OK);
@@ -110,7 +110,7 @@ TEST_F(VisionServant, GivesTheStrongestCornersOfThePicture) {
                   ICE_UNKNOWN_EXCEPTION);
 }
 
-TEST_F(VisionServant, TakesTheCamerasFramesWhereThereIsOne) {
+TEST_F(VisionServant, UsesTheFramesOfTheCameraIfThereIsOne) {
     useCamera();
     auto& top = slot_.bench_.top();
     for (uint32_t buffer : {1u, 3u, 2u}) {
@@ -124,7 +124,7 @@ TEST_F(VisionServant, TakesTheCamerasFramesWhereThereIsOne) {
     }
 }
 
-TEST_F(VisionServant, AFrameThatTheCoreRefusesIsAnError) {
+TEST_F(VisionServant, AFrameRefusedByTheCoreIsAnError) {
     header(12, height);
     ASSERT_EQ(start(), ICE_OK);
     EXPECT_EQ(result(), ICE_UNKNOWN_EXCEPTION);
@@ -138,7 +138,7 @@ TEST_F(VisionServant, AFrameThatTheCoreRefusesIsAnError) {
     expectCorners();
 }
 
-TEST_F(VisionServant, AFrameThatWasGivenUpHasNoResult) {
+TEST_F(VisionServant, AnAbortedFrameHasNoResult) {
     loadAtHeader();
     ASSERT_EQ(start(), ICE_OK);
     for (int i = 0; i < 1500; ++i)
@@ -152,7 +152,7 @@ TEST_F(VisionServant, AFrameThatWasGivenUpHasNoResult) {
     expectCorners();
 }
 
-TEST_F(VisionServant, ACameraThatSendsNoFrameIsNotWaitedForAgain) {
+TEST_F(VisionServant, AMissingFrameOfTheCameraIsAwaitedOnlyOnce) {
     useCamera();
     ASSERT_EQ(start(), ICE_OK);
     EXPECT_EQ(result(), ICE_TIMEOUT);

@@ -76,7 +76,7 @@ TEST_F(VisionTest, EqualsTheModelForManySizesAndThresholds) {
         }
 }
 
-TEST_F(VisionTest, OnePixelAClockWhenTheMemoryKeepsUp) {
+TEST_F(VisionTest, ProcessesOnePixelPerClockIfTheMemoryKeepsUp) {
     Random random(testSeed());
     memory_.setStall(0);
     load(picture(128, 64, random));
@@ -87,7 +87,7 @@ TEST_F(VisionTest, OnePixelAClockWhenTheMemoryKeepsUp) {
     EXPECT_LT(perPixel, 1.2);
 }
 
-TEST_F(VisionTest, StoresAtMostWhatItIsTold) {
+TEST_F(VisionTest, StoresAtMostTheSetNumberOfCorners) {
     Random random(testSeed());
     auto pixels = picture(64, 48, random);
     load(pixels);
@@ -102,7 +102,7 @@ TEST_F(VisionTest, StoresAtMostWhatItIsTold) {
     EXPECT_EQ(memory_.byte(resultBase_ + 40), 0) << "the core wrote beyond the fifth corner";
 }
 
-TEST_F(VisionTest, SettingsWrittenWhileBusyAreTheNextFrames) {
+TEST_F(VisionTest, SettingsWrittenWhileBusyApplyToTheNextFrame) {
     Random random(testSeed());
     auto pixels = picture(64, 48, random);
     load(pixels);
@@ -117,7 +117,7 @@ TEST_F(VisionTest, SettingsWrittenWhileBusyAreTheNextFrames) {
     EXPECT_EQ(bus_.read(VISION_THRESHOLD), 90u);
 }
 
-TEST_F(VisionTest, RefusesWhatItCannotTake) {
+TEST_F(VisionTest, RefusesInvalidSettings) {
     for (auto [width, height] : {std::pair{12, 16}, {0, 16}, {1032, 16}, {16, 7}}) {
         start(width, height, 10);
         EXPECT_EQ(finish(), VISION_EVENT_REFUSED_MASK) << width << " x " << height;
@@ -129,7 +129,7 @@ TEST_F(VisionTest, RefusesWhatItCannotTake) {
     EXPECT_EQ(finish(), VISION_EVENT_REFUSED_MASK);
 }
 
-TEST_F(VisionTest, AbortEndsAFrameAndTheNextIsRight) {
+TEST_F(VisionTest, AnAbortEndsAFrameAndTheNextIsCorrect) {
     Random random(testSeed());
     auto pixels = picture(64, 48, random);
     load(pixels);
@@ -143,7 +143,7 @@ TEST_F(VisionTest, AbortEndsAFrameAndTheNextIsRight) {
     EXPECT_TRUE(results() == detectCorners(pixels.data(), 64, 48, 20));
 }
 
-TEST_F(VisionTest, FollowsAnotherCoresFramesAndWaitsForItsReader) {
+TEST_F(VisionTest, ProcessesFramesOfAnotherCore) {
     Random random(testSeed());
     constexpr uint32_t stride = 64 * 48;
     auto& top = bench_.top();
@@ -177,7 +177,7 @@ TEST_F(VisionTest, FollowsAnotherCoresFramesAndWaitsForItsReader) {
     EXPECT_EQ(bus_.read(VISION_MODE), 0u);
 }
 
-TEST_F(VisionTest, IdentifiesItselfAndHasAllWords) {
+TEST_F(VisionTest, IdentifiesItselfAndHasAllRegisters) {
     EXPECT_EQ(bus_.read(VISION_ID), VISION_ID_VALUE);
     for (unsigned word = 0; word < 16; ++word)
         EXPECT_FALSE(bus_.transfer(false, word, 0).error) << word;

@@ -13,12 +13,12 @@ import tempfile
 
 from figures import figure, leave
 
-CALL = "Tags/CallBytes.ACallAndItsReplyTakeFewerThanMavlink/"
-HOSTILE = "Vehicles/Attacked.NothingHostileIsAcceptedAndNothingLegalLostOrDoubled/"
+CALL = "Tags/CallBytes.ACallAndItsReplyTakeFewerBytesThanMavlink/"
+HOSTILE = "Vehicles/Attacked.NoForgedMessageIsAcceptedAndNoValidMessageIsLostOrDuplicated/"
 FIGURES = [  # program, names of the tests, property that the tests record, text in the table
-    (0, "Update.WhereverThePowerIsCutThereIsAnImageThatBoots", "cuts",
+    (0, "Update.APowerLossAtAnyPointLeavesABootableImage", "cuts",
      "new firmware: power losses, in each operation and later"),
-    (0, "Fpga.WhereverThePowerIsCutABitstreamConfiguresIt", "cuts",
+    (0, "Fpga.APowerLossAtAnyPointLeavesABootableBitstream", "cuts",
      "new bitstream: power losses, in each operation and later"),
     (1, HOSTILE + "0:" + HOSTILE + "1", "packets", "hostile packets"),
     (1, CALL + "0", "bytes",

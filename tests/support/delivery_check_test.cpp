@@ -21,7 +21,7 @@ protected:
     DeliveryCheck check_;
 };
 
-TEST_F(Delivery, MessagesThatArriveOnceInOrderAreRight) {
+TEST_F(Delivery, MessagesThatArriveOnceAndInOrderPass) {
     EXPECT_EQ(check_.arrived(1, three), ""); // another stream
     EXPECT_EQ(check_.arrived(0, one), "");
     EXPECT_EQ(check_.arrived(0, 2, two), "");
@@ -31,7 +31,7 @@ TEST_F(Delivery, MessagesThatArriveOnceInOrderAreRight) {
     EXPECT_EQ(check_.arrivals(), 3u);
 }
 
-TEST_F(Delivery, EachFaultIsFound) {
+TEST_F(Delivery, EachFaultIsDetected) {
     EXPECT_EQ(check_.arrived(0, {2, 3}), "a message is wrong");
     EXPECT_EQ(check_.arrived(0, 2, {2}), "message 2 is wrong");
     EXPECT_EQ(check_.arrived(0, three), "a message is wrong"); // a message of another stream
@@ -53,7 +53,7 @@ TEST_F(Delivery, OnlyAMessageWithAnUnknownOutcomeMayBeSkipped) {
     EXPECT_EQ(check_.arrived(0, 1, one), "message 1 is out of order");
 }
 
-TEST_F(Delivery, ASenderThatRestartsKnowsNoOutcome) {
+TEST_F(Delivery, ARestartedSenderKnowsNoOutcome) {
     EXPECT_EQ(check_.forget(0), 2u);
     EXPECT_NE(check_.reported(1, false), "");
     EXPECT_EQ(check_.arrived(0, two), "");
@@ -66,7 +66,7 @@ TEST_F(Delivery, AMessageArrivesAtOneOfTwoReceiversWithOneAddress) {
     EXPECT_EQ(check_.arrived(0, two, 1), "");
 }
 
-TEST_F(Delivery, OldMessagesAreForgottenAndNewOnesStayRight) {
+TEST_F(Delivery, OldMessagesAreForgottenWithoutErrors) {
     EXPECT_EQ(check_.forget(0), 2u);
     for (uint32_t id = 10; id < 30'010; ++id) {
         check_.sent(0, id, {uint8_t(id), uint8_t(id >> 8)});
@@ -76,7 +76,7 @@ TEST_F(Delivery, OldMessagesAreForgottenAndNewOnesStayRight) {
     EXPECT_EQ(check_.arrived(0, one), "a message is wrong");
 }
 
-TEST(Environment, ANumberIsReadAndAnythingElseIsNamed) {
+TEST(Environment, OnlyNumbersAreAccepted) {
     const auto number = [](const char* text) {
         setenv("ICESOC_NUMBER", text, 1);
         return numberFromEnvironment("ICESOC_NUMBER", 5);

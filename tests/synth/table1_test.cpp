@@ -54,7 +54,7 @@ protected:
     FsmcMaster& fsmc_ = chip_.fsmc();
 };
 
-TEST_F(Table1, MemoryIsAsItWasWritten) {
+TEST_F(Table1, MemoryKeepsWrittenData) {
     Random random(testSeed());
     for (int i = 0; i < 500; ++i) {
         const uint32_t place = random.below(1 << 24) << 2, value = random.next();
@@ -64,7 +64,7 @@ TEST_F(Table1, MemoryIsAsItWasWritten) {
     }
 }
 
-TEST_F(Table1, TheModemIsSetUpAndPacketsGoBothWays) {
+TEST_F(Table1, TheModemIsSetUpAndPacketsPassInBothDirections) {
     EXPECT_EQ(read(MODEM_ID), MODEM_ID_VALUE);
     write(MODEM_MASK, 0x7F);
     write(MODEM_ADDR, 0x0000u << 16 | 0x0001u);

@@ -8,7 +8,7 @@
 
 namespace {
 
-TEST(Polar, AnglesAreThoseOfAtan2) {
+TEST(Polar, AnglesMatchAtan2) {
     PolarProxy<Vpolar_slot> core;
     for (int degrees = -179; degrees < 180; degrees += 7) {
         const double radians = degrees * M_PI / 180;

@@ -66,7 +66,7 @@ TYPED_TEST(Memory, FullSpeedTrafficOfEverySizeEqualsTheReference) {
     this->run(20000);
 }
 
-TYPED_TEST(Memory, ReadersThatTakeTheirWordsAtOnceMayAskForMoreThanAFifoHolds) {
+TYPED_TEST(Memory, FastReadersMayRequestMoreThanAFifoHolds) {
     NpiTraffic traffic;
     traffic.outstanding = 200;
     traffic.writes = 0.2;
@@ -75,7 +75,7 @@ TYPED_TEST(Memory, ReadersThatTakeTheirWordsAtOnceMayAskForMoreThanAFifoHolds) {
     this->run(20000);
 }
 
-TYPED_TEST(Memory, RequestersThatTakeTheirWordsSlowlyLoseNone) {
+TYPED_TEST(Memory, SlowReadersLoseNoWord) {
     NpiTraffic traffic;
     traffic.writes = 0.1;
     traffic.pop = 0.05;
@@ -83,7 +83,7 @@ TYPED_TEST(Memory, RequestersThatTakeTheirWordsSlowlyLoseNone) {
     this->run(20000);
 }
 
-TYPED_TEST(Memory, WordsThatArePushedSlowlyDoNotHoldOthersUp) {
+TYPED_TEST(Memory, SlowWritersDoNotDelayOtherPorts) {
     NpiTraffic slow;
     slow.writes = 1;
     slow.push = 0.02;
@@ -95,7 +95,7 @@ TYPED_TEST(Memory, WordsThatArePushedSlowlyDoNotHoldOthersUp) {
               5 * this->memory_.requesters.counters(0).requests);
 }
 
-TYPED_TEST(Memory, AddressesOfTheWholeMemoryAndBitsAboveIt) {
+TYPED_TEST(Memory, TheWholeMemoryIsAddressableAndHigherBitsAreIgnored) {
     uint64_t seed = testSeed();
     auto memory = std::make_unique<typename TypeParam::Whole>(seed);
     NpiTraffic traffic;
@@ -106,7 +106,7 @@ TYPED_TEST(Memory, AddressesOfTheWholeMemoryAndBitsAboveIt) {
     ASSERT_NO_THROW(memory->run(5000); memory->drain()) << "SEED=" << seed;
 }
 
-TEST(Calibration, ARequestWaitsForItAndInitDoneTellsOfIt) {
+TEST(Calibration, RequestsWaitUntilCalibrationSetsInitDone) {
     constexpr uint64_t data = 0x1122334455667788;
     constexpr uint32_t address = 0x40;
     Bench<VMemoryMcb2> bench;

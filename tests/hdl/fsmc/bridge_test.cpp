@@ -28,14 +28,14 @@ TEST_F(Bridge, TheDriverCopiesAnyLengthToAnyAddress) {
     }
 }
 
-TEST_F(Bridge, ADoorbellMakesWritesVisibleAndReadsFresh) {
+TEST_F(Bridge, ADoorbellFlushesWritesAndDiscardsReadAheadData) {
     doorbellMakesWritesVisibleAndReadsFresh();
 }
 
 // The read begins one HCLK cycle after NWE's edge, sooner than the driver's BUSTURN allows. The
 // read must return the written value, even if the synchroniser passes the write a clock late and
 // the read in time (hdl.cdc.test_fsmc_pins).
-TEST_F(Bridge, ARegisterReadRightBehindAWriteComesAfterIt) {
+TEST_F(Bridge, ARegisterReadAfterAWriteReturnsTheNewValue) {
     Random random(testSeed());
     FSMC_setHclk(120000000);
     for (unsigned i = 0; i < 300 && !HasFailure(); ++i) {
@@ -60,11 +60,11 @@ TEST_F(Bridge, ARegisterReadRightBehindAWriteComesAfterIt) {
     EXPECT_EQ(b_.errors, 0u);
 }
 
-TEST_F(Bridge, AnErrorOfTheSlaveIsReportedWithItsPlace) {
+TEST_F(Bridge, ASlaveErrorIsReportedWithItsAddress) {
     errorOfTheSlaveIsReportedWithItsPlace();
 }
 
-TEST_F(Bridge, AHungSlaveEndsInAnErrorAndTheBridgeGoesOn) {
+TEST_F(Bridge, AHungSlaveCausesAnErrorAndTheBridgeContinues) {
     hungSlaveEndsInAnError();
 }
 
@@ -100,7 +100,7 @@ TEST_F(Bridge, ARegisterWrittenTooEarlyIsLostAndReported) {
     }
 }
 
-TEST_F(Bridge, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
+TEST_F(Bridge, AHungMemoryCausesAnErrorAndTheBridgeContinues) {
     readOfAHungMemoryEndsInAnError();
     memoryWorksAgain();
 }
@@ -108,7 +108,7 @@ TEST_F(Bridge, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
 // If the queue has no room for a write, the bridge reports an error and ends the access, as it does
 // for a read without an answer. Two entries of the queue are reserved for such writes. When these
 // entries are also full, further writes are lost.
-TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
+TEST_F(Bridge, WritesToAHungMemoryCauseErrorsAndTheBridgeContinues) {
     b_.keepEvents();
     const uint32_t& event = b_.slave.words[b_.slave.clearWord];
     auto value = [](unsigned i) { return static_cast<uint16_t>(0xA000 + i); };
@@ -137,7 +137,7 @@ TEST_F(Bridge, WritesToAHungMemoryEndInErrorsAndTheBridgeGoesOn) {
 
 // Accesses to registers wait for posted writes. If a memory does not accept these writes, this is
 // reported, and the access to the register continues.
-TEST_F(Bridge, AHungMemoryDoesNotKeepRegistersAway) {
+TEST_F(Bridge, RegistersRemainAccessibleWhileTheMemoryHangs) {
     b_.memory.hold(true);
     fsmc_.write16(ddr + 0x40, 0x1234);
     EXPECT_EQ(fsmc_.read32(at(0)), SYSTEM_ID_VALUE);
@@ -148,7 +148,7 @@ TEST_F(Bridge, AHungMemoryDoesNotKeepRegistersAway) {
     EXPECT_EQ(b_.errors, errors);
 }
 
-TEST_F(Bridge, AnAccessThatIsGivenUpLeavesNothingHalfDone) {
+TEST_F(Bridge, AnAbortedAccessIsDoneCompletelyOrNotAtAll) {
     Random random(testSeed());
     for (int i = 0; i < 400; ++i) {
         uint32_t value = random.next(), other = random.next();
@@ -182,7 +182,7 @@ TEST_F(Bridge, AnAccessThatIsGivenUpLeavesNothingHalfDone) {
 
 // With the fastest timing and without NWAIT, the data is correct if the memory keeps up; otherwise
 // the bridge reports the loss.
-TEST_F(Bridge, StreamsAreRightHoweverSlowTheMemoryIs) {
+TEST_F(Bridge, StreamsAreCorrectWithASlowMemory) {
     Random random(testSeed());
     FSMC_setHclk(120000000);
     b_.keepEvents();
@@ -207,7 +207,7 @@ TEST_F(Bridge, StreamsAreRightHoweverSlowTheMemoryIs) {
 
 // At an HCLK of 120 MHz, edges of NWE are 33.3 ns apart. With other ratios of the clocks, the edges
 // have every phase relative to the bridge clock.
-TEST(BridgeRatios, WritesOfAStreamAreTakenAtEveryPhase) {
+TEST(BridgeRatios, StreamWritesAreAcceptedAtEveryPhase) {
     Random random(testSeed());
     for (auto [hclk, clk] :
          {std::pair(120u, 100u), {1199u, 1000u}, {1000u, 999u}, {1083u, 1000u}}) {
@@ -225,7 +225,7 @@ TEST(BridgeRatios, WritesOfAStreamAreTakenAtEveryPhase) {
     }
 }
 
-TEST_F(Bridge, TheDriverTurnsThePageAndTellsOfTheFirstBusError) {
+TEST_F(Bridge, TheDriverSetsThePageAndReportsTheFirstBusError) {
     uint32_t* words = b_.slave.words.data() + MAP_SLOT_SYSTEM * 16;
     const uint8_t out[] = {1, 2, 3, 4};
     for (uint32_t page : {5u, 0u}) {
@@ -246,7 +246,7 @@ TEST_F(Bridge, TheDriverTurnsThePageAndTellsOfTheFirstBusError) {
         << "exactly the reported event must be set";
 }
 
-TEST_F(Bridge, OtherChipsOnTheBusAreLeftAlone) {
+TEST_F(Bridge, AccessesToOtherChipsAreIgnored) {
     constexpr uint32_t other = 0x68000000; // NE3
     fsmc_.write32(0xA0000010, 0x00001091);
     fsmc_.write32(0xA0000014, 0x00010805);

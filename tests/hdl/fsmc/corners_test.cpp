@@ -39,7 +39,7 @@ TEST(Corners, NoAccessIsLostWithTheDriversTiming) {
 }
 
 // NOE falls after the address phase, so NWAIT of a read comes late. Therefore DATAST is 6.
-TEST(Corners, EveryModeWithTimeForNwait) {
+TEST(Corners, EveryModeWorksWithTimeForNwait) {
     for (FSMC_Mode mode : {FSMC_MODE_A, FSMC_MODE_2, FSMC_MODE_B, FSMC_MODE_C, FSMC_MODE_D})
         inEveryCorner(0.9, [mode](BridgeBench<VFsmcBridge>& b, unsigned hclk) {
             const FSMC_Bank bank = {mode, mode, 0, 0, 1, 0, 1, {2, 2, 6}, {2, 2, 6}};
@@ -48,7 +48,7 @@ TEST(Corners, EveryModeWithTimeForNwait) {
         });
 }
 
-TEST(Corners, StreamsAreRightAtFullSpeed) {
+TEST(Corners, StreamsAreCorrectAtFullSpeed) {
     inEveryCorner(0, [](BridgeBench<VFsmcBridge>& b, unsigned hclk) {
         ASSERT_EQ(b.init(), FSMC_OK);
         FSMC_setHclk(hclk * 1000000);
@@ -74,7 +74,7 @@ TEST(Corners, StreamsAreRightAtFullSpeed) {
 }
 
 // A chip that waits for its PLL must not stop the processor's bus.
-TEST(Corners, NothingWaitsWhileResetIsActiveAlsoWithoutAClock) {
+TEST(Corners, NwaitIsInactiveDuringResetEvenWithoutAClock) {
     BridgeBench<VFsmcBridge> b(testSeed());
     b.top.rst_i = 1;
     for (unsigned ne : {0xEu, 0xDu})

@@ -57,7 +57,7 @@ template <class Bridge> void trafficIn(const Mode& mode, unsigned hclk, unsigned
     traffic(b, testSeed() + hclk, 400, page << 26);
 }
 
-TEST(Modes, EveryAsynchronousModeAtEveryRatio) {
+TEST(Modes, EveryAsynchronousModeWorksAtEveryRatio) {
     for (const Mode& mode : plainModes)
         for (auto [hclk, clk] :
              {std::pair(120, 100), {100, 100}, {1000, 997}, {997, 1000}, {60, 100}, {168, 100}}) {
@@ -67,14 +67,14 @@ TEST(Modes, EveryAsynchronousModeAtEveryRatio) {
         }
 }
 
-TEST(Modes, MultiplexedAddressAndData) {
+TEST(Modes, MultiplexedAddressAndDataWork) {
     for (const Mode& mode : muxedModes)
         for (auto [hclk, clk] : {std::pair(120, 100), {1000, 997}, {60, 100}})
             trafficIn<VFsmcBridgeMuxed>(mode, hclk, clk);
 }
 
 // Pins with the delays and the skew of the STM32, the board and the FPGA, in each corner.
-TEST(Modes, MultiplexedAddressAndDataWithLatePins) {
+TEST(Modes, MultiplexedAddressAndDataWorkWithLatePins) {
     for (unsigned corner = 0; corner < std::size(fsmcCorners); ++corner)
         for (const bool looksTwice : {false, true}) {
             const FsmcCorner delays = cornerOf(corner, 120);
@@ -93,7 +93,7 @@ TEST(Modes, MultiplexedAddressAndDataWithLatePins) {
 
 // The cost in time of a multiplexed address, at 120 MHz, with the driver's settings. Blocks: with
 // a multiplexed address, they are copied with NWAIT; otherwise they are streamed without it.
-TEST(MuxedCost, AnAccessTakesAtMostFiveHclkMore) {
+TEST(MuxedCost, AnAccessTakesAtMostFiveMoreHclk) {
     const auto plain = costs<VFsmcBridge>(driverBank);
     const auto muxed = costs<VFsmcBridgeMuxed>(muxedBank);
     showCosts("multiplexed", plain, muxed);
@@ -118,7 +118,7 @@ TEST(MuxedCost, AnAccessTakesAtMostFiveHclkMore) {
     }
 }
 
-TEST(Modes, NwaitActiveHighAndTheLargestBuffers) {
+TEST(Modes, NwaitActiveHighWorksWithTheLargestBuffers) {
     for (Mode mode : plainModes) {
         mode.bank.waitHigh = 1;
         trafficIn<VFsmcBridgeWaitHigh>(mode, 120, 100);
@@ -126,7 +126,7 @@ TEST(Modes, NwaitActiveHighAndTheLargestBuffers) {
 }
 
 // An STM32F407 pauses between the halves of a written word; according to RM0033 it does not pause.
-TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
+TEST(Modes, BusturnMayPauseBetweenTheHalvesOfAWrittenWord) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0, 120, 100);
     FSMC_Bank bank = {FSMC_MODE_A, FSMC_MODE_A, 0, 0, 1, 0, 1, {2, 1, 4}, {2, 1, 4}};
     auto hclksOfAWord = [&](uint8_t busturn, bool pauses) {
@@ -148,7 +148,7 @@ TEST(Modes, BusturnOfWritesIsBetweenTheHalvesOfAWordOrNot) {
 // requested in the clock of the doorbell. At 168 MHz, the pins can already have the doorbell's
 // address while the memory's side still sees the read. In this test, the doorbell and the block
 // have the same address within their windows.
-TEST(Modes, WhatADoorbellDropsOnItsWayIsNotTakenForFresh) {
+TEST(Modes, DataDiscardedByADoorbellIsNeverReturned) {
     BridgeBench<VFsmcBridge> b(testSeed(), 0.1, 168, 100);
     ASSERT_EQ(b.init(plainModes[0].bank), FSMC_OK);
     Random random(testSeed());
@@ -172,7 +172,7 @@ TEST(Modes, WhatADoorbellDropsOnItsWayIsNotTakenForFresh) {
     EXPECT_EQ(b.errors, 0u);
 }
 
-TEST(Modes, TheDriverRefusesWhatTheManualForbids) {
+TEST(Modes, TheDriverRefusesSettingsForbiddenByTheManual) {
     BridgeBench<VFsmcBridge> b(testSeed());
     const FSMC_Bank good = plainModes[8].bank; // D
     auto refuses = [&](unsigned bank, auto change) {
@@ -198,7 +198,7 @@ TEST(Modes, TheDriverRefusesWhatTheManualForbids) {
 }
 
 // The model is strict: it throws if a real STM32 would behave in another way, or would fail.
-TEST(Modes, TheModelRefusesWhatTheManualForbids) {
+TEST(Modes, TheModelRefusesSettingsForbiddenByTheManual) {
     BridgeBench<VFsmcBridge> b(testSeed());
     FsmcMaster& m = b.master;
     auto set = [&](uint32_t bcr, uint32_t btr) {

@@ -52,14 +52,14 @@ template <class Bridge> void trafficIn(const Mode& mode, unsigned hclk, unsigned
     EXPECT_EQ(b.slave.words[b.slave.clearWord], 0u) << "no access was late";
 }
 
-TEST(SyncModes, EveryModeAtEveryRatio) {
+TEST(SyncModes, EveryModeWorksAtEveryRatio) {
     for (const Mode& mode : plainModes)
         for (auto [hclk, clk] :
              {std::pair(120, 100), {100, 100}, {1000, 997}, {997, 1000}, {60, 100}, {168, 100}})
             trafficIn<VFsmcSyncBridge>(mode, hclk, clk);
 }
 
-TEST(SyncModes, MultiplexedAddressAndData) {
+TEST(SyncModes, MultiplexedAddressAndDataWork) {
     for (const Mode& mode : muxedModes)
         for (auto [hclk, clk] : {std::pair(120, 100), {1000, 997}, {60, 100}, {168, 100}})
             trafficIn<VFsmcSyncBridgeMuxed>(mode, hclk, clk);
@@ -69,19 +69,19 @@ TEST_F(SyncBridge, MemoryEqualsAReferenceWithAllWidths) {
     traffic(b_, testSeed(), 3000);
 }
 
-TEST_F(SyncBridge, ADoorbellMakesWritesVisibleAndReadsFresh) {
+TEST_F(SyncBridge, ADoorbellFlushesWritesAndDiscardsReadAheadData) {
     doorbellMakesWritesVisibleAndReadsFresh();
 }
 
-TEST_F(SyncBridge, AnErrorOfTheSlaveIsReportedWithItsPlace) {
+TEST_F(SyncBridge, ASlaveErrorIsReportedWithItsAddress) {
     errorOfTheSlaveIsReportedWithItsPlace();
 }
 
-TEST_F(SyncBridge, AHungSlaveEndsInAnErrorAndTheBridgeGoesOn) {
+TEST_F(SyncBridge, AHungSlaveCausesAnErrorAndTheBridgeContinues) {
     hungSlaveEndsInAnError();
 }
 
-TEST_F(SyncBridge, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
+TEST_F(SyncBridge, AHungMemoryCausesAnErrorAndTheBridgeContinues) {
     readOfAHungMemoryEndsInAnError();
     for (unsigned i = 0; b_.errors == 1 && i < 32; ++i)
         fsmc_.write16(ddr + 0x1000 + 8 * i, static_cast<uint16_t>(0xA000 + i));
@@ -93,7 +93,7 @@ TEST_F(SyncBridge, AHungMemoryEndsInAnErrorAndTheBridgeGoesOn) {
 
 // The processor may abandon an access at any time. A write is then carried out completely or not
 // at all, and the next accesses are right.
-TEST_F(SyncBridge, AnAccessThatIsGivenUpLeavesNothingHalfDone) {
+TEST_F(SyncBridge, AnAbortedAccessIsDoneCompletelyOrNotAtAll) {
     Random random(testSeed());
     for (int i = 0; i < 400 && !HasFailure(); ++i) {
         const uint32_t value = random.next();

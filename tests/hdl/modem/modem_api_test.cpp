@@ -65,7 +65,7 @@ TEST_F(ModemApi, SetUpChoosesFramesAnd250000Baud) {
     EXPECT_EQ(near_->parameter("BD"), 250000u);
 }
 
-TEST_F(ModemApi, PacketsLeaveWithoutAPauseEachAsOneRfPacket) {
+TEST_F(ModemApi, PacketsAreSentWithoutAPauseAsOneRfPacketEach) {
     ready();
     std::vector<uint8_t> expected;
     const std::vector<unsigned> lengths = {1, 7, 8, 9, 100, 100, 64, 33, 5};
@@ -81,7 +81,7 @@ TEST_F(ModemApi, PacketsLeaveWithoutAPauseEachAsOneRfPacket) {
     EXPECT_EQ(near_->counters().badFrames, 0u);
 }
 
-TEST_F(ModemApi, EachPacketGoesToItsTarget) {
+TEST_F(ModemApi, EachPacketReachesItsTarget) {
     ready();
     const std::vector<uint16_t> wanted = {0x5A5A, 0xA5A5, 0x0000, 0xFF00};
     for (unsigned i = 0; i < wanted.size(); ++i) {
@@ -91,7 +91,7 @@ TEST_F(ModemApi, EachPacketGoesToItsTarget) {
     EXPECT_EQ(targets_, wanted);
 }
 
-TEST_F(ModemApi, PacketsArriveEachInItsBuffer) {
+TEST_F(ModemApi, EachPacketArrivesInASeparateBuffer) {
     ready();
     for (unsigned i = 0; i < 20; ++i) {
         auto bytes = packet(1 + i * 37 % 100, static_cast<uint8_t>(i));
@@ -102,7 +102,7 @@ TEST_F(ModemApi, PacketsArriveEachInItsBuffer) {
     }
 }
 
-TEST_F(ModemApi, OfEachPacketTheModemSaysWhetherItWasDelivered) {
+TEST_F(ModemApi, EachPacketHasADeliveryStatus) {
     ready();
     put(0, sent(packet(10, 1), 0, 0x7E));
     runMs(60);
@@ -136,7 +136,7 @@ TEST_F(ModemApi, PacketsOfWrongLengthsAreRefused) {
     EXPECT_EQ(takeEvents(), 0u);
 }
 
-TEST_F(ModemApi, ASpoiltFrameIsDroppedAndTheNextIsWhole) {
+TEST_F(ModemApi, ACorruptedFrameIsDroppedAndTheNextIsComplete) {
     ready();
     plain_.send(packet(100, 5), now());
     runMs(7.3); // after this time the frame is on the line
@@ -157,7 +157,7 @@ TEST_F(ModemApi, ASpoiltFrameIsDroppedAndTheNextIsWhole) {
 
 // Frames follow each other without pauses, so that the receiver finds a frame only by the end of
 // the previous one.
-TEST_F(ModemApi, FramesOfAllTypesAreTakenAndTooLongOnesPassedOver) {
+TEST_F(ModemApi, FramesOfAllTypesAreReadAndTooLongOnesSkipped) {
     ready();
     Random random(testSeed());
     auto other = [&](uint8_t type, size_t size) {
@@ -194,7 +194,7 @@ TEST_F(ModemApi, FramesOfAllTypesAreTakenAndTooLongOnesPassedOver) {
     EXPECT_EQ(errors(), 0u);
 }
 
-TEST_F(ModemApi, AModemThatLostItsPowerIsSetUpAgain) {
+TEST_F(ModemApi, AModemThatLostPowerIsSetUpAgain) {
     ready();
     near_->power(false, now());
     // the modem boots in transparent mode at 9600 baud, which the controller receives as noise

@@ -87,7 +87,7 @@ protected:
     double clock_ = 0;
 };
 
-TEST_F(ModemSoak, NoiseIsReceivedAsItIsOrDroppedWhole) {
+TEST_F(ModemSoak, NoiseIsReceivedUnchangedOrDroppedInWholePackets) {
     power(quick());
     configure();
     takeEvents();

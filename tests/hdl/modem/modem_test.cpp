@@ -21,7 +21,7 @@ protected:
     }
 };
 
-TEST_F(ModemTest, SetUpWithDefaultGuardTimes) {
+TEST_F(ModemTest, SetUpWorksWithTheDefaultGuardTimes) {
     power({});
     configure(7, 1000);
     EXPECT_EQ(takeEvents(), MODEM_EVENT_CONFIGURED_MASK);
@@ -35,7 +35,7 @@ TEST_F(ModemTest, SetUpFindsAModemAtAnUnexpectedRate) {
     EXPECT_EQ(near_->parameter("BD"), 7u);
 }
 
-TEST_F(ModemTest, AControllerWithoutApiModeSaysSoAndLeavesTheModemTransparent) {
+TEST_F(ModemTest, AControllerWithoutApiModeLeavesTheModemTransparent) {
     power(quick({{"AP", 0}}));
     bus_.write(MODEM_NET, 0x3332u << MODEM_NET_PAN_LSB | 1u << MODEM_NET_API_LSB | 0x0C);
     configure();
@@ -78,7 +78,7 @@ TEST_F(ModemTest, AWireNeedsNoSetUp) {
     EXPECT_EQ(take(), packet);
 }
 
-TEST_F(ModemTest, NoModemIsReportedWithItsStep) {
+TEST_F(ModemTest, AMissingModemIsReportedWithItsStep) {
     power(quick());
     near_->power(false, now());
     configure();
@@ -120,7 +120,7 @@ TEST_F(ModemTest, TheKeyIsSentOnlyWithEncryption) {
         << "RN must be 2, so that modems that send at the same time do not collide";
 }
 
-TEST_F(ModemTest, WrongPutsAreRefused) {
+TEST_F(ModemTest, WrongWritesOfPutAreRefused) {
     power(quick());
     bus_.write(MODEM_TX_PUT, 10); // a packet is written before the set-up
     EXPECT_EQ(takeEvents(), MODEM_EVENT_TX_REFUSED_MASK);
@@ -136,7 +136,7 @@ TEST_F(ModemTest, WrongPutsAreRefused) {
         << "a packet must be refused, because the ring is full";
 }
 
-TEST_F(ModemTest, ResetInMidPacketAndSetUpAgain) {
+TEST_F(ModemTest, AResetInMidPacketIsFollowedByASetUp) {
     ready();
     put(0, frame(100, 1));
     runMs(4);
@@ -154,7 +154,7 @@ TEST_F(ModemTest, ResetInMidPacketAndSetUpAgain) {
               frame(40, 3));
 }
 
-TEST_F(ModemTest, APacketThatASetUpInterruptsIsSentAgainWhole) {
+TEST_F(ModemTest, APacketInterruptedByASetUpIsSentAgain) {
     ready();
     put(0, frame(100, 1));
     runMs(4);
@@ -167,7 +167,7 @@ TEST_F(ModemTest, APacketThatASetUpInterruptsIsSentAgainWhole) {
     EXPECT_EQ(bus_.read(MODEM_TX_STATE) & MODEM_TX_STATE_FREE_MASK, 16u);
 }
 
-TEST_F(ModemTest, PacketsLeaveEachAsOneRfPacket) {
+TEST_F(ModemTest, EachPacketIsSentAsOneRfPacket) {
     ready();
     std::vector<uint8_t> expected;
     const std::vector<unsigned> lengths = {1, 7, 8, 9, 100, 100, 64, 33, 5};
@@ -186,7 +186,7 @@ TEST_F(ModemTest, PacketsLeaveEachAsOneRfPacket) {
 
 // A modem with encryption sends a packet as soon as it has 95 bytes, so no pause is needed after
 // such a packet.
-TEST_F(ModemTest, EncryptedPacketsOf95BytesFollowEachOther) {
+TEST_F(ModemTest, ConsecutiveEncryptedPacketsHave95Bytes) {
     power(quick());
     bus_.write(MODEM_NET, 0x3332u << MODEM_NET_PAN_LSB | 1u << MODEM_NET_ENCRYPT_LSB | 0x0C);
     for (int word = 0; word < 4; ++word)
@@ -205,7 +205,7 @@ TEST_F(ModemTest, EncryptedPacketsOf95BytesFollowEachOther) {
         << "a packet has five additional bytes of the cipher";
 }
 
-TEST_F(ModemTest, ShortPacketsInARowAreNotJoined) {
+TEST_F(ModemTest, ConsecutiveShortPacketsAreNotJoined) {
     ready();
     put(0, frame(40, 1));
     put(1, frame(40, 2));
@@ -213,7 +213,7 @@ TEST_F(ModemTest, ShortPacketsInARowAreNotJoined) {
     EXPECT_EQ(sizes_, (std::vector<size_t>{40, 40}));
 }
 
-TEST_F(ModemTest, PacketsLeaveWholeThoughCtsMovesInAnyClock) {
+TEST_F(ModemTest, PacketsStayWholeIfCtsChangesInAnyClock) {
     ready();
     ctsWavers_ = true;
     std::vector<uint8_t> sent;
@@ -226,7 +226,7 @@ TEST_F(ModemTest, PacketsLeaveWholeThoughCtsMovesInAnyClock) {
     EXPECT_EQ(plain_.received, sent);
 }
 
-TEST_F(ModemTest, AModemThatIsFullHoldsTheControllerBack) {
+TEST_F(ModemTest, AFullModemStopsTheController) {
     ready();
     air_.weather.delayNs = 200'000'000; // each packet keeps the modem busy for this time
     for (unsigned i = 0; i < 6; ++i)
@@ -236,7 +236,7 @@ TEST_F(ModemTest, AModemThatIsFullHoldsTheControllerBack) {
     EXPECT_EQ(plain_.received.size(), 600u);
 }
 
-TEST_F(ModemTest, PacketsArriveEachInItsBuffer) {
+TEST_F(ModemTest, EachPacketArrivesInASeparateBuffer) {
     ready();
     std::vector<std::vector<uint8_t>> sent;
     for (unsigned i = 0; i < 20; ++i) {
@@ -257,7 +257,7 @@ TEST_F(ModemTest, ThreeCharactersOfSilenceEndAPacket) {
     EXPECT_EQ(take(), cut);
 }
 
-TEST_F(ModemTest, AFullRingDropsWholePacketsAndNothingElse) {
+TEST_F(ModemTest, AFullRingDropsOnlyWholePackets) {
     ready();
     pinsIgnoreRts_ = true; // the modem ignores RTS
     for (unsigned i = 0; i < 18; ++i) {
@@ -275,7 +275,7 @@ TEST_F(ModemTest, AFullRingDropsWholePacketsAndNothingElse) {
     EXPECT_EQ(take(), frame(50, 99)) << "a packet after the fault must arrive";
 }
 
-TEST_F(ModemTest, RTSHoldsTheModemInMidPacketAndThePacketIsWhole) {
+TEST_F(ModemTest, RTSPausesAPacketWithoutSplittingIt) {
     ready();
     for (unsigned i = 0; i < 13; ++i) {
         plain_.send(frame(20, static_cast<uint8_t>(i + 1)), now());

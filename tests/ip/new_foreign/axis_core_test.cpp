@@ -26,7 +26,7 @@ protected:
     MyScaleProxy<Vmy_scale_slot> core_;
 };
 
-TEST_F(Scale, EverySampleComesOutOnceScaled) {
+TEST_F(Scale, EverySampleIsScaledOnce) {
     core_.setGainFactor(3);
     for (size_t n : {1u, 2u, 3u, 4u, 5u, 31u, 32u, 33u, 512u}) {
         std::vector<Ice_Short> list, wanted;
@@ -41,7 +41,7 @@ TEST_F(Scale, EverySampleComesOutOnceScaled) {
     EXPECT_TRUE(core_.bench_.top().over_o) << "the core drives this pin";
 }
 
-TEST_F(Scale, GivesABeatAClockWhenTheMemoryKeepsUp) {
+TEST_F(Scale, ProcessesOneBeatPerClockIfTheMemoryKeepsUp) {
     core_.memory_.setStall(0);
     core_.setGainFactor(1);
     auto clocksOf = [&](size_t count) {
@@ -63,7 +63,7 @@ TEST_F(Scale, AnEmptyPacketIsRefused) {
     EXPECT_SAME(scaled({7}), std::vector<Ice_Short>{7});
 }
 
-TEST_F(Scale, WhatDoesNotEndIsGivenUpAndTheNextCallWorks) {
+TEST_F(Scale, AnEndlessCallIsAbortedAndTheNextCallWorks) {
     core_.setGainFactor(2);
     core_.memory_.hold(true);
     EXPECT_THROW(scaled(std::vector<Ice_Short>(300, 5)), CoreError);
@@ -88,7 +88,7 @@ protected:
     MyTwiceProxy<Vmy_twice_slot> core_;
 };
 
-TEST_F(Twice, AnswersAreAsLongAsWhatComesOut) {
+TEST_F(Twice, TheReplyHasTheLengthOfTheOutput) {
     for (size_t n : {8u, 16u, 504u, 512u}) {
         auto out = twice(n);
         ASSERT_EQ(out.size(), 2 * n);
@@ -102,7 +102,7 @@ TEST_F(Twice, AnswersAreAsLongAsWhatComesOut) {
         EXPECT_EQ(out[8 + i], 7 * i);
 }
 
-TEST_F(Twice, AnAnswerThatIsTooLongIsRefused) {
+TEST_F(Twice, ATooLongReplyIsRefused) {
     EXPECT_THROW(twice(520), CoreError);
     EXPECT_EQ(twice(8).size(), 16u);
 }

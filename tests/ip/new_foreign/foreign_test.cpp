@@ -44,7 +44,7 @@ void holdsRegisters(CoreSlot<Module>& slot, unsigned first, const std::string& h
     EXPECT_EQ(slot.bus_.read(1), 0u) << how << ": a time-out occurred";
 }
 
-TEST(Wishbone, RegistersReachThePinsAndTheInterruptComesThrough) {
+TEST(Wishbone, RegistersDriveThePinsAndTheInterruptArrives) {
     CoreSlot<Vmy_port_slot> slot;
     auto& top = slot.bench_.top();
     slot.bus_.write(MY_PORT_PAGE, 0);
@@ -59,7 +59,7 @@ TEST(Wishbone, RegistersReachThePinsAndTheInterruptComesThrough) {
     EXPECT_EQ(slot.bus_.read(1), MY_PORT_EVENT_CORE_MASK);
 }
 
-TEST(Wishbone, ACoreStallsAndAnswersWhenItLikes) {
+TEST(Wishbone, ACoreMayStallAndDelayReplies) {
     CoreSlot<Vmy_pipelined_slot> pipelined;
     CoreSlot<Vmy_classic_slot> classic;
     for (uint8_t late = 0; late < 6; ++late) {
@@ -76,7 +76,7 @@ TEST(Wishbone, ACoreStallsAndAnswersWhenItLikes) {
     }
 }
 
-TEST(Avalon, ACoreWaitsAndAnswersWhenItLikes) {
+TEST(Avalon, ACoreMayDelayRequestsAndReplies) {
     CoreSlot<Vmy_avalon_slot> slot;
     for (uint8_t late = 0; late < 6; ++late)
         for (uint8_t waits = 0; waits < 6; ++waits) {
@@ -97,14 +97,14 @@ TEST(Own, ARequestWithAnAcknowledgeLastsOneClock) {
     EXPECT_EQ(slot.bus_.read(12), 4u) << "each write must be carried out exactly once";
 }
 
-TEST(Memory, WhatIsReadIsThereAtOnceOrNineClocksLater) {
+TEST(Memory, ReadDataMayArriveAtOnceOrNineClocksLater) {
     CoreSlot<Vmy_memory_slot> memory;
     holdsRegisters(memory, 8, "at once");
     CoreSlot<Vmy_slow_memory_slot> slow;
     holdsRegisters(slow, 8, "nine clocks");
 }
 
-TEST(Axi4Lite, AChannelIsReadyAndAnsweredWhenItLikes) {
+TEST(Axi4Lite, ACoreMayDelayEachChannel) {
     CoreSlot<Vmy_words_slot> slot;
     auto& top = slot.bench_.top();
     const uint8_t clocks[] = {0, 1, 4};
@@ -138,7 +138,7 @@ TEST(Apb, TransfersBeginWithoutEnableAndEndWithReady) {
     EXPECT_EQ(slot.bus_.read(1), A_BRIDGE_EVENT_CORE_MASK);
 }
 
-TEST(Apb, ACoreIsReadyAtRestOrAfterWaitsOrHasNoReady) {
+TEST(Apb, CoresWithEarlyLateAndMissingReadyWork) {
     CoreSlot<Va_bridge_slot> slot;
     for (uint8_t waits = 0; waits < 6; ++waits) {
         slot.bench_.top().waits_i = waits;
@@ -151,7 +151,7 @@ TEST(Apb, ACoreIsReadyAtRestOrAfterWaitsOrHasNoReady) {
     holdsRegisters(apb2, A_BRIDGE_REG1, "no PREADY");
 }
 
-TEST(Apb, RegistersOfOneByteAreReachedThroughPackedStructures) {
+TEST(Apb, ByteRegistersInPackedStructuresAreAccessible) {
     CoreSlot<Vmy_narrow_slot> slot;
     for (unsigned i = 0; i < 9; ++i) {
         slot.bus_.write(MY_NARROW_PAGE, i / 8 * 32);
@@ -168,7 +168,7 @@ TEST(Apb, RegistersOfOneByteAreReachedThroughPackedStructures) {
 }
 
 // Runs the generated test with a table in which two names belong to one register.
-TEST(RegistersApart, OneThatHasTheValueOfAnotherIsFound) {
+TEST(RegistersApart, ARegisterWithTheValueOfAnotherIsFound) {
     CoreSlot<Vmy_memory_slot> slot;
     const Hw_Register table[] = {MY_MEMORY_TABLE},
                       twice[] = {{{1, "A"}, Hw_rw, 8, 0, 32, 0}, {{1, "B"}, Hw_rw, 8, 0, 32, 0}};
@@ -179,7 +179,7 @@ TEST(RegistersApart, OneThatHasTheValueOfAnotherIsFound) {
     ::testing::internal::GetCapturedStdout();
 }
 
-TEST(RegistersApart, EachThatIsNotReadBackIsNamed) {
+TEST(RegistersApart, EachRegisterThatIsNotReadBackIsReported) {
     CoreSlot<Vmy_port_slot> slot;
     slot.bench_.top().port_in_i = 0;
     const Hw_Register table[] = {MY_PORT_TABLE};
@@ -212,7 +212,7 @@ std::vector<StateMember> stateOf(const Counter::Root& root) {
     return {{root, root.rest, "u_core.rest"}, {root, root.count, "u_core.count"}};
 }
 
-TEST(Sequences, AFailureShowsTheFirstElementThatDiffers) {
+TEST(Sequences, AFailureShowsTheFirstDifference) {
     static const std::vector<int> got = {3, 4, 5}, other = {3, 7, 5}, longer = {3, 4, 5, 6};
     EXPECT_SAME(got, (std::vector<short>{3, 4, 5}));
     EXPECT_NONFATAL_FAILURE(EXPECT_SAME(got, other), "got differs at [1]: expected 7, got 4");
@@ -221,7 +221,7 @@ TEST(Sequences, AFailureShowsTheFirstElementThatDiffers) {
                             "got 3)");
 }
 
-TEST(RegistersApart, ACoreThatNeverRestsIsToldWithWhatMoves) {
+TEST(RegistersApart, ABusyCoreIsReportedWithItsChangingSignals) {
     for (unsigned every : {1, 3, 20}) {
         Counter::every = every;
         Bench<Counter> bench;
@@ -251,7 +251,7 @@ TEST(RegistersApart, ACoreThatNeverRestsIsToldWithWhatMoves) {
     EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
 }
 
-TEST(Late, AValueIsReadOnceAndAClockLater) {
+TEST(Late, AValueIsReadOnceAndOneClockLater) {
     CoreSlot<Vmy_late_slot> slot;
     EXPECT_EQ(slot.bus_.read(MY_LATE_REG2), 0x3222u)
         << "the memory must contain the data of its file, whatever the current directory is";
@@ -263,7 +263,7 @@ TEST(Late, AValueIsReadOnceAndAClockLater) {
     }
 }
 
-TEST(OwnClock, AnyRatioOfTheTwoClocksWillDo) {
+TEST(OwnClock, AnyRatioOfTheTwoClocksWorks) {
     CoreSlot<Vmy_requests_slot> slot;
     for (unsigned hz : {9000000u, 24576000u, 76000000u, 99999999u, 100000000u}) {
         slot.ownClock_.run(hz);
@@ -279,7 +279,7 @@ TEST(OwnClock, AnyRatioOfTheTwoClocksWillDo) {
 
 // A time-out of the core causes an event. The core's interrupt crosses the clock domains; when the
 // write that clears the interrupt ends, the interrupt is inactive.
-TEST(OwnClock, TheInterruptComesAndGoes) {
+TEST(OwnClock, TheInterruptRisesAndFalls) {
     CoreSlot<Vmy_requests_slot> slot;
     slot.interrupt_ = [] {};
     slot.bus_.write(2, MY_REQUESTS_EVENT_TIMEOUT_MASK);
@@ -290,7 +290,7 @@ TEST(OwnClock, TheInterruptComesAndGoes) {
     EXPECT_FALSE(slot.bench_.top().irq_o);
 }
 
-TEST(OwnClock, OneThatStandsStillIsAnErrorAndHangsNothing) {
+TEST(OwnClock, AStoppedClockIsAnErrorAndHangsNothing) {
     CoreSlot<Vmy_requests_slot> slot;
     slot.bus_.write(MY_REQUESTS_REG0, 5);
     slot.ownClock_.run(0);

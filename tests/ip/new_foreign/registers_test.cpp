@@ -114,7 +114,7 @@ public:
     Requests() : Served(MY_REQUESTS_ID_VALUE, table) {}
 };
 
-TEST(HwRegisters, NamesAndByteAddressesReachTheCore) {
+TEST(HwRegisters, RegistersAreAccessibleByNameAndByteAddress) {
     Port core;
     core.set("DRIVEN", 0xA5);
     EXPECT_EQ(core.slot_.bench_.top().port_out_o, 0xA5);
@@ -130,7 +130,7 @@ TEST(HwRegisters, NamesAndByteAddressesReachTheCore) {
     EXPECT_EQ(core.reason_, "");
 }
 
-TEST(HwRegisters, TheListSaysWhatThereIs) {
+TEST(HwRegisters, TheListContainsAllRegistersAndFields) {
     Port core;
     Hw_RegisterSeq list;
     ASSERT_EQ(Hw_RegistersPrx_list(&core.prx_, &list), ICE_OK);
@@ -146,7 +146,7 @@ TEST(HwRegisters, TheListSaysWhatThereIs) {
               std::make_tuple(9, 0, 8, 0));
 }
 
-TEST(HwRegisters, AFieldLeavesItsNeighboursAsTheyAre) {
+TEST(HwRegisters, WritingAFieldDoesNotChangeItsNeighbours) {
     Requests core;
     core.set("ALL", 0xFFFFFFFF);
     core.set("ALL.LOW", 5);
@@ -157,7 +157,7 @@ TEST(HwRegisters, AFieldLeavesItsNeighboursAsTheyAre) {
     EXPECT_EQ(core.reason_, "");
 }
 
-TEST(HwRegisters, WhatIsWrongIsSaidWithWhatThereIs) {
+TEST(HwRegisters, ErrorsListTheValidNames) {
     Requests core;
     core.get("LEVEL");
     EXPECT_EQ(core.reason_,
@@ -184,7 +184,7 @@ TEST(HwRegisters, WhatIsWrongIsSaidWithWhatThereIs) {
     EXPECT_EQ(core.reason_.substr(core.reason_.size() - 5), "xx...");
 }
 
-TEST(HwRegisters, AWordThatIsNeverAnsweredIsAnException) {
+TEST(HwRegisters, AnUnansweredAccessIsAnException) {
     Requests core;
     core.get("0xC");
     EXPECT_EQ(core.reason_, "0xC: the core does not answer, or refuses the address");
@@ -198,7 +198,7 @@ TEST(HwRegisters, AWordThatIsNeverAnsweredIsAnException) {
     EXPECT_THAT(*core.answer_, ElementsAre("TIMEOUT"));
 }
 
-TEST(HwRegisters, WaitTakesTheEventThatWasThereOrComes) {
+TEST(HwRegisters, WaitReturnsPendingAndNewEvents) {
     Port core;
     core.wait(100);
     EXPECT_FALSE(core.answer_);
@@ -222,7 +222,7 @@ TEST(HwRegisters, WaitTakesTheEventThatWasThereOrComes) {
     EXPECT_EQ(core.interrupts_, 2);
 }
 
-TEST(HwRegisters, OneCallWaitsAndNotForEver) {
+TEST(HwRegisters, OneCallMayWaitForALimitedTime) {
     Port core;
     for (Ice_Int ms : {-1, 600001}) {
         core.wait(ms);
@@ -238,7 +238,7 @@ TEST(HwRegisters, OneCallWaitsAndNotForEver) {
     EXPECT_THAT(*core.answer_, IsEmpty());
 }
 
-TEST(HwRegisters, AnotherCoreInTheSlotIsNotServed) {
+TEST(HwRegisters, AnotherCoreInTheSlotIsRefused) {
     CoreSlot<Vmy_port_slot> slot;
     Hw_Registers_Core core;
     EXPECT_EQ(Hw_Registers_Core_init(&core, coreSlot, MY_PORT_ID_VALUE + 1, nullptr, 0, &slot.port,
@@ -262,7 +262,7 @@ struct Chip {
     static constexpr U32 place = MAP_CONTROL_WINDOW + 4 * (16 * MAP_SLOT_SYSTEM + SYSTEM_CONTRACT);
 };
 
-TEST(Contracts, ASlotThatDiffersIsFoundAndTheOthersHold) {
+TEST(Contracts, AMismatchedSlotIsFound) {
     static const FSMC_Port port = {[](void*, U32) -> U8 { return 0; },
                                    [](void*, U32, U8) {},
                                    [](void*, U32) -> U16 { return 0; },

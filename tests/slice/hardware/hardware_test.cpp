@@ -52,7 +52,7 @@ TEST_F(CalculatorServant, IdentityIsTypeAndVersionOfTheInterface) {
 }
 
 // With a separate clock (OWN_CLOCK) that has stopped, a read has no result.
-TEST_F(CalculatorServant, ACoreThatNoLongerAnswersIsATimeOut) {
+TEST_F(CalculatorServant, ACoreThatStopsAnsweringCausesATimeOut) {
     core_.core_.core.id ^= 1;
     EXPECT_EQ(statusOf([&] { core_.add(2, 3); }), ICE_TIMEOUT);
     EXPECT_EQ(statusOf([&] { core_.setMode(Demo_wrap, 0, 0); }), ICE_TIMEOUT);
@@ -73,24 +73,24 @@ TEST_F(CalculatorServant, SettersReachTheCoreAndGettersReadIt) {
         }
 }
 
-TEST_F(CalculatorServant, AnEnumeratorThatDoesNotExistIsTheCoresFault) {
+TEST_F(CalculatorServant, AnInvalidEnumeratorIsReportedAsAFaultOfTheCore) {
     core_.setMode(static_cast<Demo_Mode>(3), 0, 0);
     EXPECT_EQ(statusOf([&] { core_.getMode(&negate_, &shift_); }), ICE_UNKNOWN_EXCEPTION);
 }
 
-TEST_F(CalculatorServant, AnOperationIsDoneWhenItsResultIsRead) {
+TEST_F(CalculatorServant, ReadingTheResultRunsTheOperation) {
     EXPECT_EQ(core_.add(40, -60), -20);
     core_.setMode(Demo_wrap, 1, 0);
     EXPECT_EQ(core_.add(40, -60), 20);
 }
 
-TEST_F(CalculatorServant, StructsGoMemberByMember) {
+TEST_F(CalculatorServant, StructsAreTransferredMemberByMember) {
     Demo_Pair p = {-2, 32767}, swapped = core_.swap(&p);
     EXPECT_EQ(swapped.x, 32767);
     EXPECT_EQ(swapped.y, -2);
 }
 
-TEST_F(CalculatorServant, ALongOperationEndsByItsEvent) {
+TEST_F(CalculatorServant, ALongOperationEndsWithItsEvent) {
     for (int round = 0; round < 3; ++round) {
         EXPECT_EQ(divide(-1000 - round, 7), (-1000 - round) / 7);
         EXPECT_EQ(remainder_, (-1000 - round) % 7);
@@ -104,14 +104,14 @@ TEST_F(CalculatorServant, ACoreCanRefuse) {
     EXPECT_EQ(divide(9, 3), 3);
 }
 
-TEST_F(CalculatorServant, AHungCoreIsATimeOutAndIsResetForTheNextCall) {
+TEST_F(CalculatorServant, AHungCoreCausesATimeOutAndIsResetForTheNextCall) {
     EXPECT_EQ(divided(1, 666), ICE_TIMEOUT);
     EXPECT_GE(core_.waitedClocks_, 20 * clocksOfMs);
     EXPECT_EQ(divide(100, 8), 12);
     EXPECT_EQ(remainder_, 4);
 }
 
-TEST_F(CalculatorServant, OtherCallsGoOnWhileALongOneIsUnderWay) {
+TEST_F(CalculatorServant, OtherOperationsWorkDuringALongOperation) {
     FSMC_write(slot, 3, 1u << 3); // starts `divide` by its register; both parameters are 0
     EXPECT_EQ(divided(8, 2), ICE_LIMIT) << "busy";
     EXPECT_EQ(core_.add(1, 2), 3);
@@ -140,7 +140,7 @@ protected:
     bool pauses_ = false;
 };
 
-TEST_F(WideEchoServant, ValuesOf64BitsAreTwoWords) {
+TEST_F(WideEchoServant, ValuesOf64BitsUseTwoWords) {
     Ice_Long negative = core_.negate({5, 7});
     EXPECT_EQ(negative.low, 0xFFFFFFFBu);
     EXPECT_EQ(negative.high, -8);
@@ -148,7 +148,7 @@ TEST_F(WideEchoServant, ValuesOf64BitsAreTwoWords) {
     EXPECT_EQ(core_.errors_, 0u);
 }
 
-TEST_F(WideEchoServant, MetadataChoosesTheWord) {
+TEST_F(WideEchoServant, MetadataSelectsTheWord) {
     EXPECT_EQ(core_.sameFloat(1.5f), 1.5f);
     EXPECT_EQ(FSMC_read(slot, 9), 0x3FC00000u)
         << "the register contains the number in IEEE 754 single precision";
@@ -157,13 +157,13 @@ TEST_F(WideEchoServant, MetadataChoosesTheWord) {
         << "word 13 contains the high half of the result, word 12 the low half";
 }
 
-TEST_F(WideEchoServant, AStartIsOneClock) {
+TEST_F(WideEchoServant, AStartLastsOneClock) {
     core_.nothing();
     core_.nothing();
     EXPECT_EQ(nothings_, 2u);
 }
 
-TEST_F(WideEchoServant, AStartWhileBusyIsNone) {
+TEST_F(WideEchoServant, AStartWhileBusyIsIgnored) {
     unsigned starts = 0;
     core_.bench_.addModel([&] { starts += top_.pause_start_o; }, [] {});
     FSMC_write(slot, 3, 1u << 3);
@@ -233,7 +233,7 @@ protected:
     bool started_ = false;
 };
 
-TEST_F(ManyServant, WordsBehindPageAreCalledAsOthers) {
+TEST_F(ManyServant, PagedRegistersWorkLikeOthers) {
     for (int round = 0; round < 3; ++round) {
         turn();
         add();
@@ -241,12 +241,12 @@ TEST_F(ManyServant, WordsBehindPageAreCalledAsOthers) {
     EXPECT_EQ(FSMC_read(slot, 5), 0u) << "PAGE must have its earlier value again";
 }
 
-TEST_F(ManyServant, InTheChipsClockACoreIsNotAskedWhetherItAnswers) {
+TEST_F(ManyServant, ACoreInTheClockOfTheChipIsAccessedWithoutAProbe) {
     rig_.core_.core.id ^= 1;
     add();
 }
 
-TEST_F(ManyServant, ATaskThatInterruptsAnotherLeavesItsPageAlone) {
+TEST_F(ManyServant, ATaskThatInterruptsAnotherRestoresThePage) {
     U32 accesses = 0, last = 0;
     rig_.beforeAccess_ = [&] { ++accesses; };
     turn();
@@ -263,7 +263,7 @@ TEST_F(ManyServant, ATaskThatInterruptsAnotherLeavesItsPageAlone) {
     EXPECT_GT(last, 100u);
 }
 
-TEST_F(ManyServant, AWordThatNoPageHasIsAnError) {
+TEST_F(ManyServant, AnAccessToAnUnusedPageIsAnError) {
     FSMC_write(slot, 5, 0xFFFFFFFF);
     EXPECT_EQ(FSMC_read(slot, 5), 0xFFu) << "eight pages; six have words";
     FSMC_read(slot, 15);

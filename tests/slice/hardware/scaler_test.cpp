@@ -24,7 +24,7 @@ protected:
     std::vector<Ice_Short> shifted_;
 };
 
-TEST_F(Scaler, SequencesOfEveryLengthGoThroughMemoryAndBack) {
+TEST_F(Scaler, SequencesOfEveryLengthPassThroughMemory) {
     Random random(testSeed());
     for (unsigned size : {1u, 2u, 3u, 4u, 5u, 31u, 32u, 33u, 99u, 100u}) {
         std::vector<Ice_Short> values(size), expected(size);
@@ -39,7 +39,7 @@ TEST_F(Scaler, SequencesOfEveryLengthGoThroughMemoryAndBack) {
     }
 }
 
-TEST_F(Scaler, BuffersThatDoNotBeginAtAMultipleOfTheirSizeAreRefused) {
+TEST_F(Scaler, MisalignedBuffersAreRefused) {
     Demo_Scaler_Core other;
     for (U32 past : {128u, 256u, 384u})
         EXPECT_EQ(Demo_Scaler_Core_init(&other, coreSlot, coreMemory + past, &core_.port, &core_),
@@ -48,7 +48,7 @@ TEST_F(Scaler, BuffersThatDoNotBeginAtAMultipleOfTheirSizeAreRefused) {
               HW_OK);
 }
 
-TEST_F(Scaler, TooManyElementsAreRefusedBeforeTheCoreSeesThem) {
+TEST_F(Scaler, TooManyElementsAreRefusedBeforeTheCoreStarts) {
     try {
         shift(std::vector<Ice_Short>(101), 1);
         FAIL() << "101 elements were accepted for a buffer of 100";
@@ -58,7 +58,7 @@ TEST_F(Scaler, TooManyElementsAreRefusedBeforeTheCoreSeesThem) {
     EXPECT_EQ(shift(std::vector<Ice_Short>(100, 2), 1), 300);
 }
 
-TEST_F(Scaler, ACoreThrowsAnExceptionWithItsFieldsAndThoseOfItsBase) {
+TEST_F(Scaler, ACoreThrowsAnExceptionWithAllFields) {
     std::vector<Ice_Short> values(20, 5);
     values[13] = values[17] = 32000;
     try {
@@ -72,7 +72,7 @@ TEST_F(Scaler, ACoreThrowsAnExceptionWithItsFieldsAndThoseOfItsBase) {
     EXPECT_EQ(shift(values, 0), 18 * 5 + 2 * 32000) << "a call after the exception must succeed";
 }
 
-TEST_F(Scaler, ACoreRefusesAndHangsLaterToo) {
+TEST_F(Scaler, ACoreMayRefuseOrHangInALaterCall) {
     for (auto [values, offset, status] :
          {std::tuple{std::vector<Ice_Short>(), 1, ICE_UNKNOWN_EXCEPTION},
           std::tuple{std::vector<Ice_Short>(3), 0x7777, ICE_TIMEOUT}})
@@ -94,7 +94,7 @@ TEST_F(Scaler, TheExceptionOfAFailedCallNamesTheOperation) {
     }
 }
 
-TEST_F(Scaler, ASecondCallWhileOneIsUnderWayIsALimitAndOthersGoOn) {
+TEST_F(Scaler, ASecondSimultaneousCallExceedsALimit) {
     std::vector<Ice_Short> values(100, 1);
     Demo_Samples list{100, values.data()};
     ASSERT_EQ(Demo_Scaler_Core_shift_begin(&core_.core_, &list, 1), ICE_OK);
@@ -104,7 +104,7 @@ TEST_F(Scaler, ASecondCallWhileOneIsUnderWayIsALimitAndOthersGoOn) {
     EXPECT_EQ(shift({1}, 1), 2);
 }
 
-TEST_F(Scaler, EventsComeWithTheirValuesOnceEach) {
+TEST_F(Scaler, EachEventIsReportedOnceWithItsValues) {
     Demo_Peak peak{};
     core_.setLimit(100);
     EXPECT_FALSE(core_.peak(&peak));
@@ -131,7 +131,7 @@ TEST(Proxy, MovesThePins) {
         << "the second buffer begins at the first multiple of 128 after 200 bytes";
 }
 
-TEST(Proxy, ElementsLieInMemoryAsInC) {
+TEST(Proxy, ElementsAreStoredAsInC) {
     StoreProxy<VStoreWrapper> core;
     auto& pins = core.bench_.top();
     core.port(9);

@@ -52,7 +52,7 @@ Bytes open(const Bytes& associated, Bytes sealed) {
     return sealed;
 }
 
-TEST(AsconCode, GivesAllKnownAnswers) {
+TEST(AsconCode, MatchesTheKnownAnswers) {
     EXPECT_EQ(aeadAnswers([](const Bytes& associated, const Bytes& message) {
                   const Bytes sealed = seal(associated, message);
                   EXPECT_EQ(open(associated, sealed), message);
@@ -61,7 +61,7 @@ TEST(AsconCode, GivesAllKnownAnswers) {
               aeadFile);
 }
 
-TEST(AsconCode, FindsEachWrongBit) {
+TEST(AsconCode, DetectsEveryWrongBit) {
     const Bytes associated = counted(1, 20), sealed = seal(associated, counted(7, 37));
     for (size_t bit = 0; bit < sealed.size() * 8; ++bit) {
         Bytes wrong = sealed;
@@ -85,7 +85,7 @@ Value multiply(const Value& number, const U8* point) {
 
 // The iterated test of RFC 7748, 5.2: number and point are 9 at first. Each result becomes the next
 // number, and the previous number becomes the next point.
-TEST(X25519Code, GivesTheStandardsAnswerAfterAThousandTimes) {
+TEST(X25519Code, MatchesTheStandardAfterAThousandIterations) {
     Value number = {9}, point = {9};
     for (int i = 0; i < 1000; ++i) {
         const Value result = multiply(number, point.data());

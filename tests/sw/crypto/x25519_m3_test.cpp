@@ -18,7 +18,7 @@ using Bytes = std::vector<uint8_t>;
 constexpr uint32_t result = 0x20008000, number = result + 64, point = number + 64,
                    stack = result - 64;
 
-TEST(X25519M3, TakesTheSameCyclesForAnyNumberAndALittleStack) {
+TEST(X25519M3, TakesConstantTimeAndLittleStack) {
     PlainCpu m3(FIRMWARE_ELF);
     const uint32_t begin = m3.image.symbol("X25519") & ~1u;
     Random random(testSeed(1));

@@ -230,7 +230,7 @@ TEST_F(Directory, AGroundThatTakesOverKeepsTheVehicleUntilItEnds) {
     EXPECT_EQ(world_.echo->twice(), 0);
 }
 
-TEST_F(Directory, OneOfTwoRegistriesIsKilledAndComesBack) {
+TEST_F(Directory, OneOfTwoRegistriesMayFailAndReturn) {
     auto home = ground(rig_.pty.path()), other = ground(rig_.otherPty.path());
     ASSERT_TRUE(home->hear("uav1 is here")) << home->said();
     Ice::CommunicatorHolder ic(client());
@@ -285,7 +285,7 @@ private:
     std::string heard_;
 };
 
-TEST_F(Directory, ATopicTellsWhichVehiclesComeAndGo) {
+TEST_F(Directory, ATopicReportsArrivingAndLeavingVehicles) {
     const std::string topics =
         "IceStorm/TopicManager:tcp -h 127.0.0.1 -p " + std::to_string(freePort());
     Server storm({PROGRAMS "/icebox",

@@ -143,7 +143,7 @@ protected:
     }
 };
 
-TEST_F(HostileClients, AClientThatLeavesItsCallLetsTheGatewayEnd) {
+TEST_F(HostileClients, AnAbandonedCallDoesNotKeepTheGatewayFromEnding) {
     startWithoutVehicle("2");
     RawClient(port_).write(request({}));
     // The gateway handles this call after the call of the client that has left.
@@ -152,7 +152,7 @@ TEST_F(HostileClients, AClientThatLeavesItsCallLetsTheGatewayEnd) {
 }
 
 // Ice has no memory for the facets that this message claims to contain, and never replies to it.
-TEST_F(HostileClients, AMessageWithoutAReplyLetsTheGatewayEnd) {
+TEST_F(HostileClients, AMessageWithoutAReplyDoesNotKeepTheGatewayFromEnding) {
     startWithoutVehicle("2", {"--end", "1"});
     Parts senseless;
     senseless.facets = 0x7FFFFFFF;
@@ -165,7 +165,7 @@ TEST_F(HostileClients, AMessageWithoutAReplyLetsTheGatewayEnd) {
 
 // A subject may queue 256 KiB of requests. Names and contexts also count, and each request counts
 // more than its bytes. The sockets of a connection hold a few MB.
-TEST_F(HostileClients, RequestsWithoutParametersFillTheQueuesToo) {
+TEST_F(HostileClients, RequestsWithoutParametersCountAgainstTheQueues) {
     startWithoutVehicle("600");
     constexpr size_t limit = 64 << 20, mostAccepted = 24 << 20;
     EXPECT_LT(RawClient(port_).flood(request({0, "echo", "note", std::string(7000, 'x')}), limit),
@@ -180,7 +180,7 @@ TEST_F(HostileClients, RequestsWithoutParametersFillTheQueuesToo) {
 }
 
 // The gateway's log, and the reason that a client gets for a failed call, are words.
-TEST_F(HostileClients, ErrorsAreWords) {
+TEST_F(HostileClients, ErrorsAreReadable) {
     startWithoutVehicle("600");
     RawClient client(port_);
     Parts wrong;
@@ -212,7 +212,7 @@ TEST_F(HostileClients, ErrorsAreWords) {
 }
 
 // All clients of a datagram endpoint share one connection. A refused datagram must not close it.
-TEST_F(HostileClients, ADatagramThatIsTooLongIsDroppedAlone) {
+TEST_F(HostileClients, ATooLongDatagramIsDroppedAlone) {
     const auto pid = unsigned(getpid()); // an address that no other test uses
     const std::string host = "127." + std::to_string(64 + (pid >> 16) % 64) + "." +
                              std::to_string((pid >> 8) % 256) + "." + std::to_string(pid % 256);
@@ -240,7 +240,7 @@ TEST_F(HostileClients, ADatagramThatIsTooLongIsDroppedAlone) {
 }
 
 // Ice logs its warnings with the position in its source code and the name of the exception.
-TEST_F(HostileClients, IcesOwnWarningsAreWords) {
+TEST_F(HostileClients, WarningsOfIceAreReadable) {
     world_.rig.with([&] { world_.rig.uav.modem->power(false, world_.rig.ns()); });
     start({"--wait", "2", "--Ice.Warn.Connections=1"});
     const Message http{'G', 'E', 'T', ' ', '/', ' ', 'H', 'T', 'T', 'P', '/', '1', '.', '1'};

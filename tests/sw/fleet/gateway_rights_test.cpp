@@ -36,7 +36,7 @@ struct Heard : RadioTest::Listener {
     std::atomic<int> calls{0};
 };
 
-TEST_F(Gateway, MaintenanceIsReachedAtItsOwnDoor) {
+TEST_F(Gateway, MaintenanceObjectsHaveASeparateEndpoint) {
     start({"--maintenance", "127.0.0.1:0"});
     ASSERT_TRUE(gateway_->hear("maintenance at port ")) << said();
     ASSERT_TRUE(gateway_->hear("\n"));
@@ -103,7 +103,7 @@ std::string passListener(const Program& program, const std::string& operation) {
 
 // Both programs have an object with the same name. The vehicle calls this name while it serves a
 // call of one of the programs; the call must reach this program.
-TEST_F(Gateway, TheVehiclesCallGoesToItsAddresseeAlone) {
+TEST_F(Gateway, ACallOfTheVehicleReachesOnlyItsAddressee) {
     start();
     Program one(endpoint(), 1), two(endpoint(), 10), idle(endpoint(), 100);
     one.echo->ice_ping();
@@ -178,7 +178,7 @@ TEST_F(Gateway, AClientOfAnotherSubjectCannotPassTheSameObject) {
 
 // With TLS, the gateway knows the subject of a client's certificate. `./icesoc key FILE
 // --certificate` makes the certificates.
-TEST_F(Gateway, ACertificateSaysWhoAsks) {
+TEST_F(Gateway, ACertificateIdentifiesTheCaller) {
     const std::string folder = testing::TempDir() + "gateway_tls." + std::to_string(getpid());
     std::filesystem::create_directories(folder + "/others");
     for (const std::string name : {"gateway", "pilot", "observer", "others/pilot"})
@@ -221,7 +221,7 @@ TEST_F(Gateway, ACertificateSaysWhoAsks) {
     std::filesystem::remove_all(folder);
 }
 
-TEST_F(Gateway, RightsSayWhoMayCallWhat) {
+TEST_F(Gateway, RightsRestrictCalls) {
     const std::string rights = testing::TempDir() + "gateway_rights.json";
     std::ofstream(rights)
         << R"([{"who": "", "identities": ["ec*"], "operations": ["repeat", "note*"]}])";

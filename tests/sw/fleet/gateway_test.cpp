@@ -18,7 +18,7 @@
 
 namespace {
 
-TEST_F(Gateway, TheUavCallsTheStationBehindIt) {
+TEST_F(Gateway, TheUavCallsTheStationThroughTheGateway) {
     auto adapter = ic_->createObjectAdapterWithEndpoints("Station", "tcp -h 127.0.0.1");
     adapter->add(std::make_shared<ListenerServant>(), Ice::stringToIdentity("station"));
     adapter->activate();
@@ -51,7 +51,7 @@ struct Station : Ice::Blobject {
     std::shared_ptr<Ice::ObjectPrx> vehicle;
 };
 
-TEST_F(Gateway, TheStationGetsAProxyByWhichItReachesTheVehicle) {
+TEST_F(Gateway, TheStationGetsAProxyOfTheVehicle) {
     const auto station = std::make_shared<Station>();
     auto adapter = ic_->createObjectAdapterWithEndpoints("Station", "tcp -h 127.0.0.1");
     adapter->add(station, Ice::stringToIdentity("station"));
@@ -87,7 +87,7 @@ TEST_F(Gateway, ListensAtAnIPv6Address) {
 
 // ---- sharing the radio ----
 
-TEST_F(Gateway, WhatAProgramHasSentArrivesAlthoughItLeaves) {
+TEST_F(Gateway, OnewayCallsArriveAlthoughTheirClientDisconnects) {
     // a call with a long --wait does not fail even if it has to wait on a slow machine
     start({"--wait", "600"});
     constexpr int count = 1000;
@@ -102,7 +102,7 @@ TEST_F(Gateway, WhatAProgramHasSentArrivesAlthoughItLeaves) {
     EXPECT_EQ(world_.echo->twice(), 0);
 }
 
-TEST_F(Gateway, AFloodLeavesRoomForOthers) {
+TEST_F(Gateway, AFloodLeavesRoomForOtherClients) {
     start();
     Ice::CommunicatorHolder flooding(plain());
     auto flood = proxy(flooding.communicator())->ice_oneway();
@@ -134,7 +134,7 @@ std::vector<double> timesOf(World& world, const std::shared_ptr<RadioTest::UavPr
 
 // A hundred connections from another host send long one-way calls continuously; a normal client
 // must still be served.
-TEST_F(Gateway, AHundredFloodingConnectionsLeaveAGoodClientItsTurns) {
+TEST_F(Gateway, AHundredFloodingConnectionsLeaveAGoodClientItsShare) {
     start();
     constexpr int connections = 100, calls = 100;
     timesOf(world_, echo_, 5);
@@ -199,7 +199,7 @@ TEST_F(Gateway, AnIdleClientGetsHeartbeats) {
     close(client);
 }
 
-TEST_F(Gateway, ACallThatIsTooLongFailsWithTheLimit) {
+TEST_F(Gateway, ATooLongCallFailsWithTheLimit) {
     start();
     expectRefusal([&] { echo_->repeat(1, RadioTest::Bytes(9000)); }, "8192");
     expectAnswer(2);
@@ -225,7 +225,7 @@ TEST_F(Gateway, ACallWithoutAModemFailsWithTheReason) {
 }
 
 // One-way calls to an absent vehicle are discarded after --wait, even if their program has ended.
-TEST_F(Gateway, AOnewayThatWaitsTooLongIsNeverCarriedOut) {
+TEST_F(Gateway, AOnewayCallThatWaitsTooLongIsNeverExecuted) {
     start({"--wait", "3"});
     const auto power = [&](bool isOn) {
         world_.rig.with([&] { world_.rig.uav.modem->power(isOn, world_.rig.ns()); });
@@ -257,7 +257,7 @@ TEST_F(Gateway, AOnewayThatWaitsTooLongIsNeverCarriedOut) {
     EXPECT_EQ(dropped, 3) << said();
 }
 
-TEST(GatewayOptions, WrongOnesAreRefusedByName) {
+TEST(GatewayOptions, WrongOptionsAreRefusedByName) {
     // A key file with a byte order mark and a carriage return, as editors of Windows write it, is
     // not an error; the error is then the device.
     const std::string key = testing::TempDir() + "gateway_modem_key." + std::to_string(getpid());
@@ -303,7 +303,7 @@ TEST(GatewayOptions, WrongOnesAreRefusedByName) {
     std::remove(key.c_str());
 }
 
-TEST(GatewayOptions, AnUnknownOneIsReportedEvenIfTheDeviceIsMissing) {
+TEST(GatewayOptions, AnUnknownOptionIsReportedEvenIfTheDeviceIsMissing) {
     for (const auto& [words, expected] :
          {std::pair<std::vector<std::string>, std::string>{{GATEWAY, "--wrong"}, "--wrong"},
           {{GATEWAY}, "--device is required"}}) {
@@ -408,7 +408,7 @@ int portOf(Server& server) {
     return server.port("127.0.0.1 -p ", " -t");
 }
 
-TEST_F(Gateway, KeepsOfACallWhatIceBridgeKeepsAndFacets) {
+TEST_F(Gateway, PreservesACallAsIceBridgeDoesAndFacets) {
     world_.uav->addDefaultServant(std::make_shared<Witness>(), "witness");
     const std::string vehicle = endpoint(world_.uavPort);
     Server bridge({"icebridge", "--IceBridge.Source.Endpoints=tcp -h 127.0.0.1",
@@ -423,7 +423,7 @@ TEST_F(Gateway, KeepsOfACallWhatIceBridgeKeepsAndFacets) {
 
 // A program opens a session with the router. The router passes the program's calls to the gateway,
 // which runs on the same machine as the router (see the drawing in docs/security.md).
-TEST_F(Gateway, IsReachedThroughAGlacier2Router) {
+TEST_F(Gateway, IsReachableThroughAGlacier2Router) {
     start();
     Server router({"glacier2router", "--Glacier2.Client.Endpoints=tcp -h 127.0.0.1",
                    "--Glacier2.InstanceName=Glacier2",

@@ -59,7 +59,7 @@ TEST(Api, PacketsOfAllBytesArriveWithAndWithoutEscapes) {
 }
 
 // Received data is passed on at once: a short packet does not wait for the packets after it.
-TEST(Api, DataAreGivenAsTheyCome) {
+TEST(Api, ReceivedDataIsPassedOnAtOnce) {
     ApiModem modem(false);
     Heard heard;
     Bytes bytes = packetFrom(ApiFrames(), 1, {1, 2, 3, 4});
@@ -68,7 +68,7 @@ TEST(Api, DataAreGivenAsTheyCome) {
     EXPECT_EQ(heard.data, (Bytes{1, 2}));
 }
 
-TEST(Api, DataSayWhoseTheyAre) {
+TEST(Api, ReceivedDataHasTheAddressOfItsSender) {
     ApiModem modem(false);
     Heard heard;
     for (uint16_t address : {uint16_t(2), uint16_t(0xFFFE)}) {
@@ -94,7 +94,7 @@ TEST(Api, RNIsSetWhenItChanges) {
     EXPECT_EQ(packet(3, 0), Bytes());
 }
 
-TEST(Api, APacketThatIsNotAnsweredForThreeSecondsIsLost) {
+TEST(Api, APacketWithoutAStatusForThreeSecondsIsLost) {
     ApiModem modem(false);
     for (uint32_t at : {0u, 1'000'000u})
         modem.packet(5, Bytes{1}.data(), 1, 2, at);
@@ -103,7 +103,7 @@ TEST(Api, APacketThatIsNotAnsweredForThreeSecondsIsLost) {
     EXPECT_EQ(lost, 1);
 }
 
-TEST(Api, AnswersComeInTheOrderOfPacketsAndALostOneCountsAsALoss) {
+TEST(Api, StatusesArriveInOrderAndAMissingStatusCountsAsALoss) {
     ApiModem modem(false);
     Heard heard;
     for (int i = 0; i < 300; ++i) // enough packets for the frame numbers to wrap around
@@ -122,7 +122,7 @@ TEST(Api, AnswersComeInTheOrderOfPacketsAndALostOneCountsAsALoss) {
     EXPECT_EQ(heard.answers, "---+");
 }
 
-TEST(Api, AfterNoiseFramesAreReadAgain) {
+TEST(Api, FramesAreFoundAgainAfterNoise) {
     Random random(testSeed());
     for (bool escapes : {false, true}) {
         const ApiFrames frames(escapes);

@@ -42,7 +42,7 @@ protected:
     int pipe_[2];
 };
 
-TEST_F(ClockOfASimulator, ShowsWhatTheSimulatorSays) {
+TEST_F(ClockOfASimulator, ShowsTheTimeOfTheSimulator) {
     SimulatedClock clock(file_);
     EXPECT_EQ(clock.nowUs(), 0u);
     show(1'234'567);
@@ -69,7 +69,7 @@ TEST_F(ClockOfASimulator, WaitLastsUntilSimulatedTimeHasPassed) {
     simulator.join();
 }
 
-TEST_F(ClockOfASimulator, WaitEndsWhenSomethingIsReadyThoughTimeStandsStill) {
+TEST_F(ClockOfASimulator, WaitEndsForAReadyDescriptorAlthoughTimeStandsStill) {
     SimulatedClock clock(file_);
     pollfd fds[] = {{pipe_[0], POLLIN, 0}};
     (void)!write(pipe_[1], "x", 1);
@@ -77,7 +77,7 @@ TEST_F(ClockOfASimulator, WaitEndsWhenSomethingIsReadyThoughTimeStandsStill) {
     EXPECT_EQ(clock.nowUs(), 0u);
 }
 
-TEST_F(ClockOfASimulator, FileOfSomethingElseIsRefused) {
+TEST_F(ClockOfASimulator, AnotherKindOfFileIsRefused) {
     std::ofstream(file_) << "not a simulator's file of counters, although long enough.";
     EXPECT_THROW(SimulatedClock{file_}, std::system_error);
     std::ofstream(file_) << "short";
@@ -85,12 +85,12 @@ TEST_F(ClockOfASimulator, FileOfSomethingElseIsRefused) {
     EXPECT_THROW(SimulatedClock{"/no/such/file"}, std::system_error);
 }
 
-TEST_F(ClockOfASimulator, EnvironmentNamesIt) {
+TEST_F(ClockOfASimulator, TheEnvironmentSelectsTheFile) {
     show(77);
     EXPECT_EQ(makeClock()->nowUs(), 77u);
 }
 
-TEST_F(ClockOfASimulator, WrongNameIsExplained) {
+TEST_F(ClockOfASimulator, AMissingFileIsReported) {
     const auto complaint = [](const char* name) -> std::string {
         setenv("XBEEAT_CLOCK", name, 1);
         try {
@@ -107,7 +107,7 @@ TEST_F(ClockOfASimulator, WrongNameIsExplained) {
     EXPECT_NE(complaint((SIM_CLOCK ":/no/such/file")).find("/no/such/file"), std::string::npos);
 }
 
-TEST_F(ClockOfASimulator, WithoutANameItIsTheMachines) {
+TEST_F(ClockOfASimulator, WithoutAFileItIsTheClockOfTheMachine) {
     unsetenv("XBEEAT_CLOCK");
     SystemClock machine;
     EXPECT_TRUE(dynamic_cast<SystemClock*>(makeClock().get()));
@@ -174,7 +174,7 @@ protected:
 
 // If the program's count includes bytes that never arrive, the line waits for them once. It then
 // assumes that they were read in the session of an earlier program.
-TEST(Pty, BytesThatNeverComeAreWaitedForOnce) {
+TEST(Pty, MissingBytesAreAwaitedOnlyOnce) {
     struct Modem : SerialClient {
         void fromHost(uint8_t, uint64_t) override {}
         void framingError(uint64_t) override {}
@@ -189,7 +189,7 @@ TEST(Pty, BytesThatNeverComeAreWaitedForOnce) {
     EXPECT_LT(looks, 30'000u);
 }
 
-TEST_F(Step, NoTimePassesWhileTheProgramWorksAndNoByteIsLate) {
+TEST_F(Step, TimeStopsWhileTheProgramWorks) {
     alongside([&](Clock& clock, SerialPort& port) {
         Random random(testSeed());
         for (uint8_t i = 0; i < 60; ++i) {
@@ -214,7 +214,7 @@ TEST_F(Step, NoTimePassesWhileTheProgramWorksAndNoByteIsLate) {
 
 // An engine that fails starts again, possibly between two polls of the pty. The simulation must
 // receive even the first byte of the new engine.
-TEST_F(Step, WhoKeepsStepNextIsHeardFromTheFirstByte) {
+TEST_F(Step, TheNextProgramIsReceivedFromItsFirstByte) {
     alongside([&](Clock& clock, SerialPort& port) {
         for (uint8_t i = 0; i < 240; ++i) {
             if (i % 4 == 3)
@@ -229,7 +229,7 @@ TEST_F(Step, WhoKeepsStepNextIsHeardFromTheFirstByte) {
     });
 }
 
-TEST_F(Step, AProgramThatWasKilledHoldsNothing) {
+TEST_F(Step, AKilledProgramDoesNotStopTime) {
     pid_t child = fork();
     if (child == 0) {
         SimulatedClock clock(status_.path());
@@ -244,7 +244,7 @@ TEST_F(Step, AProgramThatWasKilledHoldsNothing) {
     EXPECT_EQ(status_->keeper, 0u);
 }
 
-TEST_F(Step, AnotherPortsProgramIsNotWaitedFor) {
+TEST_F(Step, AProgramOfAnotherPortIsNotAwaited) {
     SimulatedClock clock(status_.path());
     clock.keepStep(-1, "/dev/null");
     EXPECT_EQ(status_->keeper, 0u);
@@ -254,7 +254,7 @@ TEST_F(Step, AnotherPortsProgramIsNotWaitedFor) {
 
 // If the program is alive but does nothing, time soon continues without waiting for it, and a
 // message on stderr reports this.
-TEST_F(Step, WhoHoldsTimeForTooLongIsWaitedForNoLonger) {
+TEST_F(Step, AProgramThatStopsTimeTooLongIsNotAwaited) {
     SimulatedClock clock(status_.path());
     SerialPort port(clock);
     port.open(pty_.path());
@@ -266,7 +266,7 @@ TEST_F(Step, WhoHoldsTimeForTooLongIsWaitedForNoLonger) {
 }
 
 // A debugger, or SIGSTOP, may stop the program for any time.
-TEST_F(Step, WhoIsHeldByADebuggerIsWaitedFor) {
+TEST_F(Step, AProgramInADebuggerIsAwaited) {
     int ready[2];
     ASSERT_EQ(pipe(ready), 0);
     const pid_t program = fork();
@@ -291,7 +291,7 @@ TEST_F(Step, WhoIsHeldByADebuggerIsWaitedFor) {
 
 // GroundStep gets a function that decides whether to continue. Once this function has returned
 // false, it is not called again, and the simulation waits for no program any more.
-TEST_F(Step, NobodyIsWaitedForAfterTheStop) {
+TEST_F(Step, NoProgramIsAwaitedAfterTheStop) {
     SimulatedClock clock(status_.path());
     SerialPort port(clock);
     port.open(pty_.path());

@@ -66,7 +66,7 @@ protected:
     std::shared_ptr<XBeeAT::Peer> engine_ = wire_.engine();
 };
 
-TEST_F(Crowd, WhoNeverReadsIsCutOffAndNobodyIsBehindIt) {
+TEST_F(Crowd, AProgramThatNeverReadsIsDisconnectedAndDelaysNoOther) {
     Program deaf(engine_->connect(0)), other(engine_->connect(1));
     echoes(deaf);
     for (int i = 0; i < 40 && !HasFailure(); ++i) {
@@ -88,7 +88,7 @@ TEST_F(Crowd, WhoNeverReadsIsCutOffAndNobodyIsBehindIt) {
     echoes(other, 8000);
 }
 
-TEST_F(Crowd, WhatAProgramHasWrittenArrivesAlthoughItLeaves) {
+TEST_F(Crowd, DataOfAClosedProgramIsDelivered) {
     wire_.echo = false;
     Program program(engine_->connect(0));
     constexpr unsigned count = 3000;
@@ -114,7 +114,7 @@ TEST_F(Crowd, WhatAProgramHasWrittenArrivesAlthoughItLeaves) {
     EXPECT_LT(most, 64u * 1024) << "the engine reads more than it can send";
 }
 
-TEST_F(Crowd, CallsThatTheLinkCouldNotDeliverAreReportedWhenTheirProgramHasLeft) {
+TEST_F(Crowd, UndeliveredCallsOfAClosedProgramAreReported) {
     Program program(engine_->connect(0));
     echoes(program);
     Bytes call = message(1);
@@ -131,7 +131,7 @@ TEST_F(Crowd, CallsThatTheLinkCouldNotDeliverAreReportedWhenTheirProgramHasLeft)
         << wire_.log();
 }
 
-TEST_F(Crowd, AfterAFloodEveryNewProgramIsServed) {
+TEST_F(Crowd, EveryNewProgramIsServedAfterAFlood) {
     for (unsigned round = 0; round < 3; ++round) {
         std::vector<std::unique_ptr<Program>> flood;
         for (int i = 0; i < 3; ++i) {
@@ -186,7 +186,7 @@ protected:
     std::vector<std::unique_ptr<Program>> keepers_;
 };
 
-TEST_F(Keepers, AnswersThatAreNotRead) {
+TEST_F(Keepers, ProgramsThatNeverReadGiveUpTheirChannel) {
     for (auto& keeper : keepers_)
         for (int i = 0; i < 10; ++i)
             // more bytes than the socket accepts, but not a complete message
@@ -194,7 +194,7 @@ TEST_F(Keepers, AnswersThatAreNotRead) {
     theFourthIsServed([](Program& keeper) { keeper.write(); });
 }
 
-TEST_F(Keepers, AMessageThatNeverEnds) {
+TEST_F(Keepers, ProgramsThatNeverCompleteAMessageGiveUpTheirChannel) {
     for (auto& keeper : keepers_) {
         const Bytes whole = message(1, 8000);
         keeper->send({whole.begin(), whole.begin() + 14});
@@ -207,7 +207,7 @@ TEST_F(Keepers, AMessageThatNeverEnds) {
     });
 }
 
-TEST_F(Crowd, AFloodLeavesRoomForOthers) {
+TEST_F(Crowd, AFloodLeavesRoomForOtherClients) {
     Program flood(engine_->connect(0)), other(engine_->connect(1));
     wire_.until([&] {
         if (flood.unwritten() < 100'000)
@@ -284,7 +284,7 @@ private:
     U32 wroteAt_ = 0, heardAt_ = 0;
 };
 
-TEST(ProgramConnection, AProgramThatCutsSilentConnectionsHearsSignsOfLifeWhileIdle) {
+TEST(ProgramConnection, AProgramThatClosesSilentConnectionsGetsHeartbeatsWhileIdle) {
     Timed program;
     for (U32 second = 1; second < 1200; ++second)
         program.pass(second, true);
@@ -292,7 +292,7 @@ TEST(ProgramConnection, AProgramThatCutsSilentConnectionsHearsSignsOfLifeWhileId
     EXPECT_EQ(program.onTheAir, 0u);
 }
 
-TEST(ProgramConnection, AndWhileItSendsAndNothingComesBack) {
+TEST(ProgramConnection, AProgramGetsHeartbeatsWhileItOnlySends) {
     Timed program;
     for (U32 second = 1; second < 1200; ++second) {
         if (second % 7 == 0)
@@ -303,7 +303,7 @@ TEST(ProgramConnection, AndWhileItSendsAndNothingComesBack) {
     EXPECT_EQ(program.onTheAir, 1199u / 7);
 }
 
-TEST(ProgramConnection, SignsOfLifeAreNoActivity) {
+TEST(ProgramConnection, HeartbeatsAreNoActivity) {
     Timed program;
     program.send(1, 1);
     for (U32 second = 2; second < 100; ++second)
@@ -314,7 +314,7 @@ TEST(ProgramConnection, SignsOfLifeAreNoActivity) {
 
 // The engine sends no heartbeats to a program with Ice 3.7, because they would prevent the
 // program's own time-out (Ice.ACM) from closing the connection.
-TEST(ProgramConnection, AProgramOfTheOldKindIsLeftAloneWhileIdle) {
+TEST(ProgramConnection, AnOldProgramGetsNoHeartbeatsWhileIdle) {
     Timed program;
     program.send(1, 1);
     for (U32 second = 2; second < 1200; ++second)
@@ -322,7 +322,7 @@ TEST(ProgramConnection, AProgramOfTheOldKindIsLeftAloneWhileIdle) {
     EXPECT_LE(program.heard, 1u);
 }
 
-TEST(ProgramConnection, AProgramThatHasEndedItsWritingHearsNoSigns) {
+TEST(ProgramConnection, AProgramThatHasEndedItsWritingGetsNoHeartbeats) {
     Timed program;
     program.send(1, 1);
     program.endWriting();
@@ -334,7 +334,7 @@ TEST(ProgramConnection, AProgramThatHasEndedItsWritingHearsNoSigns) {
 // A program has written calls and disconnected. If the link is then lost, the program cannot be
 // notified, so its calls are counted as not received. This includes the calls that the kernel still
 // holds, although the kernel resets the connection because of an unread heartbeat.
-TEST(ProgramConnection, CallsThatAProgramLeftUnreadAreCountedWhenTheLinkIsLost) {
+TEST(ProgramConnection, UnreadCallsAreCountedWhenTheLinkIsLost) {
     constexpr unsigned count = 3000;
     int pair[2];
     ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_NONBLOCK, 0, pair), 0);

@@ -79,7 +79,7 @@ TEST_F(EngineTest, MoreProgramsThanChannelsWaitTheirTurn) {
     close(last);
 }
 
-TEST_F(EngineTest, AModemThatIsResetInFlightIsSetUpAgain) {
+TEST_F(EngineTest, AModemResetInFlightIsSetUpAgain) {
     auto engine = start();
     int fd = engine->connect(0);
     echoes(fd, 1);
@@ -98,7 +98,7 @@ TEST_F(EngineTest, AModemThatIsResetInFlightIsSetUpAgain) {
     EXPECT_TRUE(log_.has("Configuring the modem again"));
 }
 
-TEST_F(EngineTest, AMessageThatIsTooLongEndsItsConnectionOnly) {
+TEST_F(EngineTest, ATooLongMessageEndsOnlyItsConnection) {
     auto engine = start();
     int good = engine->connect(0), bad = engine->connect(1);
     echoes(good, 1);
@@ -112,7 +112,7 @@ TEST_F(EngineTest, AMessageThatIsTooLongEndsItsConnectionOnly) {
 
 // If the UAV's program does not accept a message in time, this message and the next one are
 // withdrawn, and not delivered later.
-TEST_F(EngineTest, WhatIsLateIsWithdrawnAndItsSenderIsTold) {
+TEST_F(EngineTest, LateMessagesAreWithdrawnAndReported) {
     auto engine = start();
     const int other = engine->connect(0), fd = engine->connect(1, 2000);
     ASSERT_TRUE(rig_.until([&] { return rig_.uav.opened.size() == 2; }));
@@ -139,7 +139,7 @@ TEST_F(EngineTest, WhatIsLateIsWithdrawnAndItsSenderIsTold) {
     close(next);
 }
 
-TEST_F(EngineTest, WhatTheLinkHasNoRoomForInTimeGoesWithItsConnection) {
+TEST_F(EngineTest, AMessageThatWaitsTooLongForTheLinkEndsItsConnection) {
     auto engine = start();
     const int other = engine->connect(0), fd = engine->connect(1, 2000);
     ASSERT_TRUE(rig_.until([&] { return rig_.uav.opened.size() == 2; }));
@@ -157,7 +157,7 @@ TEST_F(EngineTest, WhatTheLinkHasNoRoomForInTimeGoesWithItsConnection) {
     close(other);
 }
 
-TEST_F(EngineTest, WhoGivesUpBeforeTheLinkIsUpFreesItsChannel) {
+TEST_F(EngineTest, AProgramThatClosesBeforeTheLinkIsUpFreesItsChannel) {
     auto engine = start();
     int fd = engine->connect(1);
     int next = engine->connect(1);
@@ -167,7 +167,7 @@ TEST_F(EngineTest, WhoGivesUpBeforeTheLinkIsUpFreesItsChannel) {
     close(next);
 }
 
-TEST_F(EngineTest, HeartbeatsTakeNoAir) {
+TEST_F(EngineTest, HeartbeatsAreNotTransmitted) {
     rig_.with([&] { rig_.uav.echo = false; });
     auto engine = start();
     int fd = engine->connect(0);
@@ -194,7 +194,7 @@ TEST_F(EngineTest, HeartbeatsTakeNoAir) {
 
 // The modem may be in any mode and at any rate when the engine finds it. AP 2 is kept, because it
 // is the user's choice.
-TEST_F(EngineTest, AModemInAnyModeIsSetToTheWantedOne) {
+TEST_F(EngineTest, AModemInAnyModeIsSetUp) {
     const auto fly = [&](const XBeeAT::Settings& s, uint32_t mode, uint32_t rate) {
         SCOPED_TRACE("AP " + std::to_string(mode));
         auto engine = start(s);
@@ -238,7 +238,7 @@ TEST_F(EngineTest, TheModemsKeyIsSetAndNeverLogged) {
     EXPECT_FALSE(log_.has("0123456789ABCDEF"));
 }
 
-TEST_F(EngineTest, ACallOfTheUavThatNoDescriptorIsLeftForIsRefusedAndReported) {
+TEST_F(EngineTest, ACallOfTheUavIsRefusedIfNoFileDescriptorIsFree) {
     auto engine = start();
     const int ready = engine->listen();
     ASSERT_TRUE(rig_.until([&] { return rig_.uav.isUp(); }));
@@ -258,7 +258,7 @@ TEST_F(EngineTest, ACallOfTheUavThatNoDescriptorIsLeftForIsRefusedAndReported) {
     }));
 }
 
-TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
+TEST_F(EngineTest, AFailedModemIsRetriedAndTheListenerIsCalled) {
     rig_.with([&] { rig_.ground->power(false, rig_.ns()); });
     auto engine = start();
     int ready = engine->listen();
@@ -278,7 +278,7 @@ TEST_F(EngineTest, AModemThatWasGivenUpIsTriedAgainAndTheListenerIsCalled) {
 
 // If a program is killed during the set-up, the modem stays in command mode, in the middle of a
 // line. By itself, it leaves command mode only after CT, which is 10 s.
-TEST_F(EngineTest, AModemThatWasLeftInCommandModeIsFoundAtOnce) {
+TEST_F(EngineTest, AModemInCommandModeIsFoundAtOnce) {
     const int port = open(rig_.pty.path().c_str(), O_RDWR | O_NOCTTY);
     ASSERT_GE(port, 0);
     termios mode;
@@ -300,7 +300,7 @@ TEST_F(EngineTest, AModemThatWasLeftInCommandModeIsFoundAtOnce) {
 }
 
 // A failure is reported once, together with its cause.
-TEST_F(EngineTest, ARefusedCommandIsToldAsWhatItIs) {
+TEST_F(EngineTest, ARefusedCommandIsReported) {
     XBeeAT::Settings s = settings();
     s.pan = 0x1FFFF;
     auto engine = start(s);
@@ -336,7 +336,7 @@ TEST_F(EngineTest, TheModemIsSetUpWhileTheUavSends) {
     EXPECT_GE(commands, 9u);
 }
 
-TEST_F(EngineTest, AListenerAloneHasTheModemTriedAgain) {
+TEST_F(EngineTest, TheModemIsRetriedIfOnlyAListenerExists) {
     rig_.with([&] { rig_.ground->power(false, rig_.ns()); });
     auto engine = start();
     ASSERT_GE(engine->listen(), 0);
@@ -347,7 +347,7 @@ TEST_F(EngineTest, AListenerAloneHasTheModemTriedAgain) {
 
 // BYTES=10000000 sets the number of random bytes from the line. For every 64 KiB there is also
 // noise from a program. Nothing may hang or crash, and the link must work afterwards.
-TEST(Engine, RandomBytesFromTheLineAndFromProgramsAreSurvived) {
+TEST(Engine, RandomBytesDoNoHarm) {
     const auto total = static_cast<size_t>(numberFromEnvironment("BYTES", 10'000'000));
     Wire wire;
     Random random(testSeed());
@@ -399,7 +399,7 @@ size_t usersOf(const std::string& device) {
 // A USB adapter that is unplugged and plugged in again. A symbolic link leads to the adapter's
 // device, as with udev. If the old device stayed open, the kernel would give the adapter another
 // name.
-TEST(Engine, AnAdapterThatIsUnpluggedIsReleasedAndOpenedAgainWhenItReturns) {
+TEST(Engine, AnUnpluggedAdapterIsReopenedWhenItReturns) {
     EngineLog log;
     auto adapter = std::make_unique<Wire>();
     const std::string device = adapter->path();
@@ -448,7 +448,7 @@ std::string refusal(const std::string& device) {
     return "none";
 }
 
-TEST(Engine, ADeviceThatIsNotThereOrNoTerminalIsRefusedAndStaysAsItIs) {
+TEST(Engine, AMissingDeviceOrANonTerminalIsRefusedUnchanged) {
     UnnamedFile file;
     EXPECT_NE(refusal("/dev/no-such-port"), "none");
     EXPECT_NE(refusal(file.path()).find("not a serial port"), std::string::npos)
@@ -456,7 +456,7 @@ TEST(Engine, ADeviceThatIsNotThereOrNoTerminalIsRefusedAndStaysAsItIs) {
     EXPECT_EQ(lseek(file.fd(), 0, SEEK_END), 0);
 }
 
-TEST(Engine, APortThatAnotherProgramUsesIsRefusedWithItsNumber) {
+TEST(Engine, APortInUseIsRefusedWithTheProcessId) {
     Wire wire;
     int ready[2];
     ASSERT_EQ(pipe(ready), 0);

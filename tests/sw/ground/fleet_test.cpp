@@ -162,7 +162,7 @@ protected:
     std::list<Program> programs_;
 };
 
-TEST_F(FleetTest, EachVehicleAnswersItsOwnCallsUnderItsOwnKey) {
+TEST_F(FleetTest, EachVehicleAnswersItsCallsUnderItsKey) {
     const std::map<int, LinkKeys> keys = {{1, {{{1}}}}, {2, {}}, {0x0102, {{{2}}}}};
     std::map<int, Program> programs;
     for (const auto& [address, key] : keys) {
@@ -177,7 +177,7 @@ TEST_F(FleetTest, EachVehicleAnswersItsOwnCallsUnderItsOwnKey) {
         << "another key for the same vehicle must be refused";
 }
 
-TEST_F(FleetTest, VehiclesShareTheAirAlikeAndOneThatIsAwayCostsTheOthersLittle) {
+TEST_F(FleetTest, VehiclesShareTheAirEquallyAndAnAbsentOneCostsLittle) {
     for (int address : {1, 2, 3}) {
         fly(address);
         answers(programs_.emplace_back(peer(address)).fd, address);
@@ -202,7 +202,7 @@ TEST_F(FleetTest, VehiclesShareTheAirAlikeAndOneThatIsAwayCostsTheOthersLittle) 
     EXPECT_GT(share, 0.0001) << "the engine must search for the vehicle that is away";
 }
 
-TEST_F(FleetTest, OneThatComesWhileOthersAreCalledAtFullRateIsServedSoon) {
+TEST_F(FleetTest, AnArrivingVehicleIsServedSoonUnderFullLoad) {
     for (int address : {1, 2}) {
         fly(address);
         answers(programs_.emplace_back(peer(address)).fd, address);
@@ -221,7 +221,7 @@ TEST_F(FleetTest, OneThatComesWhileOthersAreCalledAtFullRateIsServedSoon) {
     EXPECT_LT(took, 3.5);
 }
 
-TEST_F(FleetTest, AnotherOfOneAddressABabblerAndAChangeOfKeysDisturbNobodyElse) {
+TEST_F(FleetTest, FaultyVehiclesDoNotDisturbOthers) {
     const LinkKeys present = {{{1}}}, next = {{{9}}}, others = {{{2}}};
     fly(1, present);
     fly(2, others);
@@ -266,7 +266,7 @@ TEST_F(FleetTest, AnotherOfOneAddressABabblerAndAChangeOfKeysDisturbNobodyElse) 
 // Tests two ground stations with the same address and, if the links have keys, with the same key.
 class TwinGrounds : public FleetTest, public ::testing::WithParamInterface<LinkKeys> {};
 
-TEST_P(TwinGrounds, TheNewerOneKeepsTheVehicleAndTheOlderOneHasItAgainAfterIt) {
+TEST_P(TwinGrounds, TheNewerGroundKeepsTheVehicleUntilItEnds) {
     rig_.placeOther(rig_.air);
     fly(1, GetParam());
     rig_.with([&] { Link_start(vehicles_[1]->link(), rig_.us()); });
@@ -297,7 +297,7 @@ TEST_P(TwinGrounds, TheNewerOneKeepsTheVehicleAndTheOlderOneHasItAgainAfterIt) {
 
 // A vehicle that loses power in the middle of a frame leaves a truncated frame, which belongs to no
 // session.
-TEST_P(TwinGrounds, AVehicleThatFallsSilentInAFrameHasNoOtherGround) {
+TEST_P(TwinGrounds, AVehicleThatStopsInMidFrameHasNoOtherGround) {
     fly(1, GetParam());
     const auto ground = peer(1, GetParam());
     const Program before(ground);
@@ -340,7 +340,7 @@ TEST_F(FleetTest, AModemWithoutApiModeTalksToOneVehicle) {
     answers(one.fd, 1);
 }
 
-TEST_F(FleetTest, AModemServesAsManyVehiclesAsItMay) {
+TEST_F(FleetTest, AModemServesItsMaximumOfVehicles) {
     std::vector<std::shared_ptr<XBeeAT::Peer>> peers;
     for (int address = 1; address <= int(XBeeAT::mostPeers); ++address)
         peers.push_back(peer(address));
@@ -388,7 +388,7 @@ protected:
     const Bytes goodbye = callOf(0, 0, 14, 4);
 };
 
-TEST_F(BroadcastTest, EachVehicleTakesACallOnceInOrder) {
+TEST_F(BroadcastTest, EachVehicleExecutesACallOnceAndInOrder) {
     fly(9);
     const Program one(peer(9));
     answers(one.fd, 9);
@@ -419,7 +419,7 @@ TEST_F(BroadcastTest, EachVehicleTakesACallOnceInOrder) {
     answers(one.fd, 9);
 }
 
-TEST_F(BroadcastTest, WhatCannotGoToAllIsRefusedAtOnceInWords) {
+TEST_F(BroadcastTest, CallsThatCannotBeBroadcastAreRefusedWithAReason) {
     EXPECT_NE(say({callOf(1, 5), goodbye}).find("use a oneway proxy"), std::string::npos);
     say({callOf(1, 0, 80)});
     EXPECT_TRUE(log_.has("one packet to all vehicles (at most 79)")) << log_.text();

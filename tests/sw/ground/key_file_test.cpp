@@ -39,7 +39,7 @@ protected:
     char path_[32] = "/tmp/key_file_test_XXXXXX";
 };
 
-TEST_F(KeyFiles, OneKeyServesEveryVehicle) {
+TEST_F(KeyFiles, OneKeyMayServeAllVehicles) {
     const KeyFile file = read(a + "\n");
     for (int address : {0, 1, 0xFFFE}) {
         ASSERT_EQ(file.of(address).size(), 1u);
@@ -48,11 +48,11 @@ TEST_F(KeyFiles, OneKeyServesEveryVehicle) {
     }
 }
 
-TEST_F(KeyFiles, AMarkAndLineEndsOfOtherEditorsAreIgnored) {
+TEST_F(KeyFiles, ByteOrderMarksAndCarriageReturnsAreIgnored) {
     EXPECT_EQ(read("\xEF\xBB\xBF" + a + "\r\n").of(1)[0][1], 0x11);
 }
 
-TEST_F(KeyFiles, EachVehicleHasItsLineAndTheNextKeyComesFirst) {
+TEST_F(KeyFiles, EachVehicleHasALineAndTheNextKeyIsFirst) {
     const KeyFile file = read("# fleet\n0x0001 " + a + "\n\n0xBEEF " + b + " " + a + " # soon\n");
     EXPECT_EQ(file.of(1).size(), 1u);
     ASSERT_EQ(file.of(0xBEEF).size(), 2u);
@@ -61,7 +61,7 @@ TEST_F(KeyFiles, EachVehicleHasItsLineAndTheNextKeyComesFirst) {
     EXPECT_THROW(file.of(2), std::runtime_error);
 }
 
-TEST_F(KeyFiles, NoVehiclesKeyIsTheGroups) {
+TEST_F(KeyFiles, TheKeyForAllVehiclesIsNotTheGroupKey) {
     EXPECT_THROW(read(a + "\n").of(0xFFFF), std::runtime_error);
     EXPECT_EQ(read(a + "\n0xffff " + b + "\n").of(0xFFFF)[0][0], 1);
 }
@@ -70,13 +70,13 @@ TEST_F(KeyFiles, WithoutAFileThereAreNoKeys) {
     EXPECT_TRUE(KeyFile().of(1).empty());
 }
 
-TEST_F(KeyFiles, AFileThatOthersMayReadIsRefused) {
+TEST_F(KeyFiles, AFileReadableByOthersIsRefused) {
     for (mode_t mode : {0640, 0604, 0620, 0666, 0611})
         EXPECT_NE(refusal(a, mode).find("chmod 600"), std::string::npos) << std::oct << mode;
     EXPECT_EQ(refusal(a, 0400), "");
 }
 
-TEST_F(KeyFiles, AWrongLineIsNamedAndWhatItIsToBe) {
+TEST_F(KeyFiles, AWrongLineIsReportedWithTheExpectedForm) {
     for (const std::string& line :
          {a.substr(1), a + "0", a.substr(0, 31) + "g", a + " " + b + " " + a, "0x1 " + a + "1",
           "0x10000 " + a, "1 " + a, "0x " + a, std::string("0x0001")})
@@ -100,7 +100,7 @@ TEST_F(KeyFiles, AMissingFileOrAFolderIsRefused) {
     EXPECT_THROW(KeyFile("/dev/zero"), std::runtime_error);
 }
 
-TEST_F(KeyFiles, AnotherUsersFileIsRefused) {
+TEST_F(KeyFiles, AFileOfAnotherUserIsRefused) {
     if (geteuid() != 0)
         GTEST_SKIP() << "only root may give a file away";
     std::ofstream(path_) << a;
@@ -108,7 +108,7 @@ TEST_F(KeyFiles, AnotherUsersFileIsRefused) {
     EXPECT_NE(refusal(a).find("belongs to another user"), std::string::npos);
 }
 
-TEST_F(KeyFiles, ADescriptorServesAsWell) {
+TEST_F(KeyFiles, AFileDescriptorMayReplaceTheName) {
     int ends[2];
     ASSERT_EQ(pipe(ends), 0);
     ASSERT_EQ(write(ends[1], a.data(), a.size()), 32);

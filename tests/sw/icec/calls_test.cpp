@@ -11,7 +11,7 @@ extern "C" {
 
 namespace {
 
-TEST_F(Calls, ACastAsksTheObjectForItsTypes) {
+TEST_F(Calls, ACheckedCastAsksTheObjectForItsTypes) {
     Ice_ObjectPrx other;
     EXPECT_EQ(Ice_ObjectPrx_checkedCast(&other, &prx_, "::Test::Thing"), ICE_OK);
     EXPECT_FALSE(Ice_ObjectPrx_isNull(&other));
@@ -20,7 +20,7 @@ TEST_F(Calls, ACastAsksTheObjectForItsTypes) {
     EXPECT_EQ(servant_.calls, 0);
 }
 
-TEST_F(Calls, AFailureIsToldOfItsProxyWhateverOthersCall) {
+TEST_F(Calls, EachProxyKeepsTheReasonOfItsFailure) {
     Ice_ObjectPrx missing = here().proxy("cat/missing -f side:loop"),
                   fails = here().proxy("thing:loop"), works = fails;
     Ice_Failure failure;
@@ -68,7 +68,7 @@ Ice_Status echo(const Ice_Current&, Ice_InputStreamPtr is, Ice_OutputStreamPtr o
     return ICE_OK;
 }
 
-TEST_F(Calls, ResultsInAProxysOwnBufferStayUntilItsNextCall) {
+TEST_F(Calls, ResultsInTheBufferOfAProxyStayUntilItsNextCall) {
     Ice_ObjectPrx own = here().proxy("thing:loop"), other = own;
     alignas(8) U32 buffer[32];
     Ice_ObjectPrx_setReplyBuffer(&own, buffer, sizeof buffer);
@@ -79,7 +79,7 @@ TEST_F(Calls, ResultsInAProxysOwnBufferStayUntilItsNextCall) {
     EXPECT_EQ(str(result), "mine");
 }
 
-TEST_F(Calls, EachTasksLastResultStaysAndOneTaskMoreIsRefused) {
+TEST_F(Calls, EachTaskKeepsItsLastResultAndTheNumberOfTasksIsLimited) {
     static int task;
     Ice_Os os = Ice_Os_none;
     os.task = [](void*) { return task; };
@@ -184,7 +184,7 @@ TEST_F(Calls, ContextsArrive) {
     EXPECT_EQ(seen, "-");
 }
 
-TEST_F(Calls, EveryLimitIsSaidWithItsNameAndValue) {
+TEST_F(Calls, EveryLimitIsReportedWithItsNameAndValue) {
     static Ice_Byte much[ICE_MESSAGE_MAX];
     Ice_Int out;
     servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {

@@ -44,7 +44,7 @@ std::string written(const Ice_ObjectPrx& prx) {
 
 class Manual : public IcecPair {};
 
-TEST_F(Manual, AProxyTellsIdentityAndFacet) {
+TEST_F(Manual, AProxyReturnsItsIdentityAndFacet) {
     Ice_ObjectPrx prx = here().proxy("\"cat/a name\" -f side:loop -c 1");
     EXPECT_EQ(str(Ice_ObjectPrx_getIdentity(&prx).name), "a name");
     EXPECT_EQ(str(Ice_ObjectPrx_getIdentity(&prx).category), "cat");
@@ -54,7 +54,7 @@ TEST_F(Manual, AProxyTellsIdentityAndFacet) {
     EXPECT_EQ(str(Ice_ObjectPrx_getFacet(&plain)), "");
 }
 
-TEST_F(Manual, ACopyIsChangedAndTheProxyIsNot) {
+TEST_F(Manual, ChangingACopyDoesNotChangeTheProxy) {
     const Ice_ObjectPrx prx = here().proxy("thing:loop");
     Ice_ObjectPrx other = prx;
     EXPECT_EQ(Ice_ObjectPrx_ice_identity(&other, "cat/else"), ICE_OK);
@@ -74,7 +74,7 @@ TEST_F(Manual, ACopyIsChangedAndTheProxyIsNot) {
     EXPECT_EQ(ask(other, "op", 0), 5) << "the proxy must be two-way again";
 }
 
-TEST_F(Manual, AnAdaptersProxyLeadsToItsObjectWhereverItIsSent) {
+TEST_F(Manual, AProxyOfAnAdapterWorksAtItsReceiver) {
     servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr os) {
         Ice_ObjectPrx self;
         EXPECT_EQ(Ice_ObjectAdapter_createProxy(current.adapter, "thing", &self), ICE_OK);
@@ -108,7 +108,7 @@ TEST_F(Manual, SeveralAdaptersServeTheSameConnections) {
     EXPECT_EQ(call(prx, "op"), ICE_OBJECT_NOT_EXIST);
 }
 
-TEST_F(Manual, CurrentTellsWhatIsAsked) {
+TEST_F(Manual, CurrentDescribesTheRequest) {
     Ice_ObjectAdapterPtr adapter = nullptr;
     std::string seen;
     servant_.run = [&](const Ice_Current& c, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
@@ -131,7 +131,7 @@ TEST_F(Manual, CurrentTellsWhatIsAsked) {
 }
 
 // The servant forwards requests for objects that it does not know.
-TEST_F(Manual, AServantWithoutTypeIdsIsAskedEverything) {
+TEST_F(Manual, AServantWithoutTypeIdsGetsEveryRequest) {
     static Ice_ObjectPtr target;
     static std::vector<std::string> seen;
     target = &servant_.base;
@@ -163,7 +163,7 @@ TEST_F(Manual, AServantWithoutTypeIdsIsAskedEverything) {
     EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx), ICE_OBJECT_NOT_EXIST);
 }
 
-TEST_F(Manual, AServantsFailedCheckTellsTheCallerItsLine) {
+TEST_F(Manual, AFailedAssertionOfAServantReportsItsLineToTheCaller) {
     servant_.run = [](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
         Ice_Int litres = Ice_InputStream_readInt(is);
         ICE_CHECK(&current, litres > 0);
@@ -195,7 +195,7 @@ TEST_F(Manual, AServantHasRoomForItsResults) {
     EXPECT_EQ(ask(prx_, "op", 1), 0x55) << "each call must have the whole arena";
 }
 
-TEST_F(Manual, ALocatorTellsWhereAnIndirectProxyLeads) {
+TEST_F(Manual, ALocatorResolvesAnIndirectProxy) {
     servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
         std::string wanted = str(Ice_InputStream_readString(is));
         EXPECT_EQ(current.mode, 2);
@@ -224,7 +224,7 @@ TEST_F(Manual, ALocatorTellsWhereAnIndirectProxyLeads) {
     }
 }
 
-TEST_F(Manual, WhatCannotBeCalledSaysSoAndTravelsOn) {
+TEST_F(Manual, ProxiesWithoutAUsableEndpointFailWithNoEndpoint) {
     for (const char* string : {"x -t -e 1.1 @ adapter", "x -t -e 1.1:opaque -t 2 -e 1.1 -v QUI=",
                                "x -d -e 1.1:loop -c 0", "x -D -e 1.1:loop -c 0", "x -t -e 1.1"}) {
         Ice_ObjectPrx prx = here().proxy(string);
@@ -234,7 +234,7 @@ TEST_F(Manual, WhatCannotBeCalledSaysSoAndTravelsOn) {
     EXPECT_EQ(servant_.calls, 0);
 }
 
-TEST_F(Calls, AnAnswerForALostConnectionIsRefused) {
+TEST_F(Calls, AReplyOnALostConnectionIsRefused) {
     Ice_Reply later{};
     servant_.answerLater(later);
     prx_.timeoutMs = 5;
@@ -270,7 +270,7 @@ TEST_F(Calls, TheCallersConnectionCarriesCallsBack) {
     EXPECT_EQ(call(fixed, "op"), ICE_CONNECTION_LOST);
 }
 
-TEST_F(Calls, TimeOutsAreKeptAndLateRepliesPassedOver) {
+TEST_F(Calls, TimeOutsExpireAndLateRepliesAreIgnored) {
     Ice_Reply later{};
     servant_.answerLater(later);
     Ice_ObjectPrx_ice_invocationTimeout(&prx_, 250);
@@ -317,7 +317,7 @@ TEST_F(Calls, AnAsynchronousCallWhoseSendingFailsIsReportedOnce) {
         EXPECT_EQ(call(prx_, "op"), ICE_OK) << "a slot was not released";
 }
 
-TEST_F(Calls, WhoWaitsForALongOperationGetsSignsOfLife) {
+TEST_F(Calls, CallersOfALongOperationGetHeartbeats) {
     int beats = 0;
     there().loop.tap = [&](const Bytes& m) { beats += m[8] == 3; }; // ValidateConnection
     Ice_Reply later{};
@@ -332,7 +332,7 @@ TEST_F(Calls, WhoWaitsForALongOperationGetsSignsOfLife) {
     EXPECT_EQ(beats, 0);
 }
 
-TEST_F(Calls, AfterShutdownNothingIsExecutedAndCallersKnowIt) {
+TEST_F(Calls, CallsAfterShutdownAreRefusedAndNotExecuted) {
     Ice_ObjectPrx prx = here().proxy("thing:loop"), other = here().proxy("thing:loop -c 1");
     ASSERT_EQ(call(prx, "op"), ICE_OK);
     Ice_Communicator_shutdown(&there().ic);
@@ -343,7 +343,7 @@ TEST_F(Calls, AfterShutdownNothingIsExecutedAndCallersKnowIt) {
     EXPECT_EQ(servant_.calls, 1);
 }
 
-TEST_F(Calls, DestroyWaitsForAnswersThatComeLater) {
+TEST_F(Calls, DestroyWaitsForPendingReplies) {
     Ice_Reply later{};
     servant_.answerLater(later);
     Ice_Status status = ICE_LIMIT;
@@ -366,7 +366,7 @@ TEST_F(Calls, DestroyWaitsForAnswersThatComeLater) {
     EXPECT_FALSE(here().loop.open[0]);
 }
 
-TEST_F(Calls, AGracefulCloseSaysThatNothingWasExecuted) {
+TEST_F(Calls, AGracefulCloseReportsThatNothingWasExecuted) {
     servant_.run = [&](const Ice_Current& current, Ice_InputStreamPtr, Ice_OutputStreamPtr) {
         Ice_Connection_close(&there().ic, current.connection);
         return ICE_OK;
@@ -376,7 +376,7 @@ TEST_F(Calls, AGracefulCloseSaysThatNothingWasExecuted) {
     EXPECT_EQ(call(prx_, "op"), ICE_OK) << "the call must use a new connection";
 }
 
-TEST_F(Calls, PropertiesMakeAdaptersAndProxies) {
+TEST_F(Calls, AdaptersAndProxiesAreCreatedFromProperties) {
     static const char* const table[] = {"Side.Endpoints=loop",
                                         "Thing.Proxy=thing:loop -c 1",
                                         "Number=-17",
@@ -398,7 +398,7 @@ TEST_F(Calls, PropertiesMakeAdaptersAndProxies) {
     EXPECT_EQ(prx.connection, 2);
 }
 
-TEST(TcpAddresses, IPv4ComesFirstAsInIce) {
+TEST(TcpAddresses, IPv4IsTriedFirstAsInIce) {
     TcpEndpoint_Address address = {};
     address.host.data = "mixed.test";
     address.host.size = 10;

@@ -8,7 +8,7 @@ namespace {
 
 class Minimal : public IcecPair {};
 
-TEST_F(Minimal, ParametersThatLackAndResultsThatDoNotFitAreUnknownLocalExceptions) {
+TEST_F(Minimal, MissingParametersAndTooLargeResultsAreUnknownLocalExceptions) {
     servant_.run = [](const Ice_Current&, Ice_InputStreamPtr is, Ice_OutputStreamPtr) {
         (void)Ice_InputStream_readLong(is);
         return ICE_OK;
@@ -24,7 +24,7 @@ TEST_F(Minimal, ParametersThatLackAndResultsThatDoNotFitAreUnknownLocalException
     EXPECT_EQ(Ice_ObjectPrx_ice_ping(&prx_), ICE_OK);
 }
 
-TEST_F(Minimal, CallsFromWithinAnOperationAreRefused) {
+TEST_F(Minimal, CallsWithinAnOperationAreRefused) {
     Ice_Status inner = ICE_OK;
     servant_.run = [&](const Ice_Current&, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
         Ice_ObjectPrx back = there().proxy("thing -o:loop");
@@ -39,7 +39,7 @@ TEST_F(Minimal, CallsFromWithinAnOperationAreRefused) {
         << "outside a dispatch, calls must be possible";
 }
 
-TEST_F(Minimal, StringsThatAreNoProxiesSaySo) {
+TEST_F(Minimal, InvalidProxyStringsAreReported) {
     Ice_ObjectPrx prx;
     const std::pair<const char*, Ice_Status> cases[] = {
         {"x", ICE_NO_ENDPOINT},
@@ -95,7 +95,7 @@ protected:
     std::function<void(Bytes id)> answer_;
 };
 
-TEST_F(MinimalPeer, NothingIsSentBeforeThePeersFirstMessage) {
+TEST_F(MinimalPeer, NothingIsSentBeforeTheFirstMessageOfThePeer) {
     EXPECT_EQ(call(prx_, "op"), ICE_TIMEOUT);
     EXPECT_EQ(requests_, 0);
     validate();
@@ -103,7 +103,7 @@ TEST_F(MinimalPeer, NothingIsSentBeforeThePeersFirstMessage) {
     EXPECT_EQ(requests_, 1);
 }
 
-TEST_F(MinimalPeer, RepliesToOtherCallsArePassedOver) {
+TEST_F(MinimalPeer, RepliesToOtherCallsAreIgnored) {
     EXPECT_EQ(call(prx_, "op"), ICE_TIMEOUT);
     validate();
     Bytes late;
@@ -117,7 +117,7 @@ TEST_F(MinimalPeer, RepliesToOtherCallsArePassedOver) {
     EXPECT_EQ(ask(prx_, "op", 0), 7);
 }
 
-TEST_F(MinimalPeer, ARequestMeanwhileIsServedBeforeTheReplyIsRead) {
+TEST_F(MinimalPeer, ARequestIsServedBeforeTheReplyIsRead) {
     Servant servant;
     EXPECT_EQ(Ice_ObjectAdapter_add(&side_.adapter, &servant.base, "thing"), ICE_OK);
     EXPECT_EQ(call(prx_, "op"), ICE_TIMEOUT);
@@ -132,7 +132,7 @@ TEST_F(MinimalPeer, ARequestMeanwhileIsServedBeforeTheReplyIsRead) {
     EXPECT_EQ(requests_, 2) << "one message is the request, one is the answer to the other request";
 }
 
-TEST_F(MinimalPeer, AConnectionThatEndsFailsTheCallAndTheNextOneConnectsAgain) {
+TEST_F(MinimalPeer, ALostConnectionFailsTheCallAndTheNextCallReconnects) {
     const std::pair<Bytes, Ice_Status> ends[] = {{message(4, {}), ICE_CONNECTION_CLOSED},
                                                  {message(9, {}), ICE_CONNECTION_LOST},
                                                  {message(1, {}), ICE_CONNECTION_LOST}};
@@ -147,7 +147,7 @@ TEST_F(MinimalPeer, AConnectionThatEndsFailsTheCallAndTheNextOneConnectsAgain) {
     EXPECT_EQ(requests_, 3);
 }
 
-TEST_F(MinimalPeer, RepliesThatAreMalformedSaySo) {
+TEST_F(MinimalPeer, MalformedRepliesAreReported) {
     EXPECT_EQ(call(prx_, "op"), ICE_TIMEOUT);
     validate();
     const std::pair<Bytes, Ice_Status> replies[] = {

@@ -7,7 +7,7 @@
 
 namespace {
 
-TEST_F(Calls, ResultsComeBack) {
+TEST_F(Calls, ResultsAreReturned) {
     servant_.run = [](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
         Ice_OutputStream_writeInt(os, 2 * Ice_InputStream_readInt(is));
         return str(current.operation) == "raise" ? ICE_USER_EXCEPTION : ICE_OK;
@@ -20,7 +20,7 @@ TEST_F(Calls, ResultsComeBack) {
     EXPECT_EQ(call(prx_, "raise", 21, &out), ICE_USER_EXCEPTION);
 }
 
-TEST_F(Calls, TypesAreAskedForByName) {
+TEST_F(Calls, TypesAreQueriedByName) {
     Ice_Bool is = 0;
     EXPECT_EQ(Ice_ObjectPrx_ice_isA(&prx_, "::Test::Thing", &is), ICE_OK);
     EXPECT_EQ(is, 1);
@@ -57,7 +57,7 @@ TEST_F(Calls, OnewayCallsReturnAtOnceAndRefuseResults) {
     EXPECT_EQ(servant_.calls, 10);
 }
 
-TEST_F(Calls, AnAdapterIsFullAtItsLimitAndDeafUntilActive) {
+TEST_F(Calls, AnAdapterHasALimitAndAnswersOnlyWhenActive) {
     std::vector<std::string> names(ICE_SERVANTS, "n");
     for (size_t i = 1; i < names.size(); ++i)
         add((names[i] += std::to_string(i)).c_str());
@@ -78,7 +78,7 @@ TEST_F(Wire, APingIsAnsweredAsIceDoes) {
     EXPECT_EQ(back[0], message(2, body));
 }
 
-TEST_F(Wire, TheAnswerHasTheRequestsEncoding) {
+TEST_F(Wire, TheReplyHasTheEncodingOfTheRequest) {
     auto back = exchange(request(1, requestBody("thing", "ice_ping", 0)));
     ASSERT_EQ(back.size(), 1u);
     EXPECT_EQ(back[0].back(), 0);
@@ -92,20 +92,20 @@ TEST_F(Wire, AnotherEncodingIsAnUnknownLocalException) {
     EXPECT_TRUE(isOpen());
 }
 
-TEST_F(Wire, WhatDoesNotExistIsNamedInTheReply) {
+TEST_F(Wire, TheReplyNamesTheMissingObject) {
     auto back = exchange(request(1, requestBody("none", "op")));
     ASSERT_EQ(back.size(), 1u);
     Bytes body = {1, 0, 0, 0, 2, 4, 'n', 'o', 'n', 'e', 0, 0, 2, 'o', 'p'};
     EXPECT_EQ(back[0], message(2, body));
 }
 
-TEST_F(Wire, AFacetThatIsNotThereDoesNotExist) {
+TEST_F(Wire, AMissingFacetDoesNotExist) {
     auto back = exchange(request(1, "thing", "ice_ping", {}, "side"));
     ASSERT_EQ(back.size(), 1u);
     EXPECT_EQ(back[0][18], ICEC_FULL ? ICE_FACET_NOT_EXIST : ICE_OBJECT_NOT_EXIST);
 }
 
-TEST_F(Wire, CompressionThatIsOnlyOfferedDoesNotMatter) {
+TEST_F(Wire, AnOfferOfCompressionIsAccepted) {
     Bytes m = request(1, requestBody("thing", "ice_ping"));
     m[9] = 1;
     EXPECT_EQ(exchange(m).size(), 1u);
@@ -134,7 +134,7 @@ TEST_F(Wire, MalformedMessagesCloseTheConnection) {
         << "a valid message after the invalid ones must be answered";
 }
 
-TEST_F(Wire, RepliesThatNobodyAskedForArePassedOver) {
+TEST_F(Wire, UnexpectedRepliesAreIgnored) {
     EXPECT_TRUE(exchange(message(2, {9, 0, 0, 0, 0, 6, 0, 0, 0, 1, 1})).empty());
     EXPECT_TRUE(isOpen());
 }

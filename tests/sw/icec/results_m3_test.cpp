@@ -46,12 +46,12 @@ protected:
     }
 };
 
-TEST_P(ResultsM3, StayWhileTheirTaskLooksAtThemAndOthersCall) {
+TEST_P(ResultsM3, StayValidWhileOtherTasksCall) {
     interruptEach(LOOKING, 2);
 }
 
 // Another seed interrupts at other instructions. RESULTS_M3_STEP=1 interrupts at every instruction.
-TEST_P(ResultsM3, ComeWhereverOthersCall) {
+TEST_P(ResultsM3, AreCorrectWhereverAnotherTaskInterrupts) {
     const char* step = std::getenv("RESULTS_M3_STEP");
     interruptEach(ALL, step ? std::strtoull(step, nullptr, 10) : 1499);
 }

@@ -191,7 +191,7 @@ protected:
 // Tests with a parameter: the number of tasks that serve. If it is 0, the calling tasks receive
 // messages in turns.
 class TasksThatServe : public Tasks, public ::testing::WithParamInterface<int> {};
-TEST_P(TasksThatServe, LetOthersCallAtOnce) {
+TEST_P(TasksThatServe, ServingTasksLetOthersCall) {
     whileServing(GetParam(), [this] { callFromThreads(ICE_CALLS); });
 }
 INSTANTIATE_TEST_SUITE_P(Tasks, TasksThatServe, ::testing::Values(0, 1, 2));
@@ -215,7 +215,7 @@ TEST_F(Tasks, AThreadKeyReleasesTheSlotOfAThreadThatEnds) {
 }
 
 // Tasks make calls, one task after the other. IceC stores the result of a call until its task ends.
-TEST_F(Tasks, OneThatHasEndedLeavesItsPlaceToOthers) {
+TEST_F(Tasks, AnEndedTaskFreesItsSlot) {
     for (int i = 0; i < ICE_CALLS + 2; ++i)
         std::thread([&] {
             Ice_ObjectPrx prx = proxy();
@@ -233,7 +233,7 @@ TEST_F(Tasks, OneThatHasEndedLeavesItsPlaceToOthers) {
 
 // Tasks make calls while two other tasks poll repeatedly. Each poll takes the role of the receiving
 // task over from a waiting call, and then gives it back.
-TEST_F(Tasks, CallWhileTwoPollNowAndThen) {
+TEST_F(Tasks, CallsWorkWhileTwoTasksPoll) {
     std::atomic<bool> over{false};
     auto poll = [&] {
         while (!over)
@@ -246,7 +246,7 @@ TEST_F(Tasks, CallWhileTwoPollNowAndThen) {
     second.join();
 }
 
-TEST_F(Tasks, AServerTakesTheRoleFromACallThatWaits) {
+TEST_F(Tasks, AServerTakesTheReceivingRoleFromAWaitingCall) {
     hold(true);
     std::atomic<bool> answered{false};
     std::thread caller([&] {
@@ -276,7 +276,7 @@ TEST_F(Tasks, AServerTakesTheRoleFromACallThatWaits) {
 
 // The server listens only on the second address of the name (see the resolver in manual_test.cpp).
 // The next call uses the existing connection.
-TEST_F(Tasks, TryEachAddressOfAName) {
+TEST_F(Tasks, EachAddressOfANameIsTried) {
     Ice_ObjectPrx prx = proxy("thing", "twofold.test");
     for (int i = 0; i < 3; ++i)
         EXPECT_EQ(ask(prx, "now", 4), 8);
@@ -297,7 +297,7 @@ protected:
     Graph_Maker maker_;
 };
 
-TEST_F(Results, OfAnAsynchronousCallAreThereWhenItIsCompleted) {
+TEST_F(Results, ResultsOfAnAsynchronousCallAreValidInItsCallback) {
     Graph_MakerPrx prx = proxy("maker");
     Graph_Node sent;
     Graph_Node_init(&sent);
@@ -320,7 +320,7 @@ TEST_F(Results, OfAnAsynchronousCallAreThereWhenItIsCompleted) {
     }
 }
 
-TEST_F(Results, NeedTheModeOfTheirOperation) {
+TEST_F(Results, ACallNeedsTheModeOfItsOperation) {
     Graph_MakerPrx prx = proxy("maker");
     EXPECT_EQ(::call(prx, "echo", 0, nullptr, 2), ICE_UNKNOWN_LOCAL_EXCEPTION)
         << "the operation is not idempotent";

@@ -175,7 +175,7 @@ TEST_F(Tcp, AHundredClientsAtOnceAreServed) {
     }
 }
 
-TEST_F(Tcp, AMessageMayComeByteByByte) {
+TEST_F(Tcp, AMessageMayArriveByteByByte) {
     RawSocket peer(port());
     ASSERT_TRUE(peer.isConnected(1000));
     for (int turn = 0; turn < 2; ++turn)
@@ -189,7 +189,7 @@ TEST_F(Tcp, AMessageMayComeByteByByte) {
         EXPECT_EQ(peer.receive(20000), message(2, {7, 0, 0, 0, 0, 6, 0, 0, 0, 1, 1}));
 }
 
-TEST_F(Tcp, AClientThatNeverReadsStopsNobodyForLong) {
+TEST_F(Tcp, AClientThatNeverReadsDelaysOthersOnlyBriefly) {
     servant_.run = [](const Ice_Current&, Ice_InputStreamPtr, Ice_OutputStreamPtr os) {
         static const Ice_Byte much[8000] = {0};
         Ice_OutputStream_writeBlob(os, much, sizeof much);
@@ -205,7 +205,7 @@ TEST_F(Tcp, AClientThatNeverReadsStopsNobodyForLong) {
     EXPECT_TRUE(ping(other, 3000));
 }
 
-TEST_F(Tcp, ANewPeerDisplacesTheOneThatHasBeenIdleLongest) {
+TEST_F(Tcp, ANewPeerReplacesThePeerThatWasIdleLongest) {
     tcp_->idleMs = 100;
     serve();
     std::deque<RawSocket> idle;
@@ -221,7 +221,7 @@ TEST_F(Tcp, ANewPeerDisplacesTheOneThatHasBeenIdleLongest) {
     EXPECT_TRUE(ping(idle[1])) << "no other connection was closed";
 }
 
-TEST_F(Tcp, APeerThatHasBeenServedMakesRoomAtOnce) {
+TEST_F(Tcp, AServedPeerFreesItsSlotAtOnce) {
     tcp_->idleMs = 3600000;
     serve();
     std::deque<RawSocket> peers;
@@ -238,7 +238,7 @@ Bytes tooLong(Ice_Int id) {
     return request(id, body);
 }
 
-TEST_F(Tcp, ARequestThatIsTooLongIsAnsweredWithTheLimitsName) {
+TEST_F(Tcp, ATooLongRequestIsAnsweredWithTheNameOfTheLimit) {
     serve();
     RawSocket peer(port());
     ASSERT_TRUE(ping(peer));
@@ -254,7 +254,7 @@ TEST_F(Tcp, ARequestThatIsTooLongIsAnsweredWithTheLimitsName) {
 
 // If a message exceeds a limit and cannot be answered, its sender notices this because the
 // connection is closed, as with stock Ice.
-TEST_F(Tcp, WhatIsRefusedWithoutAnAnswerIsLoggedAndEndsTheConnection) {
+TEST_F(Tcp, MessagesRefusedWithoutAReplyAreLoggedAndEndTheConnection) {
     ::testing::internal::CaptureStderr();
     serve();
     RawSocket oneway(port()), batch(port()), compressed(port());
@@ -283,7 +283,7 @@ TEST_F(Tcp, WhatIsRefusedWithoutAnAnswerIsLoggedAndEndsTheConnection) {
                   "icec: refused a compressed batch: IceC has no bzip2\n");
 }
 
-TEST_F(Tcp, APeerWhoseOperationIsUnderWayIsNotDisplaced) {
+TEST_F(Tcp, APeerWithAPendingOperationIsNotReplaced) {
     tcp_->idleMs = 50;
     Ice_Reply later{};
     std::atomic<bool> asked{false};
@@ -311,7 +311,7 @@ TEST_F(Tcp, APeerWhoseOperationIsUnderWayIsNotDisplaced) {
 }
 
 // Ice 3.8 would close a connection without heartbeats
-TEST_F(Tcp, AConnectionWithoutCallsCarriesHeartbeats) {
+TEST_F(Tcp, AnIdleConnectionCarriesHeartbeats) {
     tcp_->heartbeatMs = 50;
     serve();
     RawSocket peer(port());
@@ -322,7 +322,7 @@ TEST_F(Tcp, AConnectionWithoutCallsCarriesHeartbeats) {
 }
 
 // A server that behaves as documented for Ice 3.8: it closes a connection on which nothing arrives.
-TEST_F(Tcp, AServerThatCutsSilentConnectionsKeepsThisOne) {
+TEST_F(Tcp, HeartbeatsKeepAConnectionToAServerThatClosesSilentOnes) {
     tcp_->heartbeatMs = 50;
     Listener listener;
     Ice_ObjectPrx prx = proxy(listener);
@@ -345,7 +345,7 @@ TEST_F(Tcp, AServerThatCutsSilentConnectionsKeepsThisOne) {
     EXPECT_EQ(prx.connection, connection);
 }
 
-TEST_F(Tcp, ACallWhoseReplyIsCutIsLostAndTheNextOneConnectsAgain) {
+TEST_F(Tcp, ATruncatedReplyFailsTheCallAndTheNextCallReconnects) {
     constexpr int calls = 20;
     Listener listener;
     std::thread server([&] {
@@ -364,7 +364,7 @@ TEST_F(Tcp, ACallWhoseReplyIsCutIsLostAndTheNextOneConnectsAgain) {
     server.join();
 }
 
-TEST_F(Tcp, APeerThatIsGoneWithoutAWordIsLookedFor) {
+TEST_F(Tcp, APeerThatVanishedIsProbed) {
     serve();
     RawSocket peer(port());
     ASSERT_TRUE(ping(peer));

@@ -83,7 +83,7 @@ TEST_F(Transports, AnAdaptersProxyHasAnEndpointOfEachTransportItListensOn) {
 }
 
 // The expected strings are the output of stock Ice's proxyToString(stringToProxy(...)).
-TEST_F(Transports, StringsOfProxiesAreReadAndPrintedAsByIce) {
+TEST_F(Transports, ProxyStringsAreParsedAndPrintedAsInIce) {
     const std::pair<const char*, const char*> cases[] = {
         {"plain", "plain -t -e 1.1"},
         {"plain -t", "plain -t -e 1.1"},
@@ -116,14 +116,14 @@ TEST_F(Transports, StringsOfProxiesAreReadAndPrintedAsByIce) {
     EXPECT_EQ(Ice_Communicator_stringToProxy(&here_->ic, "name:tcp -h", &prx), ICE_PARSE);
 }
 
-TEST_F(Transports, WhereOneFailsTheNextEndpointIsTried) {
+TEST_F(Transports, IfAnEndpointFailsTheNextIsTried) {
     Ice_ObjectPrx prx = proxy("thing:tcp -h 127.0.0.1 -p 1:loop");
     EXPECT_EQ(callBy(prx), LOOP);
     prx = proxy("thing:opaque -t 99 -e 1.1 -v AAAA:tcp -p " + there_->port());
     EXPECT_EQ(callBy(prx), TCP);
 }
 
-TEST_F(Transports, AnOperationCallsByTheOtherOneBeforeItAnswers) {
+TEST_F(Transports, AnOperationMayCallThroughTheOtherTransport) {
     Servant caller;
     Ice_ObjectPrx back;
     ASSERT_EQ(Ice_ObjectAdapter_add(&here_->adapter, &servant_.base, "far"), ICE_OK);
@@ -138,7 +138,7 @@ TEST_F(Transports, AnOperationCallsByTheOtherOneBeforeItAnswers) {
     EXPECT_EQ(came_, LOOP);
 }
 
-TEST_F(Transports, AConnectionThatEndsLeavesTheOtherOnesCalls) {
+TEST_F(Transports, TheEndOfAConnectionDoesNotFailCallsOfTheOtherTransport) {
     Ice_Reply later;
     Ice_Status status[2] = {ICE_LATER, ICE_LATER};
     Ice_ObjectPrx* const by[2] = {&byLoop_, &byTcp_};
@@ -156,7 +156,7 @@ TEST_F(Transports, AConnectionThatEndsLeavesTheOtherOnesCalls) {
     EXPECT_EQ(status[LOOP], ICE_CONNECTION_LOST);
 }
 
-TEST_F(Transports, ABusyOneDoesNotKeepTheOtherFromBeingHeard) {
+TEST_F(Transports, ABusyTransportDoesNotStarveTheOther) {
     EXPECT_EQ(callBy(byTcp_), TCP);
     Ice_ObjectPrx oneway = byTcp_;
     Ice_ObjectPrx_ice_oneway(&oneway);
@@ -172,7 +172,7 @@ TEST_F(Transports, ABusyOneDoesNotKeepTheOtherFromBeingHeard) {
     EXPECT_LT(polls, 100);
 }
 
-TEST_F(Transports, APollAsksEachAndTakesItsTime) {
+TEST_F(Transports, APollServesEachTransportWithinItsTimeOut) {
     EXPECT_EQ(callBy(byTcp_), TCP);
     Ice_ObjectPrx oneway = byTcp_;
     Ice_ObjectPrx_ice_oneway(&oneway);
@@ -187,7 +187,7 @@ TEST_F(Transports, APollAsksEachAndTakesItsTime) {
     EXPECT_GE(here_->loop.nowMs() - begin, 50U);
 }
 
-TEST_F(Transports, AnAdapterThatOneRefusesListensOnNone) {
+TEST_F(Transports, AnAdapterRefusedByOneTransportListensOnNone) {
     Ice_Communicator ic;
     TcpEndpoint tcp;
     Ice_ObjectAdapter adapter;
@@ -202,7 +202,7 @@ TEST_F(Transports, AnAdapterThatOneRefusesListensOnNone) {
     TcpEndpoint_destroy(&tcp);
 }
 
-TEST_F(Transports, ShutdownAndDestroyAreOfAll) {
+TEST_F(Transports, ShutdownAndDestroyAffectAllTransports) {
     EXPECT_EQ(callBy(byLoop_), LOOP);
     EXPECT_EQ(callBy(byTcp_), TCP);
     Ice_Communicator_shutdown(&there_->ic);

@@ -15,13 +15,13 @@ Ice_InputStream over(const Bytes& wire) {
     return is;
 }
 
-TEST_F(Wire, CompressedMessagesAreRefusedByClosing) {
+TEST_F(Wire, CompressedMessagesCloseTheConnection) {
     auto back = exchange(message(0, Bytes(100, 1), 2));
     EXPECT_EQ(back, std::vector<Bytes>({message(4, {})}));
     EXPECT_FALSE(isOpen());
 }
 
-TEST(Strings, AreCopiedInWholeCharactersAndPrinted) {
+TEST(Strings, AreTruncatedAtWholeCharacters) {
     char to[6];
     EXPECT_EQ(Ice_String_copy(Ice_String_from("four"), to, sizeof to), 1);
     EXPECT_STREQ(to, "four");
@@ -39,7 +39,7 @@ TEST(Strings, AreCopiedInWholeCharactersAndPrinted) {
     EXPECT_STREQ(text, "<><name>");
 }
 
-TEST(Longs, GoThroughLongLong) {
+TEST(Longs, ConvertToLongLongAndBack) {
     for (long long v :
          {0LL, 1LL, -1LL, 0x80000000LL, -0x80000000LL, 0x100000000LL, -0x100000001LL,
           std::numeric_limits<long long>::max(), std::numeric_limits<long long>::min()}) {
@@ -55,7 +55,7 @@ TEST_F(Wire, TwoFacetsAreMalformed) {
     EXPECT_FALSE(isOpen());
 }
 
-TEST_F(Wire, ABatchMayNotPromiseMoreThanItHas) {
+TEST_F(Wire, ABatchMustHaveTheDeclaredNumberOfRequests) {
     Bytes body = {2, 0, 0, 0}, one = requestBody("thing", "op");
     body.insert(body.end(), one.begin(), one.end());
     EXPECT_TRUE(exchange(message(1, body)).empty());
@@ -92,7 +92,7 @@ TEST_F(Wire, ProxiesTravelWithEndpointsOfAnyKind) {
     EXPECT_EQ(back, wire);
 }
 
-TEST_F(Wire, EndpointsThatDoNotFitAreLeftOutAsLongAsOneDoes) {
+TEST_F(Wire, EndpointsThatDoNotFitAreLeftOutIfOneFits) {
     Bytes wire = {1, 'i', 0, 0, 0, 0, 1, 0, 1, 1, 40};
     for (int i = 0; i < 40; ++i)
         wire.insert(wire.end(), {9, 0, 8, 0, 0, 0, 1, 1, 65, 66});
@@ -104,7 +104,7 @@ TEST_F(Wire, EndpointsThatDoNotFitAreLeftOutAsLongAsOneDoes) {
     EXPECT_EQ(is.position, is.size);
 }
 
-TEST_F(Wire, StringsThatAreNoProxiesSaySo) {
+TEST_F(Wire, InvalidProxyStringsAreReported) {
     const struct {
         const char* text;
         Ice_Status status;
@@ -158,7 +158,7 @@ TEST(Stream, OptionalsOfEveryFormatAreSkipped) {
 
 // A peer may send any number as the size of a slice, even the smallest Ice_Int. The code subtracts
 // from the size; the result must not wrap.
-TEST(Stream, ASliceOfAnyWrongSizeIsMalformed) {
+TEST(Stream, ASliceOfAWrongSizeIsMalformed) {
     for (uint32_t size : {0x80000000U, 0x80000003U, 0xFFFFFFFFU, 0U, 3U, 5U, 0x7FFFFFFFU}) {
         Bytes wire = {0x39, 1, 'x', 4, 0, 0, 0, // last slice: its name and size; a table follows
                       1,    1,                  // the table contains one instance,
@@ -215,7 +215,7 @@ TEST(Stream, SizesAreCheckedBeforeUse) {
     EXPECT_EQ(Ice_InputStream_allocate(&is, 0x7FFFFFFF, 16), nullptr);
 }
 
-TEST(Stream, WritesThatDoNotFitFailAndTouchNothing) {
+TEST(Stream, TooLargeWritesFailAndChangeNothing) {
     Ice_Byte bytes[4] = {0, 0, 9, 9};
     Ice_OutputStream os;
     Ice_OutputStream_init(&os, bytes, 2);

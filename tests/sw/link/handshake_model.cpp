@@ -356,7 +356,7 @@ private:
 // Two nonces per side: one for the session, and one that is earlier or later.
 constexpr HandshakeModel::Limits withData = {2, 1, 0}, withPings = {2, 0, 1}, both = {2, 1, 1};
 
-TEST(HandshakeModel, KeepsItsPromisesInEveryState) {
+TEST(HandshakeModel, HoldsItsPropertiesInEveryState) {
     for (const auto& limits : {withData, withPings}) {
         const auto result = HandshakeModel(Bug::None, limits).explore();
         EXPECT_EQ(result.fault, "") << testing::PrintToString(result.way);
@@ -367,7 +367,7 @@ TEST(HandshakeModel, KeepsItsPromisesInEveryState) {
     }
 }
 
-TEST(HandshakeModel, FindsEachBug) {
+TEST(HandshakeModel, FindsEachSeededBug) {
     const std::pair<Bug, const char*> bugs[] = {
         {Bug::NonceIsNotEchoed, "a nonce began two sessions"},
         {Bug::OneKeyForBoth, "data was taken that the peer has not sent"},

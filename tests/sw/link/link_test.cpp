@@ -41,7 +41,7 @@ TEST_P(LinkLayer, BothSidesMayStartAtOnce) {
     EXPECT_EQ(b.sessions(), 1u);
 }
 
-TEST_P(LinkLayer, WhatIsWrongIsRefused) {
+TEST_P(LinkLayer, InvalidArgumentsAreRefused) {
     const Link_Status none = isMinimal() ? LINK_CLOSED : LINK_DOWN;
     EXPECT_EQ(b.open(0), LINK_DOWN);
     EXPECT_EQ(b.send(0, {1}, 0), none);
@@ -64,7 +64,7 @@ TEST_P(LinkLayer, WhatIsWrongIsRefused) {
     EXPECT_EQ(a.received[0].second.size(), b.layer.maxMessage);
 }
 
-TEST_P(LinkLayer, AChannelThatNobodyHasOpenedIsRefused) {
+TEST_P(LinkLayer, AClosedChannelIsRefused) {
     ASSERT_TRUE(connect());
     EXPECT_EQ(a.send(1, {1}, 0), LINK_CLOSED);
     EXPECT_EQ(a.close(1), LINK_CLOSED);
@@ -83,7 +83,7 @@ TEST_P(LinkLayer, AChannelThatNobodyHasOpenedIsRefused) {
 // Random bytes arrive during a session, between messages. Nothing may fail, and the link must
 // continue. BYTES is the number of these bytes for the full layer without a key; other layers get a
 // million.
-TEST_P(LinkLayer, TenMillionRandomBytesAreSurvived) {
+TEST_P(LinkLayer, TenMillionRandomBytesDoNoHarm) {
     const double most = numberFromEnvironment("BYTES", 10'000'000);
     const auto bytes =
         static_cast<unsigned long>(isMinimal() || GetParam().hasKey ? 1'000'000 : most);
@@ -110,7 +110,7 @@ TEST_P(LinkLayer, TenMillionRandomBytesAreSurvived) {
     std::printf("link layer: %lu bytes of noise in a session, it works\n", bytes);
 }
 
-TEST_P(LinkLayer, AVanishedPeerIsNoticedAndAReturningOneFound) {
+TEST_P(LinkLayer, ALostPeerIsDetectedAndFoundAgain) {
     ASSERT_TRUE(connect());
     setWeather({1, 0, 0});
     for (Side* side : {&a, &b}) {
@@ -130,7 +130,7 @@ TEST_P(LinkLayer, AVanishedPeerIsNoticedAndAReturningOneFound) {
 
 // The reply to the ground's next frame reveals the reboot, so it need not wait for 9 s
 // of silence.
-TEST_P(LinkLayer, ARebootOfTheVehicleIsNoticedByTheNextFrame) {
+TEST_P(LinkLayer, ARestartOfTheVehicleIsDetectedByTheNextFrame) {
     ASSERT_TRUE(connect());
     a.open(0);
     run(100'000);
@@ -143,7 +143,7 @@ TEST_P(LinkLayer, ARebootOfTheVehicleIsNoticedByTheNextFrame) {
 
 // Traffic keeps the link from sending a PING for more than half of the range of the 32-bit time.
 // After that, the time of the last PING must not be taken for a time in the future.
-TEST_P(LinkLayer, ASilenceAfterFortyMinutesOfTrafficIsAskedAbout) {
+TEST_P(LinkLayer, APeerThatFallsSilentAfterFortyMinutesIsProbed) {
     ASSERT_TRUE(connect());
     ASSERT_EQ(a.open(0), LINK_OK);
     for (U32 tag = 0; tag < 800; ++tag) {
@@ -156,7 +156,7 @@ TEST_P(LinkLayer, ASilenceAfterFortyMinutesOfTrafficIsAskedAbout) {
     EXPECT_TRUE(bothUp());
 }
 
-TEST_P(LinkLayer, AClosingWaitsForRoomAndIsNotLost) {
+TEST_P(LinkLayer, AClosingMessageWaitsForRoomAndIsNotLost) {
     ASSERT_TRUE(connect());
     ASSERT_EQ(a.open(1), LINK_OK);
     run(300'000);
@@ -184,7 +184,7 @@ TEST_P(LinkLayer, ALateMessageDoesNotReachTheNextConnection) {
     EXPECT_TRUE(b.received.empty());
 }
 
-TEST_P(LinkLayer, AMessageThatIsNotTakenEndsTheSessionAfter27Seconds) {
+TEST_P(LinkLayer, AMessageThatIsNotAcceptedEndsTheSessionAfter27Seconds) {
     ASSERT_TRUE(connect());
     b.refuse = true;
     a.open(1);
@@ -199,7 +199,7 @@ TEST_P(LinkLayer, AMessageThatIsNotTakenEndsTheSessionAfter27Seconds) {
     EXPECT_TRUE(b.received.empty());
 }
 
-TEST_P(LinkLayer, AMessageThatIsNotTakenWaitsAndStopsTheSender) {
+TEST_P(LinkLayer, AMessageThatIsNotAcceptedStopsTheSender) {
     ASSERT_TRUE(connect());
     b.refuse = true;
     a.open(0);
@@ -215,7 +215,7 @@ TEST_P(LinkLayer, AMessageThatIsNotTakenWaitsAndStopsTheSender) {
         EXPECT_EQ(b.received[tag].second, Bytes(900, tag));
 }
 
-TEST_P(LinkLayer, StopTellsThePeer) {
+TEST_P(LinkLayer, StopNotifiesThePeer) {
     ASSERT_TRUE(connect());
     run(100'000);
     b.stop();
@@ -235,7 +235,7 @@ INSTANTIATE_TEST_SUITE_P(Vehicles, LinkLayer, ::testing::ValuesIn(vehicles(1)));
 class MinimalLayer : public Variants {};
 
 // The link must also work if Link_poll is called only at the times that Link_deadline returns.
-TEST_P(MinimalLayer, TheDeadlineIsWhenSomethingIsToBeDone) {
+TEST_P(MinimalLayer, TheDeadlineIsTheTimeOfTheNextAction) {
     ASSERT_TRUE(connect());
     ASSERT_EQ(b.open(3), LINK_OK);
     EXPECT_LE(b.deadline(), 1000u);
@@ -272,14 +272,14 @@ protected:
     }
 };
 
-TEST_P(Limits, ASessionEndsAtItsLastNumberAndTheNextLosesNothing) {
+TEST_P(Limits, ASessionEndsAtTheLastNumberWithoutLoss) {
     ASSERT_TRUE(connect());
     deliver(150);
     EXPECT_GE(a.sessions(), 3u);
     EXPECT_GE(b.sessions(), 3u);
 }
 
-TEST_P(Limits, ASessionEndsAtTooManyWrongTagsAndBeginsAnew) {
+TEST_P(Limits, TooManyWrongTagsRestartTheSession) {
     Bytes frame;
     ASSERT_TRUE(connect());
     a.open(1);
@@ -311,7 +311,7 @@ TEST_P(Limits, ASessionEndsAtTooManyWrongTagsAndBeginsAnew) {
 
 INSTANTIATE_TEST_SUITE_P(Vehicles, Limits, ::testing::Values(Variant{"limits", "limits", true}));
 
-TEST(FullLayer, LinksOverOneRadioShareWhatMayWaitForItsAnswers) {
+TEST(FullLayer, LinksOnOneRadioShareTheLimitOfPacketsInFlight) {
     struct Program : LinkProgram {
         bool transmit(const U8*, U32) override { return ++packets; }
         U32 random() override { return 7; }
@@ -341,7 +341,7 @@ TEST(FullLayer, LinksOverOneRadioShareWhatMayWaitForItsAnswers) {
     EXPECT_EQ(poll(400'000), (std::vector<unsigned>{2, 1}));
 }
 
-TEST(FullLayer, TheQueueHasAReserveForShortMessages) {
+TEST(FullLayer, TheQueueReservesRoomForShortMessages) {
     LinkPair pair(testSeed());
     ASSERT_TRUE(pair.connect());
     ASSERT_EQ(pair.a.open(0), LINK_OK);
@@ -361,7 +361,7 @@ TEST(FullLayer, TheQueueHasAReserveForShortMessages) {
 
 // If acknowledgements arrive faster than modems could send them, the path is a wire, on which both
 // sides may send at the same time.
-TEST(FullLayer, OverAWireACallWaitsForNoTurn) {
+TEST(FullLayer, ACallOverAWireWaitsForNoTurn) {
     LinkPair pair(testSeed());
     pair.setWeather({0, 0, 0, 0});
     ASSERT_TRUE(pair.connect());

@@ -16,7 +16,7 @@ using namespace IceMessages;
 // bytes per frame.
 class CallBytes : public Variants {};
 
-TEST_P(CallBytes, ACallAndItsReplyTakeFewerThanMavlink) {
+TEST_P(CallBytes, ACallAndItsReplyTakeFewerBytesThanMavlink) {
     const bool isSecure = GetParam().hasKey;
     const uint32_t tag = !isSecure ? LINK_CRC : GetParam().a == "tag4" ? 4 : LINK_TAG;
     const uint32_t mavlink = isSecure ? 58 + 35 : 45 + 22;
@@ -75,7 +75,7 @@ protected:
     U32 tag_ = 0;
 };
 
-TEST_F(Heads, CallsInARowCarryEachOthersAcknowledgements) {
+TEST_F(Heads, ConsecutiveCallsCarryAcknowledgements) {
     call(1);
     settle();
     const uint64_t before = bytes();
@@ -87,7 +87,7 @@ TEST_F(Heads, CallsInARowCarryEachOthersAcknowledgements) {
     EXPECT_LE(bytes() - before, 50u * 16u + 6u);
 }
 
-TEST_F(Heads, WhateverIsSentArrivesUnchanged) {
+TEST_F(Heads, EveryMessageArrivesUnchanged) {
     Bytes big(3000, 0x33), high = {0x80, 1, 2}, full = {0xFF}, ice = {'I', 'c', 'e', 'P'};
     Bytes longHead = request(5, std::string(80, 'x'), "op", {1});
     Bytes withContext = request(6, "a", "op", {1});
@@ -113,7 +113,7 @@ TEST_F(Heads, WhateverIsSentArrivesUnchanged) {
                 send(a, b, m, channel);
 }
 
-TEST_F(Heads, MoreHeadsThanThereAreSlots) {
+TEST_F(Heads, MoreHeadersThanSlotsAreHandled) {
     uint32_t id = 0;
     for (int round = 0; round < 3; ++round)
         for (int i = 0; i < 20; ++i)
@@ -128,7 +128,7 @@ TEST_F(Heads, MoreHeadsThanThereAreSlots) {
 }
 
 // If a peer violates the rules, both sides start a new session and continue.
-TEST_F(Heads, ATokenThatMakesNoSenseEndsTheSession) {
+TEST_F(Heads, AnInvalidTokenEndsTheSession) {
     send(a, b, {0x41}); // crosses unchanged
     // side A now uses no tokens, so A sends this byte unchanged
     a.link()->session.handshake.present.features = 0;
@@ -175,7 +175,7 @@ protected:
 
 class FullOvertaking : public Overtaking {};
 
-TEST_P(FullOvertaking, ACallTakesAtMostThreeTimesAsLongBehindAPicture) {
+TEST_P(FullOvertaking, ACallDuringAPictureTakesAtMostThreeTimesAsLong) {
     const uint64_t idle = call();
     run(200'000);
     for (int i = 0; i < 5; ++i) {
@@ -201,7 +201,7 @@ TEST_P(FullOvertaking, ACallDoesNotWaitForALostPartOfAPicture) {
     (void)arrived();
 }
 
-TEST_P(FullOvertaking, OnlyAcrossChannelsAndTheLongOneComesWhole) {
+TEST_P(FullOvertaking, MessagesOvertakeOnlyThoseOfOtherChannels) {
     send(0, Bytes(1000, 1));
     send(0, Bytes(11, 1)); // must arrive after the picture, because it is on the same channel
     run(20'000);
@@ -217,7 +217,7 @@ TEST_P(FullOvertaking, OnlyAcrossChannelsAndTheLongOneComesWhole) {
     EXPECT_EQ(b.events.back(), "close 2");
 }
 
-TEST_P(FullOvertaking, ManyShortOnesLeaveTheLongOneHalf) {
+TEST_P(FullOvertaking, ShortMessagesLeaveHalfTheRateToALongMessage) {
     send(0, Bytes(800, 1));
     EXPECT_TRUE(until(
         [&] {

@@ -71,7 +71,7 @@ protected:
 
 // The hosts hang for up to 200 ms now and then. During this time their modems acknowledge packets
 // for which they have no room, and drop them.
-TEST_P(LinkOverModems, WhatAModemAcknowledgesAndThenDropsIsSentAgain) {
+TEST_P(LinkOverModems, PacketsAcknowledgedButDroppedAreRetransmitted) {
     Random random(testSeed());
     uint64_t drawn = pair_.now, wakesAt[2] = {0, 0};
     expectAll(60, 120, [&] {
@@ -97,7 +97,7 @@ bool isWhole(const std::vector<uint8_t>& bytes) {
 // While a modem waits for the air, it stores packets. It must not combine a packet with a part of
 // the next packet. Otherwise each later packet would contain parts of two frames, and each lost
 // packet would cost both frames.
-TEST_P(LinkOverModems, PacketsHoldWholeFramesHoweverSlowTheModemIs) {
+TEST_P(LinkOverModems, PacketsContainWholeFramesEvenWithASlowModem) {
     unsigned packets = 0, whole = 0;
     air_.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
         ++packets;
@@ -113,7 +113,7 @@ TEST_P(LinkOverModems, PacketsHoldWholeFramesHoweverSlowTheModemIs) {
     EXPECT_GT(packets, 1000u);
 }
 
-TEST_P(LinkOverModems, TheTraceOfTheExampleIsFlown) {
+TEST_P(LinkOverModems, TheExampleTraceIsFlown) {
     air_.weather.trace = std::make_shared<RfTrace>(TRACE);
     const uint64_t lost = air_.counters().lost;
     while (pair_.now < 110'000 * ms && !HasFailure())
@@ -124,7 +124,7 @@ TEST_P(LinkOverModems, TheTraceOfTheExampleIsFlown) {
 // An idle link sends a PING of a few bytes after five seconds, and repeats the PING soon if no
 // reply arrives. The session must last for an hour under each of the published radio conditions
 // (RfWeather), and for another hour with 30 % packet loss.
-TEST_P(LinkOverModems, AnIdleSessionLastsInBadWeather) {
+TEST_P(LinkOverModems, AnIdleSessionSurvivesBadConditions) {
     a_.longestRestUs = b_.longestRestUs = 100'000;
     const U32 before = a_.statistics().bytesSent + b_.statistics().bytesSent;
     pair_.pass(3600 * 1000 * ms);
@@ -142,7 +142,7 @@ TEST_P(LinkOverModems, AnIdleSessionLastsInBadWeather) {
 
 // A modem in API mode reports lost packets. A lost packet is sent again once and immediately,
 // before the receiver has reported anything. Other packets are not sent again.
-TEST(LinkOverApi, WhatTheModemSaysIsLostAndNothingElseIsSentAgain) {
+TEST(LinkOverApi, OnlyPacketsReportedLostAreRetransmitted) {
     ModemPair<End> pair(RfWeather(), testSeed(), 1, false, 1u);
     pair.air.weather.loss = 0.3;
     unsigned lost = 0;
@@ -163,7 +163,7 @@ TEST(LinkOverApi, WhatTheModemSaysIsLostAndNothingElseIsSentAgain) {
     EXPECT_NEAR(pair.a.statistics().fragmentsResent, lost, lost * 0.05);
 }
 
-TEST(LinkOverApi, APeerThatVanishesInMidSessionTakesLittleOfTheAir) {
+TEST(LinkOverApi, ALostPeerCostsLittleAirTime) {
     for (bool isCalled : {false, true}) {
         ModemPair<End> pair(RfWeather(), testSeed(), 1, true, 2u);
         const U8 message[10] = {};
@@ -185,7 +185,7 @@ TEST(LinkOverApi, APeerThatVanishesInMidSessionTakesLittleOfTheAir) {
 // A reply waits for one packet of a stream, in addition to the packet on the air. (Here both lines
 // have 250,000 baud, like the line of the vehicle.) The stream must not become slower by more than
 // a twentieth.
-TEST(LinkOverApi, ACallDuringPicturesWaitsForOnePacketOfThem) {
+TEST(LinkOverApi, ACallDuringPicturesWaitsForOnePacket) {
     const std::vector<U8> picture(LINK_MAX_MESSAGE, 1), call(1, 2);
     double pictures[2] = {0, 0};
     for (bool isCalled : {false, true}) {
@@ -244,7 +244,7 @@ protected:
     }
 };
 
-TEST_F(RandomWait, WhoTalksAloneDoesNotWaitAndTwoThatTalkDo) {
+TEST_F(RandomWait, OnlyTwoActivePeersWait) {
     ModemPair<End> pair(RfWeather(), testSeed(), 1, false, 2u);
     talk(pair, 1, 0);
     EXPECT_EQ(rn(pair.a), 0u);
@@ -264,7 +264,7 @@ TEST_F(RandomWait, WhoTalksAloneDoesNotWaitAndTwoThatTalkDo) {
     EXPECT_EQ(rn(encrypted.a), 0u);
 }
 
-TEST_F(RandomWait, WhoSendsLittleWaitsWherePacketsAreLost) {
+TEST_F(RandomWait, APeerThatSendsLittleWaitsIfPacketsAreLost) {
     ModemPair<End> pair(RfWeather(), testSeed(), 1, false, 2u);
     pair.air.weather.loss = 0.5;
     talk(pair, 1, 0);
@@ -279,7 +279,7 @@ TEST_F(RandomWait, WhoSendsLittleWaitsWherePacketsAreLost) {
 
 // Failed tries of the MAC indicate collisions, so the links must wait longer. Packets that are lost
 // without failed tries do not indicate collisions.
-TEST_F(RandomWait, TwoStreamsDoNotWaitWherePacketsAreLostWithoutFailedTries) {
+TEST_F(RandomWait, TwoStreamsDoNotWaitIfPacketsAreLostWithoutFailedTries) {
     ModemPair<End> pair(RfWeather(), testSeed(), 1, false, 2u);
     const auto stream = [&] {
         for (int i = 0; i < 3; ++i)

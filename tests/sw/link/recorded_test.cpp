@@ -175,19 +175,19 @@ void check(char name, bool isKeyed) {
     replay(name, kind, withKey);
 }
 
-TEST(Recorded, TodaysVehicleUnderstandsTheGround) {
+TEST(Recorded, TheCurrentVehicleUnderstandsTheGround) {
     check('b', false);
 }
 
-TEST(Recorded, TodaysVehicleUnderstandsTheGroundUnderAKey) {
+TEST(Recorded, TheCurrentVehicleUnderstandsTheGroundUnderAKey) {
     check('b', true);
 }
 
-TEST(Recorded, TodaysGroundUnderstandsTheVehicle) {
+TEST(Recorded, TheCurrentGroundUnderstandsTheVehicle) {
     check('a', false);
 }
 
-TEST(Recorded, TodaysGroundUnderstandsTheVehicleUnderAKey) {
+TEST(Recorded, TheCurrentGroundUnderstandsTheVehicleUnderAKey) {
     check('a', true);
 }
 

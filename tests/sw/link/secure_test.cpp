@@ -65,7 +65,7 @@ protected:
 };
 
 // HOSTILE=10000000 sets the number of hostile packets; each of the two seeds gets half of them.
-TEST_P(Attacked, NothingHostileIsAcceptedAndNothingLegalLostOrDoubled) {
+TEST_P(Attacked, NoForgedMessageIsAcceptedAndNoValidMessageIsLostOrDuplicated) {
     const auto most = static_cast<uint64_t>(numberFromEnvironment("HOSTILE", 60'000) / 2);
     ASSERT_TRUE(connect());
     for (size_t messages = 20; hostile_ < most; messages += 20)
@@ -78,7 +78,7 @@ TEST_P(Attacked, NothingHostileIsAcceptedAndNothingLegalLostOrDoubled) {
                 static_cast<unsigned long long>(hostile_), sentA.size(), sentB.size());
 }
 
-TEST_P(Attacked, RecordingsOfEarlierSessionsAreWorthNothing) {
+TEST_P(Attacked, RecordingsOfEarlierSessionsAreRejected) {
     for (unsigned boot = 0; boot < 6; ++boot) {
         size_t before[2] = {a.received.size(), b.received.size()};
         Side& side = boot % 2 ? a : b;
@@ -104,7 +104,7 @@ TEST_P(Attacked, RecordingsOfEarlierSessionsAreWorthNothing) {
 
 // Before each frame arrives, copies of it arrive in which one bit is wrong, one copy for each bit.
 // All kinds of frames are tested.
-TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
+TEST_P(Attacked, AFrameWithAnyWrongBitIsRejected) {
     std::map<int, unsigned> kinds;
     auto flip = [&] {
         for (auto [from, to] : {std::pair(&a, &b), std::pair(&b, &a)})
@@ -151,7 +151,7 @@ TEST_P(Attacked, AFrameWithAnyBitWrongIsRefused) {
         EXPECT_TRUE(kinds.count(kind)) << "no frame of kind " << kind << " has crossed";
 }
 
-TEST_P(Attacked, AFloodOfHellosCostsFewAnswersAndNoSession) {
+TEST_P(Attacked, AFloodOfHellosGetsFewRepliesAndEndsNoSession) {
     std::vector<Bytes> hellos;
     for (unsigned boot = 0; boot < 12; ++boot) {
         a.boot();
@@ -185,7 +185,7 @@ TEST_P(Attacked, AFloodOfHellosCostsFewAnswersAndNoSession) {
 }
 
 // A delayed frame that arrives long after its sender has disappeared belongs to no session.
-TEST_P(Attacked, WhoOnlyReplaysDoesNotKeepASessionAlive) {
+TEST_P(Attacked, ReplayedFramesDoNotKeepASessionAlive) {
     ASSERT_TRUE(connect());
     ASSERT_TRUE(traffic(10, 60'000'000));
     until([&] { return listen(), false; }, 6'000'000); // long enough to record a PING
@@ -202,7 +202,7 @@ TEST_P(Attacked, WhoOnlyReplaysDoesNotKeepASessionAlive) {
 
 // A's CONFIRM is delayed, and A restarts. The old CONFIRM must not begin a session, whether A
 // already has a new session or is absent.
-TEST_P(Attacked, AConfirmThatWasHeldBackMakesNoSession) {
+TEST_P(Attacked, ADelayedConfirmBeginsNoSession) {
     for (bool isGone : {false, true}) {
         recorded_.clear();
         a.boot(), b.boot();
@@ -228,7 +228,7 @@ TEST_P(Attacked, AConfirmThatWasHeldBackMakesNoSession) {
 
 // The attacker holds back only the fragments of one message, and delivers them later. By then the
 // sender has been informed of the loss, and the receiver does not accept the fragments any more.
-TEST_P(Attacked, AMessageThatIsHeldBackIsReportedAndNeverTaken) {
+TEST_P(Attacked, AWithheldMessageIsReportedAndNeverDeliveredLater) {
     for (bool isFromA : {true, false}) {
         Side &from = isFromA ? a : b, &to = isFromA ? b : a;
         ASSERT_TRUE(connect());
@@ -275,7 +275,7 @@ int opened(const std::vector<std::pair<bool, Bytes>>& frames, const Link_Keys& k
 
 // An attacker who has recorded a session and learns the key later can decrypt only the frames of
 // the handshake. He could decrypt all frames if one side had not erased its half of the key pair.
-TEST_P(Attacked, WhoLearnsTheKeyLaterOpensNoRecordedSession) {
+TEST_P(Attacked, AKeyThatLeaksLaterDecryptsNoRecordedSession) {
     Link_KeyPair pair = {};
     a.start();
     ASSERT_TRUE(until(
@@ -328,7 +328,7 @@ bool remains(Side& side, const U8* secret, size_t size) {
     return false;
 }
 
-TEST_P(Attacked, ASessionsKeysAndMessagesAreWipedAtItsEnd) {
+TEST_P(Attacked, KeysAndMessagesAreErasedAtTheEndOfASession) {
     for (bool isStopped : {true, false}) {
         ASSERT_TRUE(connect());
         for (auto* side : {&a, &b})
@@ -365,7 +365,7 @@ TEST_P(Attacked, ASessionsKeysAndMessagesAreWipedAtItsEnd) {
 
 // Recorded HELLOs, each with a different nonce, must make a side compute a key pair only once, and
 // no session key.
-TEST_P(Attacked, OldHellosMakeNobodyMultiplyPoints) {
+TEST_P(Attacked, OldHellosCauseOnlyOneKeyComputation) {
     std::vector<Bytes> hellos;
     for (unsigned boot = 0; boot < 5; ++boot) {
         recorded_.clear();
@@ -415,7 +415,7 @@ protected:
     }
 };
 
-TEST_P(Hindered, WhoAddsBytesToPacketsOrSendsThemBlindlyPreventsNoSession) {
+TEST_P(Hindered, AddedBytesAndBlindPacketsPreventNoSession) {
     for (uint8_t version : {uint8_t(LINK_VERSION), uint8_t(0)})
         for (bool isBlind : {false, true})
             for (int run = 0; run < 10; ++run) {
@@ -474,7 +474,7 @@ TEST_P(Hindered, OldHellosDelayARestartByLessThanASecond) {
 
 // The ground reads its serial line in portions. Right before each frame for the ground, the
 // attacker sends bytes in which each portion seems to end with a frame of the handshake.
-TEST_P(Hindered, FramesThatSeemToEndWithEachPortionOfTheLinePreventNoSession) {
+TEST_P(Hindered, FramesThatSeemToEndWithEachPortionPreventNoSession) {
     const auto hostile = [this](size_t count, size_t portion) {
         Bytes bytes(count, 0x70);
         std::vector<bool> isSet(count);
@@ -555,7 +555,7 @@ protected:
                    GetParam().sideA, GetParam().sideB) {}
 };
 
-TEST_P(Meetings, OnlyAGroundAndTheVehicleThatItMeansMakeASession) {
+TEST_P(Meetings, OnlyAGroundAndItsVehicleBeginASession) {
     b.start();
     EXPECT_EQ(connect(), GetParam().isOfSides);
 }
@@ -568,7 +568,7 @@ INSTANTIATE_TEST_SUITE_P(All, Meetings,
 
 // ---- calls to all vehicles ----
 
-TEST(Broadcasts, AreOpenedUnderTheGroupsKeyOnceAndWithNoBitWrong) {
+TEST(Broadcasts, AreAcceptedOnceUnderTheGroupKeyIfNoBitIsWrong) {
     const Bytes text = {'r', 'e', 't', 'u', 'r', 'n'}, key(LINK_KEY_BYTES, 0x5A);
     Bytes packet(LINK_MAX_FRAME, 0x77);
     std::copy(text.begin(), text.end(), packet.begin() + LINK_BROADCAST_HEAD);

@@ -10,7 +10,7 @@ namespace {
 
 class Met : public Variants {};
 
-TEST_P(Met, NothingIsLostDoubledOrReorderedInBadWeather) {
+TEST_P(Met, NoMessageIsLostDuplicatedOrReorderedInBadConditions) {
     usualSize = 200;
     longestSize = std::min(a.layer.maxMessage, b.layer.maxMessage);
     ASSERT_TRUE(connect());
@@ -21,7 +21,7 @@ TEST_P(Met, NothingIsLostDoubledOrReorderedInBadWeather) {
 }
 
 // The sender never exceeds the window of its peer; fragments beyond the window would be sent twice.
-TEST_P(Met, OnlyWhatIsLostIsSentAgain) {
+TEST_P(Met, OnlyLostFragmentsAreRetransmitted) {
     ASSERT_TRUE(connect());
     a.open(1);
     run(200'000);
@@ -41,7 +41,7 @@ TEST_P(Met, OnlyWhatIsLostIsSentAgain) {
     EXPECT_EQ(a.statistics().fragmentsResent, a.packetsLost);
 }
 
-TEST_P(Met, AMessageThatIsTooLongForThePeerIsReported) {
+TEST_P(Met, AMessageTooLongForThePeerIsReported) {
     const U32 most = b.layer.maxMessage;
     if (a.layer.maxMessage <= most)
         return; // the message cannot be sent now
@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 class Seeds : public Variants {};
 
-TEST_P(Seeds, RebootsAreNoticedAndMessagesInFlightReported) {
+TEST_P(Seeds, RestartsAreDetectedAndMessagesInFlightAreReported) {
     ASSERT_TRUE(connect());
     b.start();
     setWeather({0.05, 0.05, 0.01});
@@ -106,7 +106,7 @@ TEST_P(Seeds, GarbageOnTheLineDoesNotDisturbTheSession) {
 
 // If a side receives the beginning of a frame every 20 ms, there is never enough silence before a
 // frame.
-TEST_P(Seeds, BeginningsOfFramesBetweenPacketsDoNotStopIt) {
+TEST_P(Seeds, TruncatedFramesBetweenPacketsDoNotStopTheSession) {
     ASSERT_TRUE(connect());
     uint64_t at = now;
     EXPECT_TRUE(traffic(60, 100'000'000,
@@ -126,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(Vehicles, Seeds, ::testing::ValuesIn(vehicles(4)));
 class Speed : public Variants {};
 
 // This number of messages makes the sequence numbers wrap hundreds of times.
-TEST_P(Speed, TenThousandMessagesInBadWeather) {
+TEST_P(Speed, TenThousandMessagesPassBadConditions) {
     usualSize = longestSize = 40;
     ASSERT_TRUE(connect());
     setWeather({0.05, 0.05, 0.02});
@@ -140,7 +140,7 @@ class InTheClear : public Variants {};
 
 // One in 65,536 wrong messages has a valid CRC-16. Here such a message is made directly, by adding
 // the polynomial to a message.
-TEST_P(InTheClear, AWrongMessageWithARightChecksumIsReportedAndNotDelivered) {
+TEST_P(InTheClear, AWrongMessageWithAMatchingChecksumIsReported) {
     ASSERT_TRUE(connect());
     for (uint32_t size : {21u, 60u, 95u, 300u}) {
         ASSERT_TRUE(until([&] { return a.open(0) == LINK_OK; }, 30'000'000));

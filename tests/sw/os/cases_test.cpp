@@ -16,7 +16,7 @@ bool tickPending = false, irqPending = false;
 
 class OsHostCases : public ::testing::TestWithParam<unsigned> {};
 
-TEST_P(OsHostCases, SaysWhatTheManualSays) {
+TEST_P(OsHostCases, BehavesAsInTheManual) {
     const OsCase& c = os_cases[GetParam()];
     unsigned ticks = 0;
     tickPending = irqPending = false;
@@ -45,7 +45,7 @@ TEST_P(OsHostCases, SaysWhatTheManualSays) {
 INSTANTIATE_TEST_SUITE_P(All, OsHostCases, ::testing::Range(0u, os_caseCount),
                          [](auto& c) { return std::string(os_cases[c.param].name); });
 
-TEST(OsHostPort, AnExceptionInATaskLeavesRun) {
+TEST(OsHostPort, AnExceptionInATaskPropagatesFromRun) {
     OS_STK stack[16];
     OsHost::setMachine({[] { OsHost::stop(); }, [] { return false; }, [] {}});
     OSInit();

@@ -22,7 +22,7 @@ std::string program() {
     return other ? other : CASES_ELF;
 }
 
-TEST_P(OsM3Cases, SaysWhatTheManualSays) {
+TEST_P(OsM3Cases, BehavesAsInTheManual) {
     const OsCase& c = os_cases[GetParam()];
     PlainCpu m3(program());
     m3.setVariable("selected_case", GetParam());
@@ -33,7 +33,7 @@ TEST_P(OsM3Cases, SaysWhatTheManualSays) {
 
 // Each run interrupts the computation at a different instruction, and there wakes the task of
 // higher priority. Tasks are therefore switched at many points of the computation.
-TEST(OsM3, ASwitchAtAnyInstructionLosesNoRegister) {
+TEST(OsM3, ASwitchAtAnyInstructionPreservesAllRegisters) {
     unsigned number = 0;
     while (std::string(os_cases[number].name) != "RegistersSurviveSwitches")
         ++number;

@@ -80,7 +80,7 @@ protected:
 
 using Kinds = std::vector<std::pair<Ice_EventKind, int>>;
 
-TEST_F(RadioEndpoint, OfConnectionsThatCameAndWentOnlyTheLastStateIsTold) {
+TEST_F(RadioEndpoint, OnlyTheLastStateOfAConnectionIsReported) {
     for (int channel = 0; channel < 3; ++channel)
         XBeeATEndpoint_onChannel(&endpoint_, channel, 1);
     EXPECT_EQ(events().size(), 3u);
@@ -98,7 +98,7 @@ TEST_F(RadioEndpoint, OfConnectionsThatCameAndWentOnlyTheLastStateIsTold) {
                                {ICE_EVENT_OPENED, 1}}));
 }
 
-TEST_F(RadioEndpoint, AMessageIsTakenOnceAndOnlyWhileSomebodyReceives) {
+TEST_F(RadioEndpoint, AMessageIsDeliveredOnceAndOnlyToAWaitingReceiver) {
     const U8 message[] = {1, 2, 3};
     auto offer = [&](int channel) {
         return XBeeATEndpoint_onMessage(&endpoint_, channel, message, sizeof message);
@@ -116,7 +116,7 @@ TEST_F(RadioEndpoint, AMessageIsTakenOnceAndOnlyWhileSomebodyReceives) {
     EXPECT_EQ(events(), Kinds{});
 }
 
-TEST_F(RadioEndpoint, TheEndOfTheLastOwnConnectionDoesNotEndTheNext) {
+TEST_F(RadioEndpoint, TheEndOfAConnectionDoesNotEndTheNext) {
     open();
     pair_.a.close(3);
     pair_.run(500000);
@@ -126,14 +126,14 @@ TEST_F(RadioEndpoint, TheEndOfTheLastOwnConnectionDoesNotEndTheNext) {
     EXPECT_EQ(events(), Kinds{});
 }
 
-TEST_F(RadioEndpoint, ConnectingWaitsUntilTheLastClosingIsAnswered) {
+TEST_F(RadioEndpoint, ConnectingWaitsUntilThePreviousConnectionIsClosed) {
     open();
     ops().close(ic_.transports[0].context, 3);
     EXPECT_EQ(pair_.b.open(3), LINK_FULL);
     EXPECT_EQ(connect(), ICE_OK);
 }
 
-TEST_F(RadioEndpoint, AnswersThatTheLinkHasNoRoomForWaitForASlowLink) {
+TEST_F(RadioEndpoint, RepliesWaitForRoomInASlowLink) {
     open();
     pair_.setWeather({0.4});
     const Bytes answer(7930, 7);
@@ -143,7 +143,7 @@ TEST_F(RadioEndpoint, AnswersThatTheLinkHasNoRoomForWaitForASlowLink) {
     EXPECT_EQ(pair_.a.received, (Messages(5, {3, answer})));
 }
 
-TEST_F(RadioEndpoint, AConnectionThatTheLinkHasNoRoomForTooLongIsClosedOnBothSides) {
+TEST_F(RadioEndpoint, AConnectionThatWaitsTooLongForTheLinkIsClosed) {
     open();
     pair_.a.refuse = true; // the link stays up, but its messages are not accepted
     const Bytes answer(7930, 7);
@@ -163,7 +163,7 @@ TEST_F(RadioEndpoint, AConnectionThatTheLinkHasNoRoomForTooLongIsClosedOnBothSid
 
 // A message that waits to be sent belongs to the program that used the channel when the message was
 // passed to the endpoint.
-TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnItsChannel) {
+TEST_F(RadioEndpoint, ALateMessageNeverReachesTheNextConnectionOfItsChannel) {
     ASSERT_TRUE(pair_.connect());
     const Bytes answer(7930, 7);
     auto again = [&] { // another program on the ground takes over the channel
@@ -189,7 +189,7 @@ TEST_F(RadioEndpoint, AMessageForAConnectionThatHasEndedNeverReachesTheNextOnIts
     EXPECT_EQ(send(1, answer), ICE_CONNECTION_LOST);
 }
 
-TEST_F(RadioEndpoint, ASecondGroundHasConnectionsOfItsOwn) {
+TEST_F(RadioEndpoint, ASecondGroundHasSeparateConnections) {
     LinkPair other(testSeed() + 1);
     XBeeATEndpoint_addPeer(&endpoint_, 1, other.b.link(), 0x00F0);
     ASSERT_TRUE(pair_.connect() && other.connect());
@@ -216,7 +216,7 @@ TEST_F(RadioEndpoint, ASecondGroundHasConnectionsOfItsOwn) {
 
 // The options are written in the same way as by the ground's plugin (test_ground_ice,
 // EndpointsKeepTheirOptionsAsText...), as far as the UAV supports them.
-TEST_F(RadioEndpoint, AProxyToAPeerIsEqualToThatOfItsString) {
+TEST_F(RadioEndpoint, AProxyOfAPeerEqualsTheProxyFromItsString) {
     Ice_ObjectAdapter adapter;
     Ice_ObjectPrx made, parsed;
     ASSERT_EQ(Ice_Communicator_createObjectAdapterWithEndpoints(&ic_, "", "xbee-at", &adapter),
@@ -226,7 +226,7 @@ TEST_F(RadioEndpoint, AProxyToAPeerIsEqualToThatOfItsString) {
     EXPECT_TRUE(Ice_ObjectPrx_equals(&made, &parsed));
 }
 
-TEST_F(RadioEndpoint, AnEndpointsOptionsAreInTheProxysTextAgain) {
+TEST_F(RadioEndpoint, AProxyPrintsTheOptionsOfItsEndpoint) {
     auto text = [&](const char* proxy) {
         Ice_ObjectPrx prx;
         char line[120] = "";

@@ -203,7 +203,7 @@ struct Team : Simulation {
 
 const Key theKey(LINK_KEY_BYTES, 0x33), otherKey(LINK_KEY_BYTES, 0x44);
 
-TEST(Fellows, CallEachOtherTwowayAndOnewayInOneSessionWithAKeyAndWithout) {
+TEST(Fellows, TwoVehiclesCallEachOther) {
     for (const Key& key : {Key(), theKey}) {
         Team world(key);
         world.run(5000);
@@ -220,7 +220,7 @@ TEST(Fellows, CallEachOtherTwowayAndOnewayInOneSessionWithAKeyAndWithout) {
     }
 }
 
-TEST(Fellows, AVehicleServesTwoGroundsAndItsFellowAndCallsItAtOnce) {
+TEST(Fellows, AVehicleServesTwoGroundsAndAnotherVehicleAtOnce) {
     Team world(theKey);
     for (Craft* craft : {&world.ground, &world.observer, &world.seven})
         EXPECT_EQ(craft->call("it:xbee-at -a 5"), ICE_OK);
@@ -245,7 +245,7 @@ TEST(Fellows, AVehicleServesTwoGroundsAndItsFellowAndCallsItAtOnce) {
         EXPECT_EQ(Link_statistics(&end.link)->sessions, 1u) << end.first;
 }
 
-TEST(Fellows, WhoBeginAtOnceAreBothAnswered) {
+TEST(Fellows, SimultaneousCallsAreBothAnswered) {
     for (U32 offset = 0; offset < 60; ++offset) {
         Team world(offset % 2 ? theKey : Key());
         for (Craft* craft : {&world.five, &world.seven}) {
@@ -268,7 +268,7 @@ TEST(Fellows, WhoBeginAtOnceAreBothAnswered) {
     }
 }
 
-TEST(Fellows, OneThatIsAwayEndsTheCallInTimeAndTheGroundIsServedMeanwhile) {
+TEST(Fellows, ACallToAnAbsentVehicleTimesOutAndDelaysNoGround) {
     for (const Key& key : {Key(), theKey}) {
         Team world(key);
         world.seven.isAway = true;
@@ -301,7 +301,7 @@ TEST(Fellows, OneThatIsAwayEndsTheCallInTimeAndTheGroundIsServedMeanwhile) {
     }
 }
 
-TEST(Fellows, OneThatGoesInMidCallIsSoughtAgainOnlyByACall) {
+TEST(Fellows, ALostVehicleIsSoughtAgainOnlyByACall) {
     Team world(theKey);
     EXPECT_EQ(world.five.call("it:xbee-at -a 7"), ICE_OK);
     world.seven.isAway = true;
@@ -315,14 +315,14 @@ TEST(Fellows, OneThatGoesInMidCallIsSoughtAgainOnlyByACall) {
     EXPECT_EQ(world.five.sessions(), 2u);
 }
 
-TEST(Fellows, WithoutTheKeyThereIsNoSession) {
+TEST(Fellows, ASessionNeedsTheKey) {
     Team world(theKey, otherKey);
     EXPECT_EQ(world.five.call("it:xbee-at -a 7"), ICE_TIMEOUT);
     EXPECT_EQ(world.seven.call("it:xbee-at -a 5"), ICE_TIMEOUT);
     EXPECT_EQ(world.five.sessions() + world.seven.sessions(), 0u);
 }
 
-TEST(Fellows, WhoHasNoLinkIsNoEndpointAndNeverTheGround) {
+TEST(Fellows, AnAddressWithoutALinkIsNoEndpoint) {
     Team world;
     EXPECT_EQ(world.ground.call("it:xbee-at -a 5"), ICE_OK);
     for (const char* to : {"it:xbee-at -a 9", "it:xbee-at -a 5", "it -o:xbee-at -a 0xfff0"})

@@ -173,7 +173,7 @@ protected:
     const FSMC_Port* realPort_ = nullptr;
 };
 
-TEST_F(Radio, SetsTheModemUpAsItIsToldToAndZeroMeansTheDefault) {
+TEST_F(Radio, SetsTheModemUpAndZeroSelectsTheDefault) {
     run([&] { EXPECT_EQ(init(), RADIO_OK); });
     EXPECT_EQ(soc_.modem().parameter("CH"), 0x0Cu);
     EXPECT_EQ(soc_.modem().parameter("ID"), 0x3332u);
@@ -197,7 +197,7 @@ TEST_F(Radio, ARefusedCommandIsReportedWithItsStep) {
     EXPECT_EQ(Radio_failedStep(), 6u); // number of ATID in the table of docs/modem.md
 }
 
-TEST_F(Radio, ASlotThatIsNoModemControllerIsReported) {
+TEST_F(Radio, ASlotWithoutAModemControllerIsReported) {
     run([&] {
         hide(MODEM_ID, 0xFFFF0000U);
         EXPECT_EQ(init(), RADIO_NO_DEVICE);
@@ -205,7 +205,7 @@ TEST_F(Radio, ASlotThatIsNoModemControllerIsReported) {
     });
 }
 
-TEST_F(Radio, FramesLeaveInOrderAndUnchangedAndAFullRingSaysSo) {
+TEST_F(Radio, FramesAreSentInOrderAndAFullRingIsReported) {
     std::vector<uint8_t> sent;
     U32 copied = 0, full = 0, interrupts = 0;
     run([&] {
@@ -236,7 +236,7 @@ TEST_F(Radio, FramesLeaveInOrderAndUnchangedAndAFullRingSaysSo) {
     EXPECT_EQ(interrupts, 0u) << "a packet that was sent causes no interrupt";
 }
 
-TEST_F(Radio, ALinkRunsOverItBothWays) {
+TEST_F(Radio, ALinkWorksInBothDirections) {
     air_.weather.perfect =
         true; // a modem that is as fast as its line, so no packet contains parts of two frames
     run([&] {
@@ -250,7 +250,7 @@ TEST_F(Radio, ALinkRunsOverItBothWays) {
     });
 }
 
-TEST_F(Radio, ATaskThatSleepsLosesNoMessage) {
+TEST_F(Radio, ASleepingTaskLosesNoMessage) {
     run([&] {
         ASSERT_EQ(init(), RADIO_OK);
         ASSERT_TRUE(connect());
@@ -292,7 +292,7 @@ protected:
 };
 std::string ApiRadio::answers_;
 
-TEST_F(ApiRadio, ALinkRunsOverItBothWays) {
+TEST_F(ApiRadio, ALinkWorksInBothDirections) {
     run([&] {
         ASSERT_EQ(initApi(), RADIO_OK);
         EXPECT_EQ(soc_.modem().parameter("AP"), 1u);
@@ -303,7 +303,7 @@ TEST_F(ApiRadio, ALinkRunsOverItBothWays) {
     EXPECT_GT(answers_.size(), 35u);
 }
 
-TEST_F(ApiRadio, EachPacketIsAnsweredForAndAnAnswerThatIsLostCountsAsALoss) {
+TEST_F(ApiRadio, EachPacketHasAStatusAndAMissingStatusCountsAsALoss) {
     air_.weather.perfect = true;
     run([&] {
         ASSERT_EQ(initApi(), RADIO_OK);
@@ -339,7 +339,7 @@ TEST_F(ApiRadio, EachPacketIsAnsweredForAndAnAnswerThatIsLostCountsAsALoss) {
     });
 }
 
-TEST_F(ApiRadio, WhereControllerOrModemHaveNoApiModeALinkRunsInTransparentMode) {
+TEST_F(ApiRadio, WithoutApiModeALinkUsesTransparentMode) {
     for (bool isModem : {true, false})
         run([&] {
             if (isModem)
@@ -362,7 +362,7 @@ TEST_F(ApiRadio, WhereControllerOrModemHaveNoApiModeALinkRunsInTransparentMode) 
         });
 }
 
-TEST_F(ApiRadio, AModemThatRefusesBothModesIsToldAsThat) {
+TEST_F(ApiRadio, AModemThatRefusesBothModesIsReported) {
     run([&] {
         soc_.modem().refuseCommand("AP");
         EXPECT_EQ(initApi(RADIO_250000), RADIO_REFUSED);
@@ -373,7 +373,7 @@ TEST_F(ApiRadio, AModemThatRefusesBothModesIsToldAsThat) {
     });
 }
 
-TEST_F(ApiRadio, EachPacketSaysWhoseItIsAndGoesToItsTarget) {
+TEST_F(ApiRadio, EachPacketNamesItsSenderAndReachesItsTarget) {
     HostLine line;
     XBee stranger(line, air_, quick({{"BD", 7}, {"MY", 2}, {"DL", 1}}));
     soc_.onTime([&](uint64_t now) {
@@ -417,7 +417,7 @@ protected:
     }
 };
 
-TEST_F(EncryptedRadio, WithTheSameKeyMessagesArriveAndNoFrameIsSplit) {
+TEST_F(EncryptedRadio, MessagesArriveInWholeFrames) {
     air_.weather.perfect = true; // a modem that is as fast as its line
     size_t longest = 0, packets = 0;
     air_.onPacket([&](uint64_t, const RfPacket& packet, RfChannel::Outcome) {
@@ -449,7 +449,7 @@ TEST_F(EncryptedRadio, WithTheSameKeyMessagesArriveAndNoFrameIsSplit) {
     EXPECT_EQ(nearPeer_.received[0], message);
 }
 
-TEST_F(EncryptedRadio, WithAnotherKeyOrNoneThereIsNoSession) {
+TEST_F(EncryptedRadio, ASessionNeedsTheSameKey) {
     static U8 other[16];
     std::copy(key, key + 16, other);
     other[15] ^= 1;

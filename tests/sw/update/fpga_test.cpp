@@ -107,18 +107,18 @@ public:
                     nullptr};
 };
 
-TEST_F(Fpga, ANewBitstreamIsTriedAndStaysWhenItIsConfirmed) {
+TEST_F(Fpga, ANewBitstreamStaysIfItIsConfirmed) {
     EXPECT_EQ(powerOn(), 1u);
     expectTriedAndConfirmed();
 }
 
-TEST_F(Fpga, ABitstreamThatIsNotConfirmedIsTriedOnce) {
+TEST_F(Fpga, AnUnconfirmedBitstreamIsTriedOnce) {
     expectTriedOnce();
 }
 
 // This bitstream is signed but invalid. The FPGA hangs, and the next start of the processor reverts
 // to the previous bitstream.
-TEST_F(Fpga, ABitstreamThatHangsTheFpgaIsTakenBack) {
+TEST_F(Fpga, ABitstreamThatHangsTheFpgaIsRolledBack) {
     powerOn();
     Image image = imageOf(2);
     image.bytes[SLOTS_SYNC_AT + 4] = 0; // no packet
@@ -130,7 +130,7 @@ TEST_F(Fpga, ABitstreamThatHangsTheFpgaIsTakenBack) {
     EXPECT_EQ(boot(), 1u);
 }
 
-TEST_F(Fpga, ABitstreamThatTheFpgaRefusesIsNamedAndDoesNotCountAsRunning) {
+TEST_F(Fpga, ABitstreamRefusedByTheFpgaIsReported) {
     powerOn();
     receive(imageOf(2));
     EXPECT_EQ(Slots_settleFpga(&port, 0), 1);
@@ -144,14 +144,14 @@ TEST_F(Fpga, ABitstreamThatTheFpgaRefusesIsNamedAndDoesNotCountAsRunning) {
 }
 
 // All other rules are the same as for firmware (update_test.cpp).
-TEST_F(Fpga, NothingGoesOverTheGoldenBitstream) {
+TEST_F(Fpga, TheGoldenBitstreamIsNeverOverwritten) {
     updateTo(5);
     const Bytes before = flash.memory;
     EXPECT_EQ(begin(bitstream(6, 0)), RECEIVER_FOREIGN);
     EXPECT_EQ(flash.memory, before);
 }
 
-TEST_F(Fpga, AVersionThatWasConfirmedIsRememberedWhenItIsErased) {
+TEST_F(Fpga, AConfirmedVersionIsRememberedAfterItIsErased) {
     updateTo(5);
     EXPECT_EQ(begin(imageOf(6)), RECEIVER_OK);
     EXPECT_EQ(powerOn(), 1u); // version 5 has been erased, and version 6 has not arrived yet
@@ -159,7 +159,7 @@ TEST_F(Fpga, AVersionThatWasConfirmedIsRememberedWhenItIsErased) {
     updateTo(6);
 }
 
-TEST_F(Fpga, ADamagedBitstreamNeverGetsItsSyncWord) {
+TEST_F(Fpga, ADamagedBitstreamGetsNoSyncWord) {
     powerOn();
     Image image = imageOf(2);
     EXPECT_EQ(begin(image), RECEIVER_OK);
@@ -169,7 +169,7 @@ TEST_F(Fpga, ADamagedBitstreamNeverGetsItsSyncWord) {
     updateTo(2);
 }
 
-TEST_F(Fpga, OnlyWhatIsSignedAndWholeIsLoaded) {
+TEST_F(Fpga, OnlySignedAndCompleteBitstreamsAreLoaded) {
     EXPECT_TRUE(Slots_isLoadable(&port, product)); // the golden bitstream may be loaded
     updateTo(2);
     EXPECT_TRUE(Slots_isLoadable(&port, product));
@@ -187,7 +187,7 @@ TEST_F(Fpga, OnlyWhatIsSignedAndWholeIsLoaded) {
 }
 
 // Cuts the power during an update that replaces an older bitstream.
-TEST_F(Fpga, WhereverThePowerIsCutABitstreamConfiguresIt) {
+TEST_F(Fpga, APowerLossAtAnyPointLeavesABootableBitstream) {
     updateTo(2);
     const uint64_t before = flash.operations();
     updateTo(3);

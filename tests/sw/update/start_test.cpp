@@ -124,7 +124,7 @@ TEST_F(Loader, StartsTheFirmwareOfANewVehicle) {
     RecordProperty("cycles", static_cast<int>(cycles));
 }
 
-TEST_F(Loader, TriesANewOneOnceAndGoesBack) {
+TEST_F(Loader, TriesANewImageOnceAndReturnsToThePrevious) {
     fill();
     receive(8);
     EXPECT_EQ(boot(), 1);
@@ -133,7 +133,7 @@ TEST_F(Loader, TriesANewOneOnceAndGoesBack) {
 }
 
 // If the second key has signed the firmware, one signature more must be checked.
-TEST_F(Loader, StartsOneOfEitherKeyUntilItIsWithdrawn) {
+TEST_F(Loader, StartsImagesOfBothKeysUntilAKeyIsRevoked) {
     ASSERT_EQ(folder.pack("public spare spare.pub"), 0) << folder.said();
     fill(" --second spare.pub");
     EXPECT_EQ(boot(), 0);
@@ -156,7 +156,7 @@ TEST_F(Loader, StartsOneOfEitherKeyUntilItIsWithdrawn) {
     EXPECT_EQ(boot(), 1);
 }
 
-TEST_F(Loader, TriesNothingInFlight) {
+TEST_F(Loader, TriesNoImageInFlight) {
     fill();
     receive(8);
     chip.backup()[BACKUP_AT(vehicle.flight)] = BACKUP_FLYING;
@@ -165,7 +165,7 @@ TEST_F(Loader, TriesNothingInFlight) {
     EXPECT_EQ(boot(), 1);
 }
 
-TEST_F(Loader, StartsNoneThatIsOlderOrOfAnotherKeyOrForAnotherBoard) {
+TEST_F(Loader, RefusesOlderAndForeignImages) {
     fill();
     receive(6);
     EXPECT_EQ(boot(), 0);
@@ -175,7 +175,7 @@ TEST_F(Loader, StartsNoneThatIsOlderOrOfAnotherKeyOrForAnotherBoard) {
     EXPECT_EQ(boot(), 0);
 }
 
-TEST_F(Loader, OfAnEmptyChipStartsNothing) {
+TEST_F(Loader, AnEmptyChipStartsNoImage) {
     const ElfImage loader(FIRMWARE "loader.elf");
     chip.cpu().loadFlash(flashBase, Bytes(Stm32Flash::bytes, 0xFF));
     for (const ElfImage::Segment& s : loader.segments())
@@ -194,7 +194,7 @@ TEST_F(Loader, OffersItsChecksToTheFirmware) {
     EXPECT_EQ(chip.cpu().word(at + 8), loader.symbol("Signature_digest") | 1);
 }
 
-TEST(PackUpdate, SaysWhatIsWrong) {
+TEST(PackUpdate, ReportsInvalidArguments) {
     VehicleFolder folder;
     auto refuses = [&](const std::string& words, const char* why) {
         EXPECT_NE(folder.pack(words), 0);
@@ -273,7 +273,7 @@ protected:
     uint64_t limit = 0;
 };
 
-TEST_F(FpgaStart, ANewBitstreamIsTriedAndOneNotConfirmedGoes) {
+TEST_F(FpgaStart, ANewBitstreamIsTriedAndDroppedUnlessConfirmed) {
     EXPECT_EQ(start(), 0u);
     receive(standInBitstream(2, frameWords));
     EXPECT_EQ(start(), 1u);
@@ -283,7 +283,7 @@ TEST_F(FpgaStart, ANewBitstreamIsTriedAndOneNotConfirmedGoes) {
 }
 
 // An attacker has written to the flash. The FPGA would accept the data, because the CRC is valid.
-TEST_F(FpgaStart, ABitstreamThatIsNotSignedNeverRuns) {
+TEST_F(FpgaStart, AnUnsignedBitstreamNeverRuns) {
     receive(standInBitstream(2, frameWords));
     confirm();
     EXPECT_EQ(start(), 1u);
@@ -298,7 +298,7 @@ TEST_F(FpgaStart, ABitstreamThatIsNotSignedNeverRuns) {
     EXPECT_FALSE(chip.fpga.boot().running.has_value());
 }
 
-TEST_F(FpgaStart, NoBitstreamIsTriedInFlightButOneThatIsRefusedGoes) {
+TEST_F(FpgaStart, InFlightNoBitstreamIsTriedButARefusedOneIsDropped) {
     receive(standInBitstream(2, frameWords));
     chip.backup()[BACKUP_AT(vehicle.flight)] = BACKUP_FLYING;
     *at(multiBoot + 1000) ^= 8;
@@ -313,14 +313,14 @@ TEST_F(FpgaStart, NoBitstreamIsTriedInFlightButOneThatIsRefusedGoes) {
     EXPECT_TRUE(is(SLOTS_TRIED));
 }
 
-TEST_F(FpgaStart, ABitstreamForAnotherDeviceIsKnownNotToRun) {
+TEST_F(FpgaStart, ABitstreamForAnotherDeviceIsReportedAsNotRunning) {
     receive(standInBitstream(2, frameWords, 0x04001093)); // an XC6SLX9
     EXPECT_EQ(start(), 0u);
     EXPECT_TRUE(is(SLOTS_REFUSED));
     EXPECT_EQ(start(), 0u);
 }
 
-TEST_F(FpgaStart, AConfirmedBitstreamThatHasRottedIsKnownNotToRun) {
+TEST_F(FpgaStart, ACorruptedConfirmedBitstreamIsReportedAsNotRunning) {
     receive(standInBitstream(2, frameWords));
     confirm();
     EXPECT_EQ(start(), 1u);
@@ -329,7 +329,7 @@ TEST_F(FpgaStart, AConfirmedBitstreamThatHasRottedIsKnownNotToRun) {
     EXPECT_TRUE(is(SLOTS_REFUSED));
 }
 
-TEST_F(FpgaStart, ABitstreamThatHangsTheFpgaGoesAtOnce) {
+TEST_F(FpgaStart, ABitstreamThatHangsTheFpgaIsDroppedAtOnce) {
     auto bits = standInBitstream(2, frameWords);
     bits[SLOTS_SYNC_AT + 4] = 0; // no packet
     receive(bits, " --unchecked");
@@ -340,7 +340,7 @@ TEST_F(FpgaStart, ABitstreamThatHangsTheFpgaGoesAtOnce) {
 
 // Without DONE, the firmware would need four tries (16 s) to find out whether the FPGA hangs. Here
 // the firmware knows the result earlier, because it sees that the FPGA no longer reads its flash.
-TEST_F(FpgaStart, ABoardWithoutDoneStartsSoonAndItsFpgaRuns) {
+TEST_F(FpgaStart, ABoardWithoutTheDonePinStarts) {
     chip.fpga.isDoneWired = false;
     chip.powerOn();
     limit = chip.cpu().cycles() + 3'000'000'000;
@@ -375,7 +375,7 @@ protected:
     const Bytes whole = standInBitstream(2, 2000);
 };
 
-TEST_F(Packing, ABitstreamThatIsCutOrHasMoreThanItsEndIsNotSigned) {
+TEST_F(Packing, ATruncatedOrExtendedBitstreamIsNotSigned) {
     for (const bool isBit : {false, true}) {
         const auto file = [&](const Bytes& bits) { return isBit ? bitFile(bits) : bits; };
         folder.save("whole", file(whole));
@@ -396,14 +396,14 @@ TEST_F(Packing, ABitstreamThatIsCutOrHasMoreThanItsEndIsNotSigned) {
     refuses("bitstream short 5 key", "as its header states");
 }
 
-TEST_F(Packing, AFileThatCannotBeReadIsNamedWithItsReason) {
+TEST_F(Packing, AnUnreadableFileIsReportedWithTheReason) {
     std::filesystem::create_directory(folder.path + "/other");
     refuses("image other 5 key", "cannot read firmware 'other': it is a folder");
     refuses("bitstream other 5 key", "cannot read bitstream 'other': it is a folder");
     refuses("bitstream missing 5 key", "cannot read bitstream 'missing': No such file");
 }
 
-TEST_F(Packing, AVersionIsOfDigitsAlone) {
+TEST_F(Packing, AVersionConsistsOfDigits) {
     folder.save("whole", whole);
     for (const char* version : {"-1", "+1", "-18446744073709551615", "0", "4294967295", "1x",
                                 "' 1'", "0x10", "99999999999999999999", "''"})
@@ -412,7 +412,7 @@ TEST_F(Packing, AVersionIsOfDigitsAlone) {
     EXPECT_EQ(folder.pack("bitstream whole 4294967294 key good"), 0) << folder.said();
 }
 
-TEST_F(Packing, APrivateKeyIsAFileOfItsOwnersAlone) {
+TEST_F(Packing, APrivateKeyIsReadableOnlyByItsOwner) {
     folder.save("whole", whole);
     ASSERT_EQ(std::system(("cd " + folder.path +
                            " && mkfifo pipe && mkdir folder && touch empty && head -c 32 "
@@ -429,7 +429,7 @@ TEST_F(Packing, APrivateKeyIsAFileOfItsOwnersAlone) {
     refuses("bitstream whole 5 dangling", "cannot write the private key");
 }
 
-TEST_F(Packing, AnOutputIsNotAnInput) {
+TEST_F(Packing, AnOutputMustDifferFromTheInputs) {
     folder.save("whole", whole);
     ASSERT_EQ(folder.pack("public key open.pub"), 0) << folder.said();
     const Bytes key = folder.read("key");
@@ -445,7 +445,7 @@ TEST_F(Packing, AnOutputIsNotAnInput) {
     refuses("keys 2 key pipe", "not a regular file");
 }
 
-TEST_F(Packing, OfManyAtOnceAllHaveTheSameNewKey) {
+TEST_F(Packing, SimultaneousCommandsCreateOneKey) {
     ASSERT_EQ(std::system(("cd " + folder.path +
                            " && for i in 1 2 3 4 5 6 7 8; do " PACK_UPDATE
                            " public new.key $i.pub & done; wait")

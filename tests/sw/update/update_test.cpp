@@ -142,15 +142,15 @@ TEST(Signature, IsEd25519AsInRfc8032) {
     EXPECT_EQ(Signature_isGood(signature.data(), &none, 0, key.data()), 0);
 }
 
-TEST(Update, ANewImageIsTriedAndStaysWhenItIsConfirmed) {
+TEST(Update, ANewImageStaysIfItIsConfirmed) {
     FlashedVehicle().expectTriedAndConfirmed();
 }
 
-TEST(Update, AnImageThatIsNotConfirmedIsTriedOnce) {
+TEST(Update, AnUnconfirmedImageIsTriedOnce) {
     FlashedVehicle().expectTriedOnce();
 }
 
-TEST(Update, WhatIsNotForThisVehicleLeavesItUntouched) {
+TEST(Update, AnImageForAnotherVehicleChangesNothing) {
     FlashedVehicle vehicle(5);
     const Bytes before = vehicle.memory;
     Image foreign = makeImage(6, 1), unsignedOne = makeImage(6, 1), otherKey = makeImage(6, 1);
@@ -177,7 +177,7 @@ TEST(Update, WhatIsNotForThisVehicleLeavesItUntouched) {
     EXPECT_EQ(vehicle.operations(), 0u);
 }
 
-TEST(Update, ItsCounterpartMustRunAndBeConfirmed) {
+TEST(Update, AnImageMayRequireAConfirmedVersionOfTheOtherKind) {
     FlashedVehicle vehicle;
     Image image = makeImage(2, 1);
     image.header.needs = 5;
@@ -197,7 +197,7 @@ TEST(Update, ItsCounterpartMustRunAndBeConfirmed) {
 
 // The newest image is damaged, and the power is cut at each operation of the update that replaces
 // it.
-TEST(Update, NoLossOfPowerLowersTheConfirmedVersion) {
+TEST(Update, NoPowerLossLowersTheConfirmedVersion) {
     for (uint64_t cut = 1; cut < 12; ++cut) {
         FlashedVehicle vehicle(5);
         vehicle.updateTo(6);
@@ -214,7 +214,7 @@ TEST(Update, NoLossOfPowerLowersTheConfirmedVersion) {
     }
 }
 
-TEST(Update, NoHeaderOfWhichABitWasChangedIsTaken) {
+TEST(Update, AHeaderWithAnyWrongBitIsRefused) {
     FlashedVehicle vehicle;
     for (size_t bit = 0; bit < 8 * sizeof(Slots_Header); ++bit) {
         Image image = makeImage(2, 1);
@@ -224,7 +224,7 @@ TEST(Update, NoHeaderOfWhichABitWasChangedIsTaken) {
     EXPECT_EQ(vehicle.operations(), 0u);
 }
 
-TEST(Update, WithoutAKeyNothingIsTaken) {
+TEST(Update, WithoutAKeyNoImageIsAccepted) {
     FlashedVehicle vehicle;
     std::fill_n(vehicle.memory.begin() + SLOTS_KEYS_AT + offsetof(Slots_Header, digest),
                 SLOTS_DIGEST_BYTES, uint8_t{0xFF});
@@ -246,7 +246,7 @@ TEST(Update, TheSecondKeySignsImagesAndTheNextList) {
     vehicle.updateTo(4, others);
 }
 
-TEST(Update, AListIsSignedByTheOneBeforeAndCountsUpByOne) {
+TEST(Update, AListOfKeysIsSignedByThePreviousListAndCountsUpByOne) {
     FlashedVehicle vehicle;
     EXPECT_EQ(vehicle.take(ours.list(2, third, second)), RECEIVER_OK);
     const Bytes before = vehicle.memory;
@@ -267,7 +267,7 @@ TEST(Update, AListIsSignedByTheOneBeforeAndCountsUpByOne) {
     EXPECT_EQ(vehicle.operations(), operations);
 }
 
-TEST(Update, NoListStopsWhatRuns) {
+TEST(Update, AListOfKeysCannotRevokeTheRunningImage) {
     FlashedVehicle vehicle;
     const Slots_Header list = second.list(2, third, second);
     // refused, because the current firmware is signed with a key that this list does not contain
@@ -290,7 +290,7 @@ TEST(Update, NoListStopsWhatRuns) {
 
 // Cuts the power at each word while a list is being written, and at a random word of the next
 // attempt.
-TEST(Update, WhereverThePowerIsCutAListCountsOrTheOneBefore) {
+TEST(Update, APowerLossAtAnyPointLeavesAValidListOfKeys) {
     constexpr unsigned words = sizeof(Slots_Header) / 4 + 1;
     Random random(testSeed());
     for (uint64_t first = 1; first <= words; ++first) {
@@ -316,7 +316,7 @@ TEST(Update, WhereverThePowerIsCutAListCountsOrTheOneBefore) {
     }
 }
 
-TEST(Update, ADamagedOrCutImageIsNotStarted) {
+TEST(Update, ADamagedOrTruncatedImageIsNotStarted) {
     FlashedVehicle vehicle;
     Image image = makeImage(2, 1);
     EXPECT_EQ(vehicle.begin(image), RECEIVER_OK);
@@ -331,7 +331,7 @@ TEST(Update, ADamagedOrCutImageIsNotStarted) {
     EXPECT_EQ(vehicle.boot(), 2u);
 }
 
-TEST(Update, PiecesComeInOrderAndInWords) {
+TEST(Update, PiecesMustBeInOrderAndWholeWords) {
     FlashedVehicle vehicle;
     const Image image = makeImage(2, 1);
     const uint8_t* bytes = image.bytes.data();
@@ -346,7 +346,7 @@ TEST(Update, PiecesComeInOrderAndInWords) {
     EXPECT_EQ(Receiver_write(&vehicle.receiver, 0xFFFFFFFC, bytes, 8), RECEIVER_MISPLACED);
 }
 
-TEST(Update, ItGoesOnWhereTheLossOfPowerLeftIt) {
+TEST(Update, AnUpdateContinuesAfterAPowerLoss) {
     FlashedVehicle vehicle;
     const Image image = makeImage(2, 1);
     EXPECT_EQ(vehicle.begin(image), RECEIVER_OK);
@@ -401,7 +401,7 @@ TEST(Update, AnImageWithARecordedHeaderIsStarted) {
     EXPECT_EQ(Slots_choose(&vehicle.port, product, 1), 1u);
 }
 
-TEST(Update, WhereverThePowerIsCutThereIsAnImageThatBoots) {
+TEST(Update, APowerLossAtAnyPointLeavesABootableImage) {
     FlashedVehicle whole;
     whole.updateTo(2);
     const uint64_t all = whole.operations();

@@ -102,7 +102,7 @@ TEST(Keys, AVehicleHasAKeyOrIsOpenOrNeither) {
     EXPECT_FALSE(UAV_isOpen());
 }
 
-TEST(Keys, TheFirstGroundsAddressIsNeitherKeptNorTheFlightState) {
+TEST(Keys, TheAddressOfTheFirstGroundIsNotStored) {
     KeyedVehicle vehicle(1);
     for (const int isFlying : {0, 1}) {
         UAV_setFlying(isFlying);
@@ -112,7 +112,7 @@ TEST(Keys, TheFirstGroundsAddressIsNeitherKeptNorTheFlightState) {
     EXPECT_EQ(UAV_address(), address);
 }
 
-TEST(Keys, ASlotThatWasSpoiltIsEmpty) {
+TEST(Keys, ACorruptedSlotIsEmpty) {
     KeyedVehicle vehicle(1);
     for (U32 bit = 0; bit < 5 * 32; ++bit) {
         vehicle.words[bit / 32] ^= 1u << bit % 32;
@@ -123,7 +123,7 @@ TEST(Keys, ASlotThatWasSpoiltIsEmpty) {
 }
 
 // A member of the group could send any sequence number, even one that is too high.
-TEST(Keys, AHighNumberDoesNotSilenceCallsToAll) {
+TEST(Keys, AHighSequenceNumberDoesNotBlockBroadcasts) {
     KeyedVehicle vehicle(1);
     const auto opens = [](const Key& key, U32 number) {
         U8 packet[LINK_MAX_FRAME] = {};
@@ -149,7 +149,7 @@ TEST(Keys, AHighNumberDoesNotSilenceCallsToAll) {
     EXPECT_TRUE(opens(oldKey, now + 4)) << "the group's new key starts at its own number";
 }
 
-TEST(Keys, TheGroupsKeyOpensEachCallOnceAndGoesWithANewVehiclesKey) {
+TEST(Keys, TheGroupKeyOpensEachBroadcastOnceUntilTheVehicleIsProvisionedAgain) {
     KeyedVehicle vehicle(1);
     const auto opens = [](const Key& key, U32 number) {
         U8 packet[LINK_MAX_FRAME] = {};
@@ -175,7 +175,7 @@ TEST(Keys, TheGroupsKeyOpensEachCallOnceAndGoesWithANewVehiclesKey) {
     EXPECT_FALSE(UAV_isOfGroup());
 }
 
-TEST(Keys, OneFollowsAnotherAndTheOldOneOpensNothing) {
+TEST(Keys, AfterAChangeTheOldKeyIsRejected) {
     KeyedVehicle vehicle(testSeed());
     EXPECT_EQ(vehicle.change(), std::vector<Key>{newKey});
     EXPECT_FALSE(vehicle.hasKey(oldKey));
@@ -186,7 +186,7 @@ TEST(Keys, OneFollowsAnotherAndTheOldOneOpensNothing) {
     EXPECT_TRUE(vehicle.meets({newKey}));
 }
 
-TEST(Keys, ASecondGroundHasKeysOfItsOwn) {
+TEST(Keys, ASecondGroundHasSeparateKeys) {
     KeyedVehicle vehicle(testSeed());
     EXPECT_EQ(UAV_addressOf(UAV_OBSERVER), UAV_NO_PEER);
     UAV_providePeer(UAV_OBSERVER, 0xF0, nullptr);
@@ -207,7 +207,7 @@ TEST(Keys, ASecondGroundHasKeysOfItsOwn) {
         << "a vehicle in open mode accepts an observer without a key";
 }
 
-TEST(Keys, OfTwoVehiclesTheOneWithTheLowerAddressHasTheGroundsPart) {
+TEST(Keys, TheVehicleWithTheLowerAddressActsAsTheGround) {
     KeyedVehicle vehicle(testSeed());
     for (U32 fellow : {address - 1, address + 1}) {
         UAV_providePeer(UAV_VEHICLE, fellow, foreignKey.data());
@@ -243,7 +243,7 @@ TEST(Keys, AGroundWithoutTheKeyIsRefused) {
     EXPECT_TRUE(vehicle.meets({foreignKey, oldKey})) << "one correct key of two must be sufficient";
 }
 
-TEST(Keys, ASessionUnderTheOldKeyKeepsBoth) {
+TEST(Keys, ASessionUnderTheOldKeyKeepsBothKeys) {
     KeyedVehicle vehicle(testSeed());
     vehicle.change(2);
     vehicle.bootVehicle();
@@ -255,7 +255,7 @@ TEST(Keys, ASessionUnderTheOldKeyKeepsBoth) {
     EXPECT_TRUE(vehicle.hasKey(newKey));
 }
 
-TEST(Keys, TheKeyInUseAgainIsNoChangeAndAnotherNextKeyReplacesTheFirst) {
+TEST(Keys, AnotherNextKeyReplacesThePreviousOne) {
     KeyedVehicle vehicle(testSeed());
     ASSERT_TRUE(vehicle.meets({oldKey}));
     EXPECT_TRUE(UAV_setNextKey(0, vehicle.b.link(), oldKey.data()));
@@ -266,7 +266,7 @@ TEST(Keys, TheKeyInUseAgainIsNoChangeAndAnotherNextKeyReplacesTheFirst) {
     EXPECT_TRUE(vehicle.hasKey(newKey) && vehicle.hasKey(oldKey));
 }
 
-TEST(Keys, AGroundThatGivesUpKeepsAKeyThatWorks) {
+TEST(Keys, AnAbortedChangeOfKeysLeavesAWorkingKey) {
     for (int steps = 0; steps <= 3; ++steps) {
         KeyedVehicle vehicle(testSeed());
         const std::vector<Key> file = vehicle.change(steps);
@@ -275,7 +275,7 @@ TEST(Keys, AGroundThatGivesUpKeepsAKeyThatWorks) {
     }
 }
 
-TEST(Keys, PowerThatFailsAtAnyWordLeavesAKeyThatWorks) {
+TEST(Keys, APowerLossAtAnyWordLeavesAWorkingKey) {
     bool wasCut = true;
     for (unsigned cut = 0; wasCut; ++cut) {
         KeyedVehicle vehicle(testSeed());

@@ -75,7 +75,7 @@ const std::string digits = "00112233445566778899aabbccddeeff", at = " 002a";
 const std::vector<uint8_t> key = {0x00, 0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77,
                                   0x88, 0x99, 0xAA, 0xBB, 0xCC, 0xDD, 0xEE, 0xFF};
 
-TEST_F(Provision, TakesAKeyOrOpensTheVehicle) {
+TEST_F(Provision, AcceptsAKeyOrOpensTheVehicle) {
     EXPECT_EQ(start(), prompt);
     EXPECT_EQ(answerTo("key " + digits + at + "\n"), "ok\r\n");
     EXPECT_TRUE(has(key));
@@ -84,7 +84,7 @@ TEST_F(Provision, TakesAKeyOrOpensTheVehicle) {
     EXPECT_TRUE(has({}, 0xBEEF));
 }
 
-TEST_F(Provision, WhoHasNeitherTheOldKeyNorTheJumperChangesNothing) {
+TEST_F(Provision, AChangeNeedsTheOldKeyOrTheJumper) {
     const std::string other(32, 'a');
     startAndAnswer("key " + digits + at);
     for (const std::string& line : {"key " + other + at, "open" + at,
@@ -101,7 +101,7 @@ TEST_F(Provision, WhoHasNeitherTheOldKeyNorTheJumperChangesNothing) {
     EXPECT_TRUE(has(key));
 }
 
-TEST_F(Provision, TakesASecondGroundWithAKeyOfItsOwn) {
+TEST_F(Provision, AcceptsASecondGroundWithASeparateKey) {
     const std::string other(32, 'a');
     startAndAnswer("key " + digits + at);
     EXPECT_EQ(startAndAnswer("ground 00f0 " + other).substr(0, 3), "no:");
@@ -118,7 +118,7 @@ TEST_F(Provision, TakesASecondGroundWithAKeyOfItsOwn) {
         << "the key of the second ground station must not authorise this change";
 }
 
-TEST_F(Provision, TakesTheGroupsKey) {
+TEST_F(Provision, AcceptsTheGroupKey) {
     startAndAnswer("key " + digits + at);
     EXPECT_EQ(startAndAnswer("group 06dacba9 " + std::string(32, 'a')).substr(0, 3), "no:");
     EXPECT_EQ(chip.backup()[58], 0u)
@@ -130,7 +130,7 @@ TEST_F(Provision, TakesTheGroupsKey) {
     EXPECT_TRUE(has(key));
 }
 
-TEST_F(Provision, SaysThatReadProtectionIsOffAndSetsIt) {
+TEST_F(Provision, ReportsMissingReadProtectionAndSetsIt) {
     EXPECT_EQ(start(), prompt);
     EXPECT_EQ(answerTo("protect\n"), "ok\r\n");
     EXPECT_EQ(start(), "icesoc: key?\r\n");
@@ -139,7 +139,7 @@ TEST_F(Provision, SaysThatReadProtectionIsOffAndSetsIt) {
     EXPECT_TRUE(has(key));
 }
 
-TEST_F(Provision, WhatMakesNoSenseChangesNothing) {
+TEST_F(Provision, InvalidLinesChangeNothing) {
     startAndAnswer("key " + digits + at);
     for (const std::string& line :
          {"key " + digits.substr(1) + at, "key " + digits + "0" + at,
@@ -154,14 +154,14 @@ TEST_F(Provision, WhatMakesNoSenseChangesNothing) {
     }
 }
 
-TEST_F(Provision, NobodyIsListenedToWithoutABreak) {
+TEST_F(Provision, WithoutABreakNothingIsAccepted) {
     chip.powerOn();
     EXPECT_EQ(answerTo("key " + digits + at + "\n"), "");
     EXPECT_FALSE(has(key));
 }
 
 // The model waits for the program, so the result does not depend on the program's speed.
-TEST_F(Provision, TheGroundsProgramGivesIt) {
+TEST_F(Provision, TheProgramOfTheGroundSendsTheKey) {
     const std::string file = FOLDER + std::to_string(getpid()) + ".key";
     std::ofstream(file) << "# demo\n0x0001 " << std::string(32, 'a') << "\n0x002A " << digits
                         << "\n";

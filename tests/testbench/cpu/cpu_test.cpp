@@ -45,41 +45,35 @@ constexpr uint32_t unaligned = 1 << 24;
 constexpr uint32_t preciseBus = 1 << 9, addressValid = 1 << 15, impreciseBus = 1 << 10;
 const Case cases[] = {
     {"AnInterruptOfHigherPriorityPreempts", "Case_nesting", "abBA"},
-    {"OneOfTheSamePriorityWaits", "Case_samePriority", "aAbB"},
-    {"OfEqualOnesTheLowestNumberComesFirst", "Case_lowestNumberFirst", "aAbBcC"},
-    {"SubPrioritiesOrderAndDoNotPreempt", "Case_subPriority", "aAcCbB"},
+    {"AnInterruptOfTheSamePriorityWaits", "Case_samePriority", "aAbB"},
+    {"AtEqualPriorityTheLowestNumberRunsFirst", "Case_lowestNumberFirst", "aAbBcC"},
+    {"SubPrioritiesSetTheOrderWithoutPreemption", "Case_subPriority", "aAcCbB"},
     // value of R0 in the handler: no instruction after CPSIE has been executed yet
-    {"PrimaskHoldsBackAndUnmaskingIsExact", "Case_primaskExact", "1aA2", {{0, 5}}},
-    {"BasepriHoldsBackItsPriorityAndBelow", "Case_basepri", "1bB2aA3"},
-    {"FaultmaskHoldsBackAll", "Case_faultmask", "1aA2"},
-    {"PendSvRunsBehindInterrupts", "Case_switchLast", "aAp"},
-    {"SvcEntersAtOnceAndReturnsBehindItself", "Case_supervisorCall", "s.", {{0, 42}}},
-    {"SleepEndsThoughPrimaskIsSet", "Case_sleepMasked", "wt."},
-    {"ALoadThatNobodyAnswersIsAPreciseBusFault",
+    {"AnInterruptRunsRightAfterCpsie", "Case_primaskExact", "1aA2", {{0, 5}}},
+    {"BasepriMasksItsPriorityAndLowerOnes", "Case_basepri", "1bB2aA3"},
+    {"FaultmaskMasksAllInterrupts", "Case_faultmask", "1aA2"},
+    {"PendSvRunsAfterInterrupts", "Case_switchLast", "aAp"},
+    {"SvcIsTakenAtOnceAndReturnsToTheNextInstruction", "Case_supervisorCall", "s.", {{0, 42}}},
+    {"SleepEndsAlthoughPrimaskIsSet", "Case_sleepMasked", "wt."},
+    {"ALoadFromAnUnmappedAddressIsAPreciseBusFault",
      "Case_busFault",
      "u.",
      {{0, preciseBus | addressValid}, {1, 0x60000010}}},
     // TRM r2p1, 3.5: the fault of a store arrives late and without an address. value[4] is the
     // number of instructions that were executed between the store and the DSB.
-    {"TheFaultOfAStoreIsImpreciseAndABarrierWaitsForIt",
+    {"AStoreFaultIsImpreciseAndABarrierWaitsForIt",
      "Case_storeFault",
      "u.",
      {{0, impreciseBus}, {1, 0}, {4, 2}}},
-    {"WithoutTheWriteBufferTheFaultOfAStoreIsPrecise",
+    {"WithoutTheWriteBufferAStoreFaultIsPrecise",
      "Case_unbuffered",
      "u.",
      {{0, preciseBus | addressValid}, {1, 0x60000010}, {4, 0}}},
     // no hard fault was taken
-    {"TheFaultOfAStoreWaitsWhileItIsMasked", "Case_storeMasked", "1u2", {{2, 0}}},
-    {"WhereThereIsNoMemoryOrItIsFlashAWriteIsABusFault",
-     "Case_noMemory",
-     "u.u.",
-     {{0, impreciseBus}}},
-    {"WithoutAHandlerOfItsOwnAFaultIsAHardFault",
-     "Case_escalation",
-     "h.",
-     {{2, 1 << 30}}},                                              // FORCED
-    {"InTheHandlerOfAHardFaultAnNmiMayUseAStackThatTheMpuForbids", // B3.5.1
+    {"AMaskedStoreFaultStaysPending", "Case_storeMasked", "1u2", {{2, 0}}},
+    {"AWriteToFlashOrUnmappedMemoryIsABusFault", "Case_noMemory", "u.u.", {{0, impreciseBus}}},
+    {"AFaultWithoutAHandlerIsAHardFault", "Case_escalation", "h.", {{2, 1 << 30}}}, // FORCED
+    {"AnNmiDuringAHardFaultIgnoresTheMpu",                                          // B3.5.1
      "Case_guardOff",
      "hn.",
      {{5, 0}}},
@@ -87,7 +81,7 @@ const Case cases[] = {
     {"AJumpOutOfThumbStateIsAUsageFault", "Case_armState", "f.", {{0, 1 << 17}}}, // INVSTATE
     // The stack frame is at PSP, the handler uses the other stack, and CONTROL.SPSEL is restored
     // afterwards.
-    {"AnInterruptedProcessHasItsFrameOnItsOwnStack",
+    {"AnInterruptedProcessHasItsFrameOnTheProcessStack",
      "Case_process",
      "aA",
      {{0, 0}, {1, 1}, {2, 2}, {3, 0xFFFFFFFD}}},
@@ -104,7 +98,7 @@ const Case cases[] = {
       {5, unaligned}}},
     // The region with the highest number decides. Subregions and the default memory map are also
     // tested.
-    {"MemoryThatIsNotExecutedFaults",
+    {"ExecutingExecuteNeverMemoryFaults",
      "Case_executeNever",
      "m12mm.",
      {{0, 1}, {1, 1}, {2, 1}, {3, 0}}},
@@ -122,15 +116,15 @@ const Case cases[] = {
      "Case_cycleCounter",
      "",
      {{0, 0x40000000}, {1, 0}, {2, 0}, {3, 1}, {4, 0x40000001}, {5, 0}}},
-    {"SysTickTakesALateReloadAndAnotherClock",
+    {"SysTickAcceptsALateReloadAndAnotherClock",
      "Case_tickRules",
      ".",
      {{0, 1}, {1, 1}, {2, 0}, {3, 0}}},
-    {"TheInterruptStateIsThatOfTheRunningException",
+    {"IcsrShowsTheRunningException",
      "Case_interruptState",
      "aA",
      {{0, 16}, {1, 1}, {2, 17}, {3, 0}}},
-    {"ABitHasAWordOfItsOwn", "Case_bitBand", "", {{0, 8}, {1, 1}, {2, 1}, {3, 0}}},
+    {"BitBandingMapsEachBitToAWord", "Case_bitBand", "", {{0, 8}, {1, 1}, {2, 1}, {3, 0}}},
     {"AReturnOutOfThumbStateIsAUsageFault", "Case_stackedState", "aAf.", {{0, 1 << 17}}},
     {"FramesAreAlignedToEight", "Case_alignment", "aA", {{2, 0}, {3, 0}}}};
 
@@ -176,14 +170,14 @@ TEST_F(Cpu, ALineThatStaysHighPendsAgainWhenItsPendingBitIsCleared) {
     EXPECT_FALSE(m3.cpu.exceptions()[18].pending);
 }
 
-TEST_F(Cpu, SysTickHasItsPeriodExactly) {
+TEST_F(Cpu, SysTickHasTheExactPeriod) {
     EXPECT_EQ(run("Case_systick"), "tttt");
     EXPECT_EQ(value(0), 1000u);
     EXPECT_EQ(value(1), 1000u);
     EXPECT_GT(m3.cpu.sleepingCycles(), 2000u);
 }
 
-TEST_F(Cpu, AnAcknowledgementWithoutABarrierMayEnterTheRoutineAgain) {
+TEST_F(Cpu, AnAcknowledgementWithoutABarrierMayRepeatTheInterrupt) {
     std::vector<unsigned> entered;
     unsigned line = 0;
     m3.bus.onWrite = [&](uint32_t address, uint32_t value) {
@@ -216,7 +210,7 @@ TEST_F(Cpu, ABreakpointInstructionWithoutADebuggerIsAHardFault) {
 }
 
 // B1.5.5: the lowest bit of the reset vector sets the Thumb state; SP is a multiple of four.
-TEST_F(Cpu, AResetVectorWithoutItsLowestBitFaults) {
+TEST_F(Cpu, AResetVectorWithoutTheThumbBitFaults) {
     const uint32_t vectors[] = {m3.cpu.word(0) | 3, m3.cpu.word(4) & ~1u};
     m3.cpu.writeMemory(0, vectors, sizeof vectors);
     m3.cpu.reset();
@@ -225,7 +219,7 @@ TEST_F(Cpu, AResetVectorWithoutItsLowestBitFaults) {
     EXPECT_NE(m3.cpu.lastFault.find("reset vector"), std::string::npos) << m3.cpu.lastFault;
 }
 
-TEST_F(Cpu, TheMpuForbidsWritingToAGuardAndNothingBesides) {
+TEST_F(Cpu, TheMpuForbidsOnlyWritesToTheStackGuard) {
     EXPECT_EQ(run("Case_guard"), "0m..");
     EXPECT_EQ(value(0), 1u << 1 | 1u << 7); // DACCVIOL, MMARVALID
     EXPECT_EQ(value(3), m3.image.symbol("guarded") + 32);
@@ -244,7 +238,7 @@ TEST_F(Cpu, InstructionsTakeTheCyclesOfTheManual) {
     EXPECT_EQ(value(6) - nothing, 6u);
 }
 
-TEST_F(Cpu, AResetRequestStartsAgainAndKeepsMemory) {
+TEST_F(Cpu, AResetRequestRestartsAndKeepsTheMemory) {
     unsigned resets = 0;
     m3.cpu.listener.systemReset = [&] { ++resets; };
     EXPECT_EQ(run("Case_resetRequest"), "r");

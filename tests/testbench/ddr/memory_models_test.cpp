@@ -64,7 +64,7 @@ protected:
     McbModel memory_{1 << 20};
 };
 
-TEST_F(Mcb, ReadsWhatWasWrittenWithItsMask) {
+TEST_F(Mcb, ReadsReturnMaskedWrites) {
     push(0x1111111111111111u);
     push(0x2222222222222222u, 0xF0);
     command(write, 0x108, 2);
@@ -89,7 +89,7 @@ TEST_F(Mcb, ReadLatencyIsTheSumOfItsParts) {
 
 // AR36413, 2: the write waits until the read data has ended, and then for 2 cycles and 1 cycle at
 // the pins.
-TEST_F(Mcb, AWriteWaitsForTheDataOfTheReadBefore) {
+TEST_F(Mcb, AWriteWaitsForTheDataOfThePreviousRead) {
     auto clocksUntilEmpty = [&](bool behindRead) {
         push(1);
         if (behindRead)
@@ -110,7 +110,7 @@ TEST_F(Mcb, AWriteWaitsForTheDataOfTheReadBefore) {
 
 // AR36413, 3: commands are executed one at a time; an activate waits for the data of the previous
 // read.
-TEST_F(Mcb, AnActivateWaitsForTheDataOfTheReadBefore) {
+TEST_F(Mcb, AnActivateWaitsForTheDataOfThePreviousRead) {
     constexpr uint32_t bank = 2048;
     command(read, 0, 2);
     command(read, bank, 2);
@@ -141,7 +141,7 @@ TEST_F(Mcb, PrechargingInstructionsCloseTheRow) {
     EXPECT_EQ(memory_.device().refreshes, refreshes + 1);
 }
 
-TEST_F(Mcb, TwoWordsAClockBehindTheFifosOneAtThePort) {
+TEST_F(Mcb, TheMemorySideMovesTwoWordsPerClockAndThePortOne) {
     // all 64 words of this read are in the FIFO within 40 clocks of the first word
     command(read, 0, 64);
     waitForWord();
@@ -153,7 +153,7 @@ TEST_F(Mcb, TwoWordsAClockBehindTheFifosOneAtThePort) {
     EXPECT_EQ(memory_.pins.rdCount, 64);
 }
 
-TEST_F(Mcb, FlagsOfTheWriteSide) {
+TEST_F(Mcb, TheWriteFlagsFollowTheFifo) {
     EXPECT_TRUE(memory_.pins.wrEmpty);
     for (unsigned i = 0; i < 64; ++i) {
         EXPECT_FALSE(memory_.pins.wrFull);
@@ -168,7 +168,7 @@ TEST_F(Mcb, FlagsOfTheWriteSide) {
     EXPECT_EQ(memory_.data()[8 * 63], 63);
 }
 
-TEST_F(Mcb, TheCommandFifoHoldsFour) {
+TEST_F(Mcb, TheCommandFifoHoldsFourCommands) {
     for (unsigned i = 0; i < 4; ++i) {
         EXPECT_FALSE(memory_.pins.cmdFull);
         command(read, 0, 8);
@@ -177,7 +177,7 @@ TEST_F(Mcb, TheCommandFifoHoldsFour) {
     refuses([&] { command(read, 0, 8); }, "command FIFO overflow");
 }
 
-TEST_F(Mcb, Refusals) {
+TEST_F(Mcb, InvalidAccessesAreRefused) {
     refuses([&] { command(write, 0, 1); }, "before its data");
     EXPECT_TRUE(memory_.pins.wrUnderrun && memory_.pins.wrError);
     refuses([&] { command(read, 4, 1); }, "aligned");
@@ -208,7 +208,7 @@ TEST(McbStart, NoCommandBeforeCalibration) {
 // the sanitizers write to the whole memory
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 // Each flight makes a memory of the board's size, and uses a small part of it.
-TEST(McbStart, TheSizeOfTheMemoryCostsNoTime) {
+TEST(McbStart, ALargeMemoryStartsAsFastAsASmallOne) {
     const std::clock_t begin = std::clock();
     for (int i = 0; i < 50; ++i) {
         McbModel memory;
@@ -281,7 +281,7 @@ TEST(Ddr3Timing, RefreshComesEveryTrefiAndTakesTrfc) {
     EXPECT_EQ(device.refreshes, 1282u);
 }
 
-TEST(Ddr3Timing, AControllerMayRefreshLater) {
+TEST(Ddr3Timing, AControllerMayPostponeRefresh) {
     Ddr3Timing device(mt41j64m16, 2);
     device.access(100, true, 0);
     EXPECT_EQ(device.access(3120, true, 0), 3120u + 6 + 2 + 44 + 6);

@@ -37,14 +37,14 @@ protected:
 };
 using Retries = TrueAir;
 
-TEST_F(TrueAir, FullPacketsLeaveAt80KilobitsASecondAndAt47WithEncryption) {
+TEST_F(TrueAir, ThroughputIs80KilobitsPerSecondAnd47WithEncryption) {
     power({{"BD", 7}}, {{"BD", 7}});
     EXPECT_NEAR(throughput(false), 80e3, 2e3);
     power({{"BD", 7}, {"EE", 1}}, {{"BD", 7}, {"EE", 1}});
     EXPECT_NEAR(throughput(false), 47e3, 1e3);
 }
 
-TEST_F(TrueAir, BothDirectionsAtOnceShareWhatOneHas) {
+TEST_F(TrueAir, BothDirectionsShareTheRateOfOne) {
     power({{"BD", 7}, {"RN", 3}}, {{"BD", 7}, {"RN", 3}});
     double both = throughput(true);
     EXPECT_LT(both, 85e3) << "the air must not be full duplex, which would give twice 80 kb/s";
@@ -53,7 +53,7 @@ TEST_F(TrueAir, BothDirectionsAtOnceShareWhatOneHas) {
     EXPECT_NEAR(heardA / static_cast<double>(lineB.received.size()), 1, 0.15);
 }
 
-TEST_F(TrueAir, RNSavesModemsThatWriteInStep) {
+TEST_F(TrueAir, RNSeparatesModemsThatSendSimultaneously) {
     for (uint32_t rn : {0u, 3u}) {
         power({{"BD", 7}, {"RN", rn}}, {{"BD", 7}, {"RN", rn}});
         uint64_t lost = air.counters().lost;
@@ -67,7 +67,7 @@ TEST_F(TrueAir, RNSavesModemsThatWriteInStep) {
     }
 }
 
-TEST_F(TrueAir, AnEncryptedFrameCarriesItsSendersAddressAndFiveBytes) {
+TEST_F(TrueAir, AnEncryptedFrameHasTheAddressOfItsSenderAndFiveMoreBytes) {
     perfect = true;
     power({{"EE", 1}, {"RO", 0}}, {{"EE", 1}});
     uint64_t begin = now;
@@ -75,7 +75,7 @@ TEST_F(TrueAir, AnEncryptedFrameCarriesItsSendersAddressAndFiveBytes) {
     EXPECT_EQ(packets[0].time - begin, RfChannel::airTimeNs(1 + 5 + 6) - afterFrame);
 }
 
-TEST_F(Retries, WithRRTheTriesAreMadeAgainAfter200To248Milliseconds) {
+TEST_F(Retries, WithRRTriesRepeatAfter200To248Milliseconds) {
     power({{"RR", 1}, {"RO", 0}});
     air.weather.tryLoss = 1;
     auto tries = [this] { return air.counters().airNs / RfChannel::airTimeNs(1); };
@@ -86,7 +86,7 @@ TEST_F(Retries, WithRRTheTriesAreMadeAgainAfter200To248Milliseconds) {
     EXPECT_EQ(tries(), 8u);
 }
 
-TEST_F(Retries, ABroadcastGoesRRAndTwoTimesAndArrivesOnce) {
+TEST_F(Retries, ABroadcastIsSentRRPlusTwoTimesAndArrivesOnce) {
     for (uint32_t rr : {0u, 2u})
         for (double loss : {1, 0}) { // not acknowledged
             power({{"DL", 0xFFFF}, {"RR", rr}, {"RO", 0}});
@@ -98,7 +98,7 @@ TEST_F(Retries, ABroadcastGoesRRAndTwoTimesAndArrivesOnce) {
         }
 }
 
-TEST_F(Retries, WithRRAFailureHasAStatusOfItsOwn) {
+TEST_F(Retries, WithRRAFailureHasASeparateStatus) {
     for (uint32_t rr : {0u, 1u}) {
         power({{"AP", 1}, {"RR", rr}});
         air.weather.tryLoss = 1;
@@ -110,7 +110,7 @@ TEST_F(Retries, WithRRAFailureHasAStatusOfItsOwn) {
     }
 }
 
-TEST_F(TrueAir, A64BitSourceComesInFrames80) {
+TEST_F(TrueAir, PacketsFromA64BitAddressUseFrameType80) {
     power({{"MY", 0xFFFE}, {"RO", 0}}, {{"AP", 1}});
     send("x", 50 * ms);
     std::string frame = heardB();
@@ -121,7 +121,7 @@ TEST_F(TrueAir, A64BitSourceComesInFrames80) {
 }
 
 // Simulates a microwave oven, which is on for half of every 20 ms.
-TEST_F(TrueAir, AnInterferersShareOfTheTimeIsLost) {
+TEST_F(TrueAir, PacketsDuringInterferenceAreLost) {
     power({{"BD", 7}, {"RN", 2}}, {{"BD", 7}});
     double without = throughput(false);
     air.weather.interference = 0.5;
@@ -130,7 +130,7 @@ TEST_F(TrueAir, AnInterferersShareOfTheTimeIsLost) {
     EXPECT_GT(with, 0.2 * without);
 }
 
-TEST_F(TrueAir, StrengthFallsWithDistanceAndTriesFade) {
+TEST_F(TrueAir, SignalStrengthFallsWithDistanceAndFades) {
     power({{"RO", 0}});
     // loss of 80 dB, which is 12 dB above the sensitivity of the receiver
     air.weather.distance = 100;
@@ -184,7 +184,7 @@ TEST_F(Traces, AreFollowedRowByRow) {
     EXPECT_EQ(b->parameter("DB"), 70u);
 }
 
-TEST_F(Traces, ThatAreWrongAreRefusedWithTheirLine) {
+TEST_F(Traces, WrongTracesAreRefusedWithTheLine) {
     const std::string head = "time_s,loss,rssi_dbm,delay_ms\n";
     EXPECT_EQ(fault("time,loss\n"), ":1: expected the heading 'time_s,loss,rssi_dbm,delay_ms'");
     EXPECT_EQ(fault(head + "0,0,-50\n"), ":2: expected four numbers");

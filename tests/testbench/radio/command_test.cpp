@@ -60,7 +60,7 @@ const Sequence sequences[] = {
 
 class Sequences : public TwoModems, public ::testing::WithParamInterface<Sequence> {};
 
-TEST_P(Sequences, BeginAndEndCommandMode) {
+TEST_P(Sequences, CommandModeBeginsAndEndsAsInTheManual) {
     power(GetParam().set);
     for (const auto& [text, then] : GetParam().sent)
         send(text, then * ms);
@@ -71,7 +71,7 @@ TEST_P(Sequences, BeginAndEndCommandMode) {
 INSTANTIATE_TEST_SUITE_P(CommandMode, Sequences, ::testing::ValuesIn(sequences));
 
 using CommandMode = TwoModems;
-TEST_F(CommandMode, OkWaitsUntilReceivedDataHasDrained) {
+TEST_F(CommandMode, OKWaitsUntilReceivedDataHasDrained) {
     power();
     lineA.paused = true; // the line to the host is slow
     lineB.send(Bytes(100, 'r'), now);
@@ -85,7 +85,7 @@ TEST_F(CommandMode, OkWaitsUntilReceivedDataHasDrained) {
     EXPECT_EQ(heard(), std::string(100, 'r') + "OK\r");
 }
 
-TEST_F(Commands, AreReadAndWrittenInHex) {
+TEST_F(Commands, ParametersAreHexadecimal) {
     const std::vector<std::pair<std::string, std::string>> values = {
         {"MY", "1A2B"}, {"DH", "13A200"}, {"DL", "FFFF"}, {"ID", "BEEF"}, {"CH", "1A"},
         {"BD", "7"},    {"RO", "0"},      {"RN", "3"},    {"MM", "2"},    {"RR", "6"},
@@ -97,7 +97,7 @@ TEST_F(Commands, AreReadAndWrittenInHex) {
     }
 }
 
-TEST_F(Commands, OutOfRangeAreRefusedAndChangeNothing) {
+TEST_F(Commands, ValuesOutOfRangeAreRefusedAndChangeNothing) {
     for (std::string line :
          {"ATMY10000", "ATCH0A", "ATCH1B", "ATRN4", "ATMM4", "ATRR7", "ATEE2", "ATGT1", "ATGTCE5",
           "ATAP3", "ATBD3D091", "ATBD8", "ATBD7F", "ATD66", "ATMYG", "ATMY123456789"}) {
@@ -107,7 +107,7 @@ TEST_F(Commands, OutOfRangeAreRefusedAndChangeNothing) {
     }
 }
 
-TEST_F(Commands, UnknownAndMalformedAreRefused) {
+TEST_F(Commands, UnknownAndMalformedCommandsAreRefused) {
     for (std::string line :
          {"ATZZ", "ATZZ1", "ATFT", "ATFT80", "ATM", "A", "", "MY", "XXMY", "ATMY0x"})
         EXPECT_EQ(command(line), "ERROR\r") << line;
@@ -123,7 +123,7 @@ TEST_F(Commands, ValuesMayBeginWith0x) {
     EXPECT_EQ(a->key(), std::string(31, '0') + "1");
 }
 
-TEST_F(Commands, ALineMayHoldSeveralAndEachIsAnswered) {
+TEST_F(Commands, ALineMayHaveSeveralCommands) {
     EXPECT_EQ(command("ATMY5,DL6,MY,ZZ,CN"), "OK\rOK\r5\rERROR\rOK\r");
     EXPECT_FALSE(a->inCommandMode());
     EXPECT_EQ(a->parameter("DL"), 6u);
@@ -146,7 +146,7 @@ TEST_F(Commands, TheKeyIsWriteOnly) {
     EXPECT_EQ(command("ATKY" + std::string(33, '0')), "ERROR\r");
 }
 
-TEST_F(Commands, ChangesAreInForceAfterACOrCN) {
+TEST_F(Commands, ChangesTakeEffectAfterACOrCN) {
     command("ATMY99");
     EXPECT_EQ(a->parameter("MY"), 1u);
     command("ATAC");
@@ -156,7 +156,7 @@ TEST_F(Commands, ChangesAreInForceAfterACOrCN) {
     EXPECT_EQ(a->parameter("DL"), 0x77u);
 }
 
-TEST_F(Commands, WRSurvivesAResetAndOthersDoNot) {
+TEST_F(Commands, OnlySettingsSavedByWRSurviveAReset) {
     command("ATMY55");
     command("ATWR");
     command("ATMY66");
@@ -168,14 +168,14 @@ TEST_F(Commands, WRSurvivesAResetAndOthersDoNot) {
     EXPECT_EQ(a->parameter("MY"), 0x55u);
 }
 
-TEST_F(Commands, REGivesTheFactorysSettings) {
+TEST_F(Commands, RERestoresTheFactorySettings) {
     EXPECT_EQ(command("ATRE"), "OK\r");
     EXPECT_EQ(command("ATMY"), "0\r");
     EXPECT_EQ(command("ATGT"), "3E8\r");
     EXPECT_EQ(command("ATSL"), "A\r") << "ATRE must not change the serial number";
 }
 
-TEST_F(Commands, FRAnswersAndThenBoots) {
+TEST_F(Commands, FRRepliesAndThenResets) {
     command("ATMY66");
     EXPECT_EQ(command("ATFR"), "OK\r");
     EXPECT_EQ(a->parameter("MY"), 1u);
@@ -183,7 +183,7 @@ TEST_F(Commands, FRAnswersAndThenBoots) {
     EXPECT_EQ(across("data", 20 * ms), "data");
 }
 
-TEST_F(Commands, ALiteralRateIsKeptAsTheNearest) {
+TEST_F(Commands, ABaudRateIsRoundedToTheNearestSupportedRate) {
     EXPECT_EQ(command("ATBD3D090"), "OK\r");
     EXPECT_EQ(command("ATBD"), "3D090\r") << "250,000 baud can be set exactly";
     EXPECT_EQ(command("ATBD1C200"), "OK\r"); // 115,200
@@ -241,7 +241,7 @@ TEST_P(Api, TransmitRequestsAreSentAndTheirStatusReported) {
     }
 }
 
-TEST_P(Api, TheOptionWithoutAckIsNotTriedAgain) {
+TEST_P(Api, PacketsWithoutAckAreNotRetried) {
     air.weather.tryLoss = 1;
     api({0x01, 0x01, 0x00, 0x02, 0x01, 'x'}, 100 * ms);
     EXPECT_EQ(air.counters().retries, 0u);
@@ -290,7 +290,7 @@ TEST_P(Api, AQueuedCommandWaitsForAC) {
     EXPECT_EQ(a->parameter("MY"), 0x44u);
 }
 
-TEST_P(Api, BadFramesAreCountedAndTheNextIsRead) {
+TEST_P(Api, BadFramesAreCountedAndTheNextFrameIsRead) {
     Bytes bad = framed({0x01, 0x00, 0x00, 0x02, 0x00, 'x'});
     bad.back() ^= 1; // checksum
     lineA.send(bad, now);
@@ -313,14 +313,14 @@ TEST_P(Api, AResetIsReported) {
     EXPECT_EQ(answer(), framed({0x8A, 0x00}));
 }
 
-TEST_P(Api, TheCommandSequenceIsNotKnown) {
+TEST_P(Api, TheCommandSequenceIsIgnored) {
     EXPECT_EQ(enter(), "");
     EXPECT_FALSE(a->inCommandMode());
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, Api, ::testing::Values(1u, 2u));
 
-TEST_P(Api, WithEscapesALostByteCostsOneFrameOnly) {
+TEST_P(Api, WithEscapesALostByteLosesOnlyOneFrame) {
     Bytes cut = framed({0x01, 0x00, 0x00, 0x02, 0x00, 'x', 'y', 'z'});
     cut.pop_back();
     lineA.send(cut, now);

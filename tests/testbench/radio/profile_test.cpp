@@ -33,7 +33,7 @@ protected:
 INSTANTIATE_TEST_SUITE_P(Of, Profiles, ::testing::ValuesIn(modems),
                          [](const auto& each) { return std::string(each.param.name); });
 
-TEST_P(Profiles, HaveTheirOwnRangesOfParameters) {
+TEST_P(Profiles, HaveSeparateRangesOfParameters) {
     power();
     enter();
     EXPECT_EQ(command("ATBD8"), GetParam().bd8);
@@ -48,7 +48,7 @@ TEST_P(Profiles, HaveTheirOwnRangesOfParameters) {
     EXPECT_NEAR(a->baud(), GetParam().baud7, 1);
 }
 
-TEST_P(Profiles, DeassertCTSAtTheirThreshold) {
+TEST_P(Profiles, DeassertCTSAtTheThreshold) {
     perfect = false;
     // the modem tries with this setting for a long time to send a packet to a receiver that does
     // not exist
@@ -65,7 +65,7 @@ TEST_P(Profiles, DeassertCTSAtTheirThreshold) {
 // When the second packet has left the buffer, `remaining` bytes are still in it. CTS is asserted
 // again if FT is at least `remaining` + `release`, and stays deasserted if FT is lower. `release`
 // depends on the modem.
-TEST_P(Profiles, AssertCTSAgainBelowTheirThreshold) {
+TEST_P(Profiles, AssertCTSAgainBelowTheThreshold) {
     if (profile == "s1")
         GTEST_SKIP() << "series 1 has no FT";
     constexpr uint32_t remaining = 50;
@@ -82,7 +82,7 @@ TEST_P(Profiles, AssertCTSAgainBelowTheirThreshold) {
     }
 }
 
-TEST_P(Profiles, PutTheirMostIntoAPacket) {
+TEST_P(Profiles, FillAPacketToItsMaximum) {
     power();
     send(std::string(GetParam().packet + 10, 'x'), 400 * ms);
     ASSERT_EQ(packets.size(), 2u);
@@ -95,7 +95,7 @@ TEST_P(Profiles, PutTheirMostIntoAPacket) {
     EXPECT_EQ(packets[0].bytes.size(), GetParam().encrypted + overhead);
 }
 
-TEST_P(Profiles, AreAsShortAsTheSeries1WithC8) {
+TEST_P(Profiles, SendPacketsAsShortAsSeries1WithC8) {
     if (profile == "s1")
         GTEST_SKIP() << "series 1 has no C8";
     power({{"C8", 1}});
@@ -104,7 +104,7 @@ TEST_P(Profiles, AreAsShortAsTheSeries1WithC8) {
     EXPECT_EQ(packets[0].bytes.size(), 100u);
 }
 
-TEST_P(Profiles, ReportDataThatIsTooLong) {
+TEST_P(Profiles, ReportTooLongData) {
     power({{"AP", 1}});
     Bytes frame = {0x7E, 0, static_cast<uint8_t>(GetParam().packet + 6), 0x01, 0x55, 0, 2, 0};
     frame.insert(frame.end(), GetParam().packet + 1, 'x');

@@ -50,7 +50,7 @@ TEST_F(Addresses, SerialNumbersReachAModemWithoutAShortAddress) {
     EXPECT_EQ(across("x", 30 * ms), "x");
 }
 
-TEST_F(Mac, AirTimeIsTheFormulas) {
+TEST_F(Mac, AirTimeMatchesTheFormula) {
     EXPECT_EQ(RfChannel::airTimeNs(100), 5'312'000u);
     EXPECT_EQ(RfChannel::airTimeNs(0), 2'112'000u);
     power({{"RO", 0}});
@@ -59,14 +59,14 @@ TEST_F(Mac, AirTimeIsTheFormulas) {
     EXPECT_EQ(packets[0].time - begin, RfChannel::airTimeNs(1) - afterFrame);
 }
 
-TEST_F(Mac, APacketIsWithItsReceiverAtTheEndOfItsFrame) {
+TEST_F(Mac, APacketArrivesAtTheEndOfItsFrame) {
     power({{"RO", 0}});
     EXPECT_EQ(across("x", 959'000), "");
     EXPECT_EQ(across("", 2'000), "x") << "128 + 192 + 20 x 32 us";
 }
 
 // The tries of a packet sense the channel 20 times in total; without retries (MM 1) 5 times.
-TEST_F(Mac, AChannelThatIsNeverClearIsTriedFourTimes) {
+TEST_F(Mac, ABusyChannelIsTriedFourTimes) {
     for (uint32_t mm : {0u, 1u, 2u}) {
         power({{"RO", 0}, {"MM", mm}, {"AP", 1}});
         air.weather.perfect = false;
@@ -92,7 +92,7 @@ TEST_F(Mac, ABroadcastThatFindsNoClearChannelIsTriedAgain) {
     EXPECT_EQ(a->parameter("EC"), 1u);
 }
 
-TEST_F(Mac, AResetEndsTheTries) {
+TEST_F(Mac, AResetEndsTheRetries) {
     power({{"RR", 6}});
     air.weather.tryLoss = 1;
     send("x", 100 * ms);
@@ -116,7 +116,7 @@ struct Tries {
     }
 };
 class MacTries : public TwoModems, public ::testing::WithParamInterface<Tries> {};
-TEST_P(MacTries, AreFourTimesRRAndOneMore) {
+TEST_P(MacTries, AreFourForEachOfRRPlusOne) {
     power({{"RR", GetParam().rr}, {"MM", GetParam().mm}});
     air.weather.tryLoss = 1;
     send("x", 2000 * ms);
@@ -129,7 +129,7 @@ INSTANTIATE_TEST_SUITE_P(Modes, MacTries,
                          ::testing::Values(Tries{0, 0, 4}, Tries{2, 0, 12}, Tries{6, 0, 28},
                                            Tries{6, 2, 4}, Tries{0, 1, 1}, Tries{3, 3, 1}));
 
-TEST_F(Mac, RetriesHideLossOfSingleTries) {
+TEST_F(Mac, RetriesHideTheLossOfSingleTries) {
     power({{"RR", 2}});
     air.weather.tryLoss = 0.3;
     for (int i = 0; i < 200; ++i) {
@@ -140,7 +140,7 @@ TEST_F(Mac, RetriesHideLossOfSingleTries) {
     EXPECT_LT(air.counters().retries, 140u);
 }
 
-TEST_F(Mac, ALostAckMakesADuplicateThatRRAndTheHeaderTell) {
+TEST_F(Mac, DuplicatesAfterALostAckAreDroppedOnlyWithRR) {
     air.weather.ackLoss = 1;
     power();
     EXPECT_EQ(across("x", 100 * ms), "xxxx");
@@ -150,7 +150,7 @@ TEST_F(Mac, ALostAckMakesADuplicateThatRRAndTheHeaderTell) {
     EXPECT_EQ(b->counters().duplicatesDropped, 7u);
 }
 
-TEST_F(Mac, MMMustSuit) {
+TEST_F(Mac, BothModemsNeedACompatibleMM) {
     power({{"MM", 2}});
     EXPECT_EQ(across("x", 30 * ms), "")
         << "a modem with MM 0 must ignore a packet without the header";
@@ -161,7 +161,7 @@ TEST_F(Mac, MMMustSuit) {
     EXPECT_EQ(across("x", 30 * ms), "x");
 }
 
-TEST_F(Encryption, AnotherKeyGivesGarbageNotSilence) {
+TEST_F(Encryption, AnotherKeyYieldsGarbage) {
     power({{"EE", 1}}, {{"EE", 1}});
     enter();
     command("ATKY1");
@@ -172,7 +172,7 @@ TEST_F(Encryption, AnotherKeyGivesGarbageNotSilence) {
     EXPECT_NE(got, "secret");
 }
 
-TEST_F(Encryption, WhereEEDiffersNothingComesOutAndTheSenderIsAcknowledged) {
+TEST_F(Encryption, AReceiverWithAnotherEEAcknowledgesAndDropsThePacket) {
     for (uint32_t ee : {0u, 1u}) {
         power({{"EE", ee}}, {{"EE", 1 - ee}});
         EXPECT_EQ(across("secret", 60 * ms), "");
@@ -183,7 +183,7 @@ TEST_F(Encryption, WhereEEDiffersNothingComesOutAndTheSenderIsAcknowledged) {
 
 // The packet on the air must be equal to one that is encrypted here block by block with AES, as
 // 802.15.4-2003, 7.6.2 defines (flags, sender, frame counter, key sequence counter, block number).
-TEST_F(Encryption, OnTheAirItIsAesInCounterModeOf802154) {
+TEST_F(Encryption, PacketsUseAesInCounterModeOf802154) {
     power({{"EE", 1}}, {{"EE", 1}});
     enter();
     command("ATKY000102030405060708090A0B0C0D0E0F");
@@ -209,14 +209,14 @@ TEST_F(Encryption, OnTheAirItIsAesInCounterModeOf802154) {
                      0xB4, 0xC5, 0x5A}));
 }
 
-TEST_F(Encryption, TheSameTextLooksDifferentEachTime) {
+TEST_F(Encryption, EqualTextsAreEncryptedDifferently) {
     power({{"EE", 1}}, {{"EE", 1}});
     send("again", 30 * ms);
     EXPECT_EQ(across("again", 30 * ms), "againagain");
     EXPECT_NE(packets[0].bytes, packets[1].bytes);
 }
 
-TEST_F(Air, LossIsAsAsked) {
+TEST_F(Air, TheLossRateIsAsConfigured) {
     power({{"RO", 0}});
     air.weather.loss = 0.25;
     for (int i = 0; i < 2000; ++i) {
@@ -227,7 +227,7 @@ TEST_F(Air, LossIsAsAsked) {
     EXPECT_EQ(heardB().size(), 2000 - air.counters().lost);
 }
 
-TEST_F(Air, BurstsHaveTheirLengthAndShare) {
+TEST_F(Air, BurstsHaveTheConfiguredLengthAndShare) {
     power({{"RO", 0}});
     air.weather.burstBegin = 0.02;
     air.weather.burstEnd = 0.2;
@@ -271,7 +271,7 @@ TEST_F(Air, CorruptionChangesOneByte) {
     EXPECT_EQ(different, 1);
 }
 
-TEST_F(Air, TheSameSeedGivesTheSameWeatherAndAnotherSeedAnother) {
+TEST_F(Air, TheSeedDeterminesTheLosses) {
     auto weather = [this](uint64_t seed) {
         air = RfChannel(seed);
         packets.clear();
@@ -291,7 +291,7 @@ TEST_F(Air, TheSameSeedGivesTheSameWeatherAndAnotherSeedAnother) {
     EXPECT_NE(weather(6), first);
 }
 
-TEST_F(Air, TwoThatBeginTogetherCollideAndTryAgain) {
+TEST_F(Air, SimultaneousPacketsCollideAndAreRetried) {
     power({{"RO", 0}, {"RN", 3}, {"RR", 3}}, {{"RO", 0}, {"RN", 3}, {"RR", 3}});
     air.weather.perfect = false;
     for (int i = 0; i < 100; ++i) {
@@ -304,7 +304,7 @@ TEST_F(Air, TwoThatBeginTogetherCollideAndTryAgain) {
     EXPECT_EQ(heard(), std::string(100, 'y'));
 }
 
-TEST_F(Air, CarrierSenseWaitsForTheOther) {
+TEST_F(Air, AModemWaitsWhileTheChannelIsBusy) {
     power({{"RO", 0}, {"RN", 3}});
     air.weather.perfect = false;
     lineB.send(Bytes(30, 'y'), now);

@@ -11,7 +11,7 @@ using Packetizing = TwoModems;
 using Buffers = TwoModems;
 using Reset = TwoModems;
 
-TEST_F(Packetizing, APacketLeavesAfterROOfSilenceOrAtOnceWithRO0OrAHundredBytes) {
+TEST_F(Packetizing, APacketIsSentAfterTheSilenceROOrAt100Bytes) {
     const struct {
         Settings set;
         size_t bytes;
@@ -28,7 +28,7 @@ TEST_F(Packetizing, APacketLeavesAfterROOfSilenceOrAtOnceWithRO0OrAHundredBytes)
     }
 }
 
-TEST_F(Packetizing, OnlyAPauseAboveROSplits) {
+TEST_F(Packetizing, OnlyAPauseLongerThanROSplitsAPacket) {
     for (uint64_t characters : {2, 4}) {
         packets.clear();
         power();
@@ -39,7 +39,7 @@ TEST_F(Packetizing, OnlyAPauseAboveROSplits) {
     }
 }
 
-TEST_F(Packetizing, NinetyFiveBytesWithEncryption) {
+TEST_F(Packetizing, EncryptedPacketsHoldNinetyFiveBytes) {
     power({{"EE", 1}, {"RO", 0xFF}}, {{"EE", 1}});
     send(std::string(100, 'x'), 400 * ms);
     ASSERT_EQ(packets.size(), 2u);
@@ -56,7 +56,7 @@ TEST_F(Buffers, OnePacketIsInFlightAtATime) {
     EXPECT_EQ(a->counters().packetsSent, 2u);
 }
 
-TEST_F(Buffers, CTSGoesOffWith17BytesLeftAndComesBackWith34Free) {
+TEST_F(Buffers, CTSIsDeassertedAt17FreeBytesAndAssertedAt34) {
     power({{"BD", 7}});
     air.weather.delayNs = 100 * ms;
     send(std::string(100, 'x')); // these bytes are on the air, so the buffer is empty
@@ -80,7 +80,7 @@ TEST_F(Buffers, CTSGoesOffWith17BytesLeftAndComesBackWith34Free) {
     EXPECT_TRUE(lineA.cts()) << "one packet of 95 bytes was sent, so the buffer holds 107 bytes";
 }
 
-TEST_F(Buffers, TheInputBufferHolds202BytesAndCountsWhatIsLost) {
+TEST_F(Buffers, TheInputBufferHolds202BytesAndCountsLostBytes) {
     power();
     air.weather.delayNs = 50 * ms;
     send(std::string(100, 'x'));
@@ -92,14 +92,14 @@ TEST_F(Buffers, TheInputBufferHolds202BytesAndCountsWhatIsLost) {
     EXPECT_EQ(heardB(), std::string(100, 'x') + std::string(202, 'y'));
 }
 
-TEST_F(Buffers, WithoutD7CTSStaysOn) {
+TEST_F(Buffers, CTSStaysAssertedWithoutD7) {
     power({{"D7", 0}});
     air.weather.delayNs = 50 * ms;
     send(std::string(300, 'x'));
     EXPECT_TRUE(lineA.cts());
 }
 
-TEST_F(Buffers, TheOutputBufferHolds202BytesAndWhatComesThenIsAcknowledgedAndLost) {
+TEST_F(Buffers, AFullOutputBufferLosesAcknowledgedBytes) {
     power();
     lineB.paused = true;
     send(std::string(100, 'x'), 120 * ms);
@@ -164,7 +164,7 @@ protected:
 
 class BaudTolerance : public Wire, public ::testing::WithParamInterface<double> {};
 
-TEST_P(BaudTolerance, BytesAreReadWithin4Percent) {
+TEST_P(BaudTolerance, BytesAreReceivedWithin4PercentOfTheRate) {
     connect({{"BD", 7}});
     std::string text = "U\x01\xFF\x80 tolerance \x7F";
     send(text, modem_->baud() * (1 + GetParam()));
@@ -174,14 +174,14 @@ TEST_P(BaudTolerance, BytesAreReadWithin4Percent) {
 }
 INSTANTIATE_TEST_SUITE_P(Rates, BaudTolerance, ::testing::Values(-0.04, -0.02, 0.0, 0.02, 0.04));
 
-TEST_F(Wire, SevenPercentIsTooFar) {
+TEST_F(Wire, ADeviationOfSevenPercentIsTooLarge) {
     connect({{"BD", 7}});
     send(std::string(50, '\x0F'), modem_->baud() * 0.93);
     step(now_ + 20'000'000);
     EXPECT_GT(modem_->counters().framingErrors, 0u);
 }
 
-TEST_F(Wire, RepliesHaveTheModemsRateAndBDChangesAfterTheOK) {
+TEST_F(Wire, RepliesUseTheCurrentRateAndBDTakesEffectAfterTheOK) {
     connect({{"BD", 6}, {"GT", 2}});
     send("+++", 57600);
     step(now_ + 3'000'000);
@@ -201,7 +201,7 @@ TEST_F(Wire, RepliesHaveTheModemsRateAndBDChangesAfterTheOK) {
     EXPECT_EQ(sent_, "data") << "the new rate must still be set";
 }
 
-TEST_F(Wire, BDChangesAfterTheOKThoughMoreComesThanTheOldRateCarries) {
+TEST_F(Wire, BDTakesEffectAfterTheOKUnderLoad) {
     connect({{"BD", 3}, {"GT", 2}});
     crowd_.header = true;
     crowd_.bytes.assign(20, 'U'); // 'U' has an edge after each bit

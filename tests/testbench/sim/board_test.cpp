@@ -61,7 +61,7 @@ bool answersACall(const Board& board, double seconds, const std::string& faults 
 
 constexpr double enough = 3; // time limit, s; on a correct board the answer comes after 1.3 s
 
-TEST(BoardWires, AreStraightWhenTheFirmwaresTableHasSwitchedThePins) {
+TEST(BoardWires, AreStraightOnceTheFirmwareHasSetTheAlternateFunctions) {
     Board kit;
     BoardWires wires(kit.wires, kit.ucf);
     EXPECT_TRUE(wires.isStraight()) << "without a list of pins, all pins count as switched";
@@ -106,7 +106,7 @@ TEST(BoardWires, ASwappedPairExchangesItsLevels) {
     EXPECT_EQ(back.dFromDesign, 0x4001);
 }
 
-TEST(BoardWires, ALineThatIsNotUnderstoodIsNamed) {
+TEST(BoardWires, AnInvalidLineIsReported) {
     try {
         BoardWires("PD14 12 FSMC_D0\n", "");
         FAIL();
@@ -153,7 +153,7 @@ class BoardFlights : public testing::TestWithParam<WrongBoard> {};
 INSTANTIATE_TEST_SUITE_P(With, BoardFlights, testing::ValuesIn(wrongBoards),
                          [](const auto& each) { return each.param.name; });
 
-TEST_P(BoardFlights, AnswerNoCall) {
+TEST_P(BoardFlights, AFaultyBoardAnswersNoCall) {
     Board board;
     GetParam().spoil(board);
     EXPECT_FALSE(answersACall(board, enough));
@@ -205,7 +205,7 @@ bool isExpectedToAnswer(const FaultyBoard& board) {
 }
 
 // Tests that each flight ends as expected. If an access waits for ever, an error ends the flight.
-TEST_P(FaultFlights, EndAsTheFaultMakesThem) {
+TEST_P(FaultFlights, AFlightEndsAsItsFaultImplies) {
     bool isAnswered = false;
     try {
         isAnswered = answersACall({}, 1.6, GetParam().fault);
@@ -222,7 +222,7 @@ class ModemFlights : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(With, ModemFlights, testing::Values("s1", "s2c", "xb3"),
                          [](const auto& each) { return std::string(each.param); });
 
-TEST_P(ModemFlights, CarryTheMission) {
+TEST_P(ModemFlights, TheMissionSucceedsWithEachModem) {
     GroundAndChip flight(testSeed(), GetParam());
     flight.soc.reset(true);
     flight.provide(48, 32, [](uint32_t i) { return static_cast<uint8_t>(i % 7 ? 0 : 200); });
@@ -253,7 +253,7 @@ TEST_P(ModemFlights, CarryTheMission) {
     RecordProperty("ms", static_cast<int>(flight.soc.now() / 1'000'000));
 }
 
-TEST(BoardFlight, AnotherOscillatorIsNamed) {
+TEST(BoardFlight, AnUnsupportedOscillatorIsReported) {
     Board board;
     board.wires = with(board.wires, "oscillator 8000000", "oscillator 25000000");
     try {

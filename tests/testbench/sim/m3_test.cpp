@@ -84,7 +84,7 @@ size_t differingBytes(const Bytes& a, const Bytes& b) {
 constexpr size_t cyclesAt = 29, cyclesBytes = 4, checksumBytes = 2;
 constexpr int packetsThatMayDiffer = 2;
 
-TEST(CortexM3Firmware, FliesTheMissionAsTheHostBuildDoesByteByByteOnTheAir) {
+TEST(CortexM3Firmware, SendsTheSameBytesAsTheHostBuild) {
     Flight host, m3;
     EXPECT_TRUE(flies(host.soc, host.mission(2), 30));
     m3.fly(m3.mission(2), 30);
@@ -107,7 +107,7 @@ TEST(CortexM3Firmware, FliesTheMissionAsTheHostBuildDoesByteByByteOnTheAir) {
     EXPECT_EQ(reasonOf(m3.scratch()), BOOT_POWER_ON);
 }
 
-TEST(CortexM3Firmware, LosesNothingInBadWeatherAndAtTheBoardsCycleRatio) {
+TEST(CortexM3Firmware, LosesNothingInBadConditionsAtTheClockRatioOfTheBoard) {
     Flight f;
     f.air.weather.loss = f.air.weather.duplication = 0.1;
     f.air.weather.corruption = 0.03;
@@ -119,7 +119,7 @@ TEST(CortexM3Firmware, LosesNothingInBadWeatherAndAtTheBoardsCycleRatio) {
     EXPECT_GT(f.air.counters().lost, 0u);
 }
 
-TEST(CortexM3Firmware, CarriesACallToAllVehiclesOutOnce) {
+TEST(CortexM3Firmware, ExecutesABroadcastOnce) {
     M3Machine::Config config = firmware;
     config.key = ToAll::Key(LINK_KEY_BYTES, 0x11);
     ToAll w(config.key);
@@ -137,7 +137,7 @@ TEST(CortexM3Firmware, CarriesACallToAllVehiclesOutOnce) {
 // Tests several faults in one flight: a core that hangs, a processor that hangs, an FSMC that is
 // switched off, and a stack overflow. Each fault must be reported in the system slot, and the link
 // must recover by itself.
-TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
+TEST(CortexM3Firmware, FaultsAreReportedAndTheLinkRecovers) {
     Flight f;
     uint64_t since = 0;
     auto hasPassed = [&] { return f.soc.cycles() >= since + SocModel::clkHz / 100; };
@@ -207,7 +207,7 @@ TEST(CortexM3Firmware, AccidentsAreReportedAndTheLinkComesBack) {
 // The memory does not answer, so accesses end by the time-out of the bridge. Each of them is a bus
 // error with its address, and does not cause a reset. When the memory answers again, the flight
 // continues.
-TEST(CortexM3Firmware, AHungMemoryIsReportedAndTheFlightGoesOn) {
+TEST(CortexM3Firmware, AHungMemoryIsReportedAndTheFlightContinues) {
     Flight f;
     uint64_t since = 0;
     auto hang = [&] {
@@ -262,7 +262,7 @@ TEST(CortexM3Firmware, ACorruptImageIsRefusedWithItsReason) {
     }
 }
 
-TEST(CortexM3Firmware, AnAbortTellsWhereTheChipAndTheProgramAre) {
+TEST(CortexM3Firmware, AnAbortPrintsTheStateOfChipAndProgram) {
     Flight f;
     M3Machine machine(f.soc, firmware, [&] { return f.within(0.01); });
     machine.run();
@@ -271,7 +271,7 @@ TEST(CortexM3Firmware, AnAbortTellsWhereTheChipAndTheProgramAre) {
     EXPECT_DEATH(std::abort(), "The model that ran last stands at clock [0-9]{6,}");
 }
 
-TEST(CortexM3Firmware, WithoutAKeyItDoesNotStartAndTriesAgain) {
+TEST(CortexM3Firmware, WithoutAKeyItRetriesToStart) {
     Flight f;
     M3Machine machine(f.soc, firmware, [&] { return f.within(2.2); });
     machine.stm32().backup().fill(0); // clears the memory, as an empty battery would

@@ -96,7 +96,7 @@ protected:
 // EXIF 2.3, tag 0x0112: an orientation states at which sides of the upright picture the stored row
 // 0 and column 0 are: 1 top and left, 2 top and right, 3 bottom and right, 4 bottom and left, 5
 // left and top, 6 right and top, 7 right and bottom, 8 left and bottom.
-TEST_F(Pictures, APhotographIsUprightInEachOfTheEightOrientations) {
+TEST_F(Pictures, APhotographIsUprightInAllEightOrientations) {
     const int upright[][4] = {{20, 80, 140, 220}, {80, 20, 220, 140}, {220, 140, 80, 20},
                               {140, 220, 20, 80}, {20, 140, 80, 220}, {140, 20, 220, 80},
                               {220, 80, 140, 20}, {80, 220, 20, 140}};
@@ -114,7 +114,7 @@ TEST_F(Pictures, APhotographIsUprightInEachOfTheEightOrientations) {
         }
 }
 
-TEST_F(Pictures, AnOrientationThatIsDamagedIsIgnored) {
+TEST_F(Pictures, ADamagedOrientationIsIgnored) {
     for (const int orientation : {0, 9, 65535})
         EXPECT_EQ(read(oriented(orientation, false)).width, 32);
     Bytes cut = oriented(6, false);
@@ -189,7 +189,7 @@ TEST_F(Pictures, OtherFormatsAndFoldersAreRejectedWithTheirNames) {
     }
 }
 
-TEST_F(Pictures, AFileThatIsCutIsRejectedWithItsName) {
+TEST_F(Pictures, ATruncatedFileIsRejectedWithItsName) {
     for (const std::string text :
          {"P5", "P5 1 1 1000", "P5 9 9 255\n12345678", "P6 2 1 99999\n12345678901"})
         try {

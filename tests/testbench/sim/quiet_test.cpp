@@ -154,7 +154,7 @@ std::pair<Flight, Flight> expectSame(const Plan& plan) {
     return {std::move(quick), std::move(slow)};
 }
 
-TEST(Quiet, AFlightIsTheSameWithQuietClocksPassedAtOnce) {
+TEST(Quiet, SkippingQuietClocksDoesNotChangeAFlight) {
     auto [quick, slow] = expectSame({{{"hwengine1", "ice_ping", 2, {}}}, comparedNs(), 0, 0});
     EXPECT_GT(quick.events.size(), 100u);
     EXPECT_EQ(slow.evaluated, slow.clocks);
@@ -163,7 +163,7 @@ TEST(Quiet, AFlightIsTheSameWithQuietClocksPassedAtOnce) {
 
 #if defined(MAP_SLOT_FIR) && defined(MAP_SLOT_ASCON)
 // A core that reports that it is idle although it is not would stop only in the quick flight.
-TEST(Quiet, EachCoreWorksAsIfItsClockNeverStopped) {
+TEST(Quiet, StoppingTheClockOfACoreDoesNotChangeItsResults) {
     std::vector<uint8_t> samples = {24}, key = {16}, message = {40};
     for (uint8_t i = 0; i < 48; ++i)
         samples.push_back(static_cast<uint8_t>(i * 5));
@@ -185,7 +185,7 @@ TEST(Quiet, EachCoreWorksAsIfItsClockNeverStopped) {
 #endif
 
 // If an index is out of range, Verilator reads a random value, or writes to a scratch variable.
-TEST(Quiet, VerilatorsScratchIsNoStateOfTheChip) {
+TEST(Quiet, ScratchVariablesOfVerilatorAreNoState) {
     SocState::Image zeros(sizeof(VSoc___024root), 0), ones(sizeof(VSoc___024root), 255);
     auto paths = SocState::differences(zeros, ones);
     EXPECT_GT(paths.size(), 500u);
@@ -205,7 +205,7 @@ void passUntil(SocModel& soc, uint64_t clock) {
         soc.tick();
 }
 
-TEST(Quiet, TheChipIsTheSameInWhateverClockItIsLookedAt) {
+TEST(Quiet, ObservingTheChipDoesNotChangeIt) {
     RfChannel air(testSeed());
     SocModel quick(air, Ground::uavModem()), slow(air, Ground::uavModem());
     slow.evaluateAll(true);
@@ -240,7 +240,7 @@ bool isMemoryReady(uint64_t clocks) {
     return soc.memory().pins.calibDone;
 }
 
-TEST(Quiet, TheMemoryIsReadyInItsClock) {
+TEST(Quiet, TheMemoryIsReadyInTheRightClock) {
     EXPECT_FALSE(isMemoryReady(McbModel::startClocks - 1));
     EXPECT_TRUE(isMemoryReady(McbModel::startClocks));
 }
@@ -267,7 +267,7 @@ struct TwoChips {
 
 // A platform that waits until the memory is ready does not change, and must continue as soon as the
 // memory is ready.
-TEST(Quiet, WhatWaitsForTheMemoryGoesWhenItIsReady) {
+TEST(Quiet, RequestsThatWaitForTheMemoryStartWhenItIsReady) {
     TwoChips pair;
     for (SocModel* soc : {&pair.quick, &pair.slow}) {
         TwoChips::write(*soc);
@@ -281,7 +281,7 @@ TEST(Quiet, WhatWaitsForTheMemoryGoesWhenItIsReady) {
     EXPECT_EQ(pair.quick.memory().wordsWritten, 1u);
 }
 
-TEST(Quiet, AMemoryThatHungGoesOnInItsClock) {
+TEST(Quiet, AHungMemoryContinuesInTheRightClock) {
     TwoChips pair;
     auto written = [](SocModel& soc) {
         passUntil(soc, 2 * McbModel::startClocks);
@@ -368,7 +368,7 @@ TEST(Quiet, ACameraAloneWorksAsInTheChip) {
 #endif
 
 // Modem and air must act in the clock in which they are due, whenever the test looks at them.
-TEST(Quiet, NothingOutsideOfTheChipIsLate) {
+TEST(Quiet, ModemAndAirActInTheRightClock) {
     GroundAndChip world;
     auto& [air, ground, soc] = world;
     soc.reset(true);
@@ -387,7 +387,7 @@ TEST(Quiet, NothingOutsideOfTheChipIsLate) {
 }
 
 // If a processor takes no packets, the ring becomes full, and RTS stops further bytes.
-TEST(Quiet, WhatRtsHoldsBackGoesOnInItsClock) {
+TEST(Quiet, BytesHeldByRtsContinueInTheRightClock) {
     // RTS rises when 14 of 16 packets are in the ring
     constexpr unsigned bytes = 2500, fill = 14 * 100;
     constexpr uint64_t bitNs = 4000, byteNs = 10 * bitNs;

@@ -36,14 +36,14 @@ protected:
     FsmcMaster& fsmc_ = soc_.fsmc();
 };
 
-TEST_F(Soc, SlotsSayWhatTheyAre) {
+TEST_F(Soc, SlotsIdentifyTheirCores) {
     EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_ID), SYSTEM_ID_VALUE);
     EXPECT_EQ(read(MAP_SLOT_MODEM, MODEM_ID), MODEM_ID_VALUE);
     EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_SLOTS), MAP_SLOT_COUNT);
     EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_CLK_HZ), SocModel::clkHz);
 }
 
-TEST_F(Soc, AnUnmappedRegisterIsReportedAndTheSystemGoesOn) {
+TEST_F(Soc, AnUnmappedRegisterIsReportedAndTheSystemContinues) {
     write(MAP_SLOT_SYSTEM, SYSTEM_MASK, 1);
     const uint32_t places[][2] = {{62, 5}, {63, 15}, {MAP_SLOT_SYSTEM, 13}};
     for (auto& place : places) {
@@ -61,7 +61,7 @@ TEST_F(Soc, AnUnmappedRegisterIsReportedAndTheSystemGoesOn) {
     EXPECT_EQ(read(MAP_SLOT_SYSTEM, SYSTEM_SCRATCH), 99u);
 }
 
-TEST_F(Soc, ThePageRegisterReachesTheUpperHalf) {
+TEST_F(Soc, ThePageRegisterSelectsTheUpperHalf) {
     write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, 1);
     fsmc_.write16(ddr + 0x40, 0x5A5A);
     write(MAP_SLOT_SYSTEM, SYSTEM_PAGE, 0);
@@ -117,7 +117,7 @@ TEST_F(Soc, EveryLineToTheSlotsIsConnected) {
 
 // The processor starts before the DDR3 is ready, as on a board. Nothing may hang, early accesses
 // must be reported, and posted writes must be kept.
-TEST_F(Soc, AnAccessWhileTheMemoryStartsIsToldAndLaterOnesAreRight) {
+TEST_F(Soc, AnAccessDuringMemoryStartIsReported) {
     soc_.reset(true);
     fsmc_.write16(ddr + 0x100, 0x1234);
     (void)fsmc_.read16(ddr);
@@ -133,7 +133,7 @@ TEST_F(Soc, AnAccessWhileTheMemoryStartsIsToldAndLaterOnesAreRight) {
 
 // Accesses registers and memory of the chip, or of its netlist, through wires with real delays, in
 // each corner.
-TEST(SocCorners, NoAccessIsLostInAnyOfThem) {
+TEST(SocCorners, NoAccessIsLostInAnyCorner) {
     for (unsigned index = 0; index < std::size(fsmcCorners); ++index)
         for (unsigned hclk : {60u, 100u, 120u})
             for (bool looksTwice : {false, true}) {

@@ -22,7 +22,7 @@ extern "C" __attribute__((noinline)) void servantWithoutEnd(const Standstill& wa
     asm volatile(""); // prevents a tail call
 }
 
-TEST(Standstill, IsReportedOnceWithTheFunctionThatDoesNotEnd) {
+TEST(Standstill, IsReportedOnceWithTheRunningFunction) {
     const Standstill watch([] { return simulated; }, 0.2);
     simulated = 1'500'000;
     testing::internal::CaptureStderr();

@@ -18,7 +18,7 @@ namespace {
 
 class Uav : public ::testing::Test, protected GroundAndChip {};
 
-TEST_F(Uav, AModemResetInMidPacketIsRecoveredFrom) {
+TEST_F(Uav, AModemResetInMidPacketIsRecovered) {
     uint64_t since = 0;
     UavMachine* machine = nullptr;
     auto hurry = [&](unsigned times) {
@@ -140,7 +140,7 @@ private:
     uint64_t since_ = 0;
 };
 
-TEST(Grounds, TwoAreServedAtOnceEachUnderItsOwnKeyAndNobodyElse) {
+TEST(Grounds, OnlyTheTwoGroundsWithKeysAreServed) {
     TwoGrounds world;
     EXPECT_TRUE(flies(world.soc, world.flight(), 60, [&](UavMachine& machine) {
         machine.board.provide(world.pilotsKey);
@@ -150,7 +150,7 @@ TEST(Grounds, TwoAreServedAtOnceEachUnderItsOwnKeyAndNobodyElse) {
         << "bytes of the stranger reached the pilot's link";
 }
 
-TEST(Fellow, OneThatIsAwayCostsLittleOfTheAirAndTheVehicleServesItsGroundMeanwhile) {
+TEST(Fellow, AnAbsentVehicleCostsLittleAirTimeAndDelaysNoCall) {
     const std::vector<uint8_t> key(LINK_KEY_BYTES, 0x11), keyOfTwo(LINK_KEY_BYTES, 0x22);
     GroundAndChip world;
     world.ground.key = key;
@@ -200,7 +200,7 @@ SimulatedBoard::Words fly(ToAll& w, std::vector<Script> steps,
     return machine.board.words;
 }
 
-TEST(CallsToAll, AreCarriedOutOnceIfTheirOperationsAllowItAlsoAfterARestart) {
+TEST(CallsToAll, AreExecutedOnceIfTheOperationAllowsBroadcasts) {
     const ToAll::Key pilots(LINK_KEY_BYTES, 0x11), others(LINK_KEY_BYTES, 0x67);
     ToAll w(pilots);
     const auto kept =
@@ -224,7 +224,7 @@ TEST(CallsToAll, AreCarriedOutOnceIfTheirOperationsAllowItAlsoAfterARestart) {
     EXPECT_EQ(Link_statistics(&uav_link)->bytesSkipped, 0u);
 }
 
-TEST(CallsToAll, AreRefusedWithAKeyButWithoutTheGroupsAndTakenByAnOpenVehicle) {
+TEST(CallsToAll, NeedTheGroupKeyUnlessTheVehicleIsOpen) {
     for (const bool isOpen : {false, true}) {
         const ToAll::Key pilots(isOpen ? 0 : LINK_KEY_BYTES, 0x11);
         ToAll w(pilots);
@@ -299,7 +299,7 @@ Bytes blindResets() {
     return all;
 }
 
-TEST_F(Attack, InTheClearEightBlindResetsEndASession) {
+TEST_F(Attack, InTheClearEightForgedResetsEndASession) {
     start({});
     fly(inOrder({ground.pinging(3),
                  [&] {
@@ -312,7 +312,7 @@ TEST_F(Attack, InTheClearEightBlindResetsEndASession) {
 
 // Does everything that is possible without the key, and adds twenty bytes after each packet, while
 // first the ground station and then the vehicle restarts. After that it repeats earlier packets.
-TEST_F(Attack, WithAKeyNothingComesOfAnyMischief) {
+TEST_F(Attack, WithAKeyNoAttackHasAnEffect) {
     start(vehicleKey);
     attacker_.hinder(true);
     period_ = 25 * ms;

@@ -138,7 +138,7 @@ protected:
 enum : uint8_t { None, Foreign, Old, WrongSignature, Misplaced = 8 };
 enum : uint8_t { Idle, Receiving = 3, Ready = 5 };
 
-TEST_F(UavUpdate, AnImageComesInPiecesPackedOrNotAndIsStarted) {
+TEST_F(UavUpdate, AnImageArrivesInPiecesAndIsStarted) {
     const Bytes first(image.begin(), image.begin() + half), packed = packedHalf();
     ASSERT_LT(packed.size(), half / 4);
     fly({{"getStatus", {}, Idle},
@@ -158,7 +158,7 @@ TEST_F(UavUpdate, AnImageComesInPiecesPackedOrNotAndIsStarted) {
                            flash.bytes.begin() + Slots_at(&slots_firmware, 1) + SLOTS_IMAGE_AT));
 }
 
-TEST_F(UavUpdate, WhatIsRefusedChangesNothing) {
+TEST_F(UavUpdate, ARefusedImageChangesNothing) {
     const Bytes before = flash.bytes;
     Slots_Header changed = headerOf(6, 1);
     ++changed.bytes, changed.bytes += 3;
@@ -173,7 +173,7 @@ TEST_F(UavUpdate, WhatIsRefusedChangesNothing) {
     EXPECT_FALSE(restarted);
 }
 
-TEST_F(UavUpdate, FirmwareThatNobodyConfirmsGoesAfterAMinute) {
+TEST_F(UavUpdate, UnconfirmedFirmwareIsDroppedAfterAMinute) {
     std::fill_n(flash.bytes.begin() + Slots_at(&slots_firmware, 0) + SLOTS_CONFIRMED, 4,
                 uint8_t{0xFF});
     EXPECT_TRUE(
@@ -181,7 +181,7 @@ TEST_F(UavUpdate, FirmwareThatNobodyConfirmsGoesAfterAMinute) {
     EXPECT_GT(static_cast<double>(soc.now()), 0.6e9);
 }
 
-TEST_F(UavUpdate, InFlightImagesAndKeysAreRefusedAlsoAfterARestart) {
+TEST_F(UavUpdate, InFlightImagesAndKeysAreRefused) {
     struct Call {
         Ground::Call call;
         int status;
@@ -228,7 +228,7 @@ TEST_F(UavUpdate, InFlightImagesAndKeysAreRefusedAlsoAfterARestart) {
 }
 
 // "keys" is added last, so the adapter has room for all servants of the vehicle and of the cores.
-TEST_F(UavUpdate, WhereBothKindsOfImageAreTakenTheKeysAreServedToo) {
+TEST_F(UavUpdate, AVehicleWithBothKindsOfImagesAlsoServesKeys) {
     uav_update[UAV_BITSTREAM] = {&flash.port, 0, product};
     EXPECT_TRUE(flies(soc, ground.pinging(1, "keys"), 4));
     EXPECT_THAT(ground.replies, testing::ElementsAre(testing::Pair(1, 0)));

@@ -51,7 +51,7 @@ TEST_F(Flash, HasSectorsOf16And64And128KiB) {
     EXPECT_EQ(at, Stm32Flash::bytes);
 }
 
-TEST_F(Flash, IsLockedUntilBothKeysCameInOrder) {
+TEST_F(Flash, IsLockedUntilBothKeysAreWrittenInOrder) {
     program(0, 0);
     EXPECT_EQ(word(0), 0xFFFFFFFFu);
     EXPECT_EQ(status(), uint32_t(Stm32Flash::Pgserr));
@@ -78,7 +78,7 @@ TEST_F(Flash, ProgrammingOnlyClearsBits) {
     EXPECT_EQ(word(8), 0x00FF0000u);
 }
 
-TEST_F(Flash, AnEraseTakesItsTimeByKindOfSector) {
+TEST_F(Flash, TheTimeOfAnEraseDependsOnTheSectorSize) {
     unlock();
     const std::pair<unsigned, uint64_t> times[] = {{0, 250}, {4, 550}, {5, 1000}, {11, 1000}};
     for (auto [sector, ms] : times) {
@@ -95,7 +95,7 @@ TEST_F(Flash, AnEraseTakesItsTimeByKindOfSector) {
     }
 }
 
-TEST_F(Flash, AnEraseLeavesTheNeighboursAlone) {
+TEST_F(Flash, AnEraseDoesNotChangeOtherSectors) {
     unlock();
     program(0x1FFFC, 1), program(0x40000, 2);
     erase(5);
@@ -116,7 +116,7 @@ TEST_F(Flash, AStoreOfAnotherWidthThanPsizeIsRefused) {
     EXPECT_EQ(word(12), 0xFFFFFFFFu);
 }
 
-TEST_F(Flash, AResetInAWriteLeavesSomeOfItsBits) {
+TEST_F(Flash, AResetDuringAWriteLeavesSomeBitsUnwritten) {
     unsigned partial = 0;
     for (int i = 0; i < 32; ++i) {
         flash.reset();
@@ -130,7 +130,7 @@ TEST_F(Flash, AResetInAWriteLeavesSomeOfItsBits) {
     EXPECT_GT(partial, 16u);
 }
 
-TEST_F(Flash, AResetInAnEraseLeavesAMixtureByTheSeed) {
+TEST_F(Flash, AResetDuringAnEraseLeavesRandomBits) {
     auto left = [](uint64_t seed) {
         std::vector<uint8_t> bytes(Stm32Flash::bytes, 0x5A);
         uint64_t time = 0;

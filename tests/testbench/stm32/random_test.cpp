@@ -23,7 +23,7 @@ protected:
     uint64_t ns_ = 1000;
 };
 
-TEST_F(RandomNumbers, ThereIsOneEach40PeriodsOf48MHz) {
+TEST_F(RandomNumbers, ANumberIsReadyEvery40PeriodsOf48MHz) {
     pass(10'000);
     EXPECT_EQ(read(status), 0u) << "the generator is off";
     write(control, enable);
@@ -36,7 +36,7 @@ TEST_F(RandomNumbers, ThereIsOneEach40PeriodsOf48MHz) {
         << "the next number must take as long as the first one";
 }
 
-TEST_F(RandomNumbers, NoneComesTwiceAndAnotherSeedGivesOthers) {
+TEST_F(RandomNumbers, NumbersDoNotRepeatAndDependOnTheSeed) {
     std::set<uint32_t> seen;
     RandomBlock other(8);
     write(control, enable);
@@ -48,7 +48,7 @@ TEST_F(RandomNumbers, NoneComesTwiceAndAnotherSeedGivesOthers) {
     }
 }
 
-TEST_F(RandomNumbers, WithoutItsClockThereIsNoneAndThatIsRemembered) {
+TEST_F(RandomNumbers, AMissingClockIsReported) {
     write(control, enable);
     pass(1000);
     EXPECT_EQ(read(status, false), noClock);
@@ -58,7 +58,7 @@ TEST_F(RandomNumbers, WithoutItsClockThereIsNoneAndThatIsRemembered) {
     EXPECT_EQ(read(status), ready);
 }
 
-TEST_F(RandomNumbers, ASeedErrorLastsUntilItIsSwitchedOffAndOn) {
+TEST_F(RandomNumbers, ASeedErrorLastsUntilTheGeneratorIsRestarted) {
     write(control, enable);
     pass(1000);
     block_.fail();

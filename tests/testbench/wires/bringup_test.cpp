@@ -67,12 +67,12 @@ void expectNamed(uint32_t steps, const std::string& fault, const std::string& ex
     EXPECT_EQ(failures(text), std::vector<std::string>{expected}) << fault << ":\n" << text;
 }
 
-TEST(Bringup, NamesEachOpenLine) {
+TEST(Bringup, FindsEachOpenLine) {
     for (const std::string& line : wiredLines())
         expectNamed(wires, line + ":open", line + " open");
 }
 
-TEST(Bringup, NamesEachStuckLine) {
+TEST(Bringup, FindsEachStuckLine) {
     bool high = false;
     for (const std::string& line : wiredLines()) {
         const std::string kind = (high = !high) ? "stuck1" : "stuck0";
@@ -80,7 +80,7 @@ TEST(Bringup, NamesEachStuckLine) {
     }
 }
 
-TEST(Bringup, NamesEachPairOfNeighboursThatIsShorted) {
+TEST(Bringup, FindsEachShortBetweenNeighbours) {
     const std::vector<std::string> lines = wiredLines();
     for (size_t i = 0; i + 1 < lines.size(); i += 2) {
         const std::string pair = lines[i] + "-" + lines[i + 1];
@@ -88,7 +88,7 @@ TEST(Bringup, NamesEachPairOfNeighboursThatIsShorted) {
     }
 }
 
-TEST(Bringup, NamesEachPairOfNeighboursThatIsSwapped) {
+TEST(Bringup, FindsEachSwapOfNeighbours) {
     const std::vector<std::string> lines = wiredLines();
     for (size_t i = 0; i + 1 < lines.size(); i += 2) {
         const std::string pair = lines[i] + "-" + lines[i + 1];
@@ -96,7 +96,7 @@ TEST(Bringup, NamesEachPairOfNeighboursThatIsSwapped) {
     }
 }
 
-TEST(Bringup, NamesPairsThatAreNoNeighbours) {
+TEST(Bringup, FindsFaultsBetweenDistantLines) {
     for (const std::string pair :
          {"NWAIT-IRQ", "NE1-NWE", "NOE-NWE", "D0-IRQ", "A16-NWAIT", "NE2-NBL0"})
         expectNamed(wires, pair + ":swapped", pair + " swapped");
@@ -104,13 +104,13 @@ TEST(Bringup, NamesPairsThatAreNoNeighbours) {
         expectNamed(wires, pair + ":short", pair + " short");
 }
 
-TEST(Bringup, NamesInvertedAndRingingLines) {
+TEST(Bringup, FindsInvertedAndRingingLines) {
     expectNamed(all, "NWAIT:inverted", "NWAIT inverted");
     expectNamed(all, "IRQ:inverted", "IRQ inverted");
     expectNamed(all, "NWE:ringing", "NWE ringing");
 }
 
-TEST(Bringup, NamesLinesThatAnotherPartPulls) {
+TEST(Bringup, FindsLinesPulledByAnotherPart) {
     for (const std::string line :
          {"IRQ:pull0", "D13:pull1", "A24:pull0", "NOE:pull1", "NWAIT:pull0", "NWAIT:pull1"})
         expectNamed(wires, line,
@@ -136,15 +136,15 @@ TEST(Bringup, EndsAStepThatHangs) {
     EXPECT_NE(text.find("END 1"), std::string::npos) << text;
 }
 
-TEST(Bringup, NamesAnotherMemoryOnTheBus) {
+TEST(Bringup, FindsAnotherMemoryOnTheBus) {
     expectNamed(all, "D:second-driver", "D second-driver");
 }
 
-TEST(Bringup, NamesAddressLinesThatAreShifted) {
+TEST(Bringup, FindsShiftedAddressLines) {
     expectNamed(all, "A:shifted", BOARD_MUXED ? "A16-A24 shifted" : "A0-A24 shifted");
 }
 
-TEST(Bringup, NamesABankWithoutSupply) {
+TEST(Bringup, FindsAnUnpoweredBank) {
     expectNamed(clocks, "BANK0:unpowered", "CLK no-clock");
     EXPECT_NE(report("BANK0:unpowered", clocks).find("the supply of bank 0"), std::string::npos);
     expectNamed(all, "BANK1:unpowered", "FPGA silent");
@@ -152,13 +152,13 @@ TEST(Bringup, NamesABankWithoutSupply) {
     expectNamed(modemWires, "BANK2:unpowered", "BANK2 no-supply");
 }
 
-TEST(Bringup, NamesAClockThatIsMissingOrWrong) {
+TEST(Bringup, FindsAMissingOrWrongClock) {
     expectNamed(clocks, "CLK:none", "CLK no-clock");
     expectNamed(clocks, "CLK:off=2%", "CLK wrong-rate");
     expectNamed(clocks, "CLK:off=-2%", "CLK wrong-rate");
 }
 
-TEST(Bringup, NamesEachLineOfTheModem) {
+TEST(Bringup, FindsFaultsOfEachModemLine) {
     expectNamed(modemWires, "MODEM:none", "MODEM silent");
     for (const std::string line : {"RXD", "TXD", "CTS", "RTS", "RESET"})
         for (const std::string kind : {"open", "stuck0", "stuck1"})
@@ -224,11 +224,11 @@ void expectNamedWithChip(uint32_t steps, const std::string& fault, const std::st
     EXPECT_EQ(failures(text), std::vector<std::string>{expected}) << fault << ":\n" << text;
 }
 
-TEST(Bringup, NamesDataThatIsShiftedByAHalfword) {
+TEST(Bringup, FindsDataShiftedByAHalfword) {
     expectNamedWithChip(all, "D:shifted", "D shifted");
 }
 
-TEST(Bringup, NamesALateStrobe) {
+TEST(Bringup, FindsALateStrobe) {
     expectNamedWithChip(bus, "NWE:late=12ns", "NWE late");
     for (const std::string line : {"NOE", "NE1", "NE2", "NWAIT"})
         expectNamedWithChip(memory | timing, line + ":late=20ns", line + " late");
@@ -240,7 +240,7 @@ TEST(Bringup, NamesALateStrobe) {
 
 // Tests only some of the data and address lines, because each test of a board with the chip takes
 // half a second.
-TEST(Bringup, NamesLinesOfTheMemory) {
+TEST(Bringup, FindsFaultyMemoryLines) {
     for (unsigned line : {0, 7, 8, 15}) {
         const std::string name = "DDR_DQ" + std::to_string(line);
         expectNamedWithChip(memory, name + (line % 2 ? ":stuck0" : ":open"),

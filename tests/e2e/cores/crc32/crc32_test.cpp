@@ -17,7 +17,7 @@ uint32_t crcOf(const std::vector<Ice_Byte>& bytes) {
     return ~crc;
 }
 
-TEST(Crc32, OfEachLength) {
+TEST(Crc32, MatchesTheReferenceForEachLength) {
     Crc32Proxy<Vcrc32_slot> core;
     for (size_t length : {0, 1, 7, 8, 9, 63, 64, 65, 300, 4096}) {
         std::vector<Ice_Byte> bytes(length);
@@ -28,7 +28,7 @@ TEST(Crc32, OfEachLength) {
     }
 }
 
-TEST(Crc32, OfTheCheckString) {
+TEST(Crc32, MatchesTheCheckValue) {
     Crc32Proxy<Vcrc32_slot> core;
     Ice_Byte digits[] = {49, 50, 51, 52, 53, 54, 55, 56, 57};
     Cores_Data data{9, digits};
@@ -36,7 +36,7 @@ TEST(Crc32, OfTheCheckString) {
               0xCBF43926u); // check value of this CRC in the catalogue of CRCs
 }
 
-TEST(Crc32, ACountWrittenBehindTheStartDoesNotChangeTheCall) {
+TEST(Crc32, ACountWrittenAfterTheStartDoesNotChangeTheCall) {
     Crc32Proxy<Vcrc32_slot> core;
     std::vector<Ice_Byte> bytes(4096, 1);
     Cores_Data data{4096, bytes.data()};

@@ -25,13 +25,13 @@ protected:
     ServoProxy<Vservo_slot> core_;
 };
 
-TEST_F(Servo, PulsesAreMicrosecondsLongWhateverTheClock) {
+TEST_F(Servo, PulseWidthsDoNotDependOnTheClock) {
     core_.setPulse(0, 1500);
     core_.setPulse(3, 400);
     EXPECT_EQ(microsecondsHigh(), (std::array<uint64_t, 4>{1500, 0, 0, 400}));
 }
 
-TEST_F(Servo, AFaultEndsThePulsesUntilItIsCleared) {
+TEST_F(Servo, AFaultStopsThePulsesUntilItIsCleared) {
     core_.setPulse(0, 1500);
     core_.bench_.top().fault_i = 1;
     for (int i = 0; i < 4; ++i)

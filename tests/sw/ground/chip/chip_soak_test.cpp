@@ -374,7 +374,7 @@ protected:
     GroundProgram ground_;
 };
 
-TEST_F(ChipSoak, EveryMessageIsRightOnceInOrderOrReported) {
+TEST_F(ChipSoak, EveryMessageArrivesOnceInOrderOrIsReported) {
     struct AtEnd { // stops the workers before they are joined, even after an exception
         ~AtEnd() { stop = true; }
         std::atomic<bool>& stop;

@@ -19,7 +19,7 @@ protected:
     World world_{testSeed()};
 };
 
-TEST_F(StockIce, MessagesUpToTheLimitPassAndALongerOneIsRefusedInTheCaller) {
+TEST_F(StockIce, MessagesAboveTheLimitAreRefusedInTheCaller) {
     Ice::CommunicatorHolder ic(world_.client());
     auto echo = world_.proxy(ic.communicator());
     // Size of a call without its data: header 14, id 4, identity "echo" 6, facet 1, operation
@@ -48,7 +48,7 @@ TEST_F(StockIce, TheUavCallsBackOnTheSameConnectionWhileItIsCalled) {
     other.get();
 }
 
-TEST_F(StockIce, WhatIsMeantForAnotherVehicleDoesNotReachThisOne) {
+TEST_F(StockIce, ACallForAnotherVehicleDoesNotReachThisOne) {
     Ice::CommunicatorHolder ic(world_.client());
     EXPECT_EQ(world_.proxy(ic.communicator())->repeat(1, {}).size(), 0u);
     auto other = ic->stringToProxy("echo:" + world_.endpoint() + " -a 0x0002");
@@ -58,7 +58,7 @@ TEST_F(StockIce, WhatIsMeantForAnotherVehicleDoesNotReachThisOne) {
 
 // To close a connection, a message must go to the UAV and back; the channel stays in use until
 // then.
-TEST_F(StockIce, WhoOpensWhileTheLastConnectionsStillCloseWaitsItsTurn) {
+TEST_F(StockIce, ANewConnectionWaitsUntilPreviousOnesHaveClosed) {
     Ice::CommunicatorHolder ic(world_.client());
     auto named = [&](const char* name) { return world_.proxy(ic.communicator(), name); };
     for (int i = 0; i < 10; ++i) {
@@ -83,7 +83,7 @@ TEST_F(StockIce, MoreProgramsThanChannelsShareThem) {
     world_.proxy(programs[0]->communicator())->ice_ping();
 }
 
-TEST_F(StockIce, AUavThatIsOffIsAConnectTimeout) {
+TEST_F(StockIce, AMissingUavCausesAConnectTimeout) {
     world_.rig.with([&] { world_.rig.uav.runs = false; });
     Ice::CommunicatorHolder ic(world_.client());
     auto echo = world_.proxy(ic.communicator())->ice_timeout(1500);
@@ -92,7 +92,7 @@ TEST_F(StockIce, AUavThatIsOffIsAConnectTimeout) {
     EXPECT_NO_THROW(world_.proxy(ic.communicator())->ice_ping());
 }
 
-TEST_F(StockIce, ACallThatHasTimedOutIsNeverCarriedOut) {
+TEST_F(StockIce, ATimedOutCallIsNeverExecuted) {
     Ice::CommunicatorHolder ic(world_.client({{"Ice.Override.ConnectTimeout", "1800000"}}));
     auto echo = world_.proxy(ic.communicator())->ice_timeout(2000)->ice_invocationTimeout(-2);
     echo->ice_ping();
@@ -126,7 +126,7 @@ TEST_F(StockIce, AConnectionOutlivesItsTimeoutThatExpiresWhileItEnds) {
     EXPECT_TRUE(ended.expired()) << "the connection is kept after the end of the communicator";
 }
 
-TEST_F(StockIce, WhatCannotGoToAllVehiclesIsRefusedInTheCaller) {
+TEST_F(StockIce, CallsThatCannotBeBroadcastAreRefusedInTheCaller) {
     Ice::CommunicatorHolder ic(world_.client());
     auto all = Ice::uncheckedCast<RadioTest::UavPrx>(
         ic->stringToProxy("echo -o:" + world_.endpoint() + " -a 0xFFFF"));
@@ -135,7 +135,7 @@ TEST_F(StockIce, WhatCannotGoToAllVehiclesIsRefusedInTheCaller) {
     EXPECT_NO_THROW(all->note(9)) << "a call after the error must succeed";
 }
 
-TEST_F(StockIce, EndpointsKeepTheirOptionsAsTextAndWrongOnesAreRefused) {
+TEST_F(StockIce, EndpointsKeepTheirOptionsAndInvalidOptionsAreRefused) {
     Ice::CommunicatorHolder ic(world_.client());
     auto text = [&](const std::string& endpoint) {
         return ic->proxyToString(ic->stringToProxy("x:xbee-at " + endpoint));

@@ -31,6 +31,12 @@ else()
   message(STATUS "ccache is missing (Debian: ccache): each new build folder compiles everything "
     "itself")
 endif()
+# LLD links the simulator in a fifth of the time of GNU ld. Packages, coverage and sanitizers use
+# GNU ld.
+find_program(LLD ld.lld)
+if(LLD AND NOT PORTABLE AND NOT COVERAGE AND NOT SANITIZE)
+  add_link_options(-fuse-ld=lld)
+endif()
 icesoc_needs(verilator VERILATOR program verilator)
 icesoc_needs(iverilog IVERILOG program iverilog)
 icesoc_needs(yosys YOSYS program yosys)

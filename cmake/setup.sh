@@ -58,6 +58,7 @@ gcc-arm-none-eabi compiles the firmware for the Cortex-M3
 libunicorn-dev executes Cortex-M3 instructions in the simulator
 libnewlib-arm-none-eabi C library of the firmware
 clang compiles models of the RTL, and fuzzers (libFuzzer)
+lld links programs; builds are faster with it
 libclang-rt-dev run-time libraries of fuzzers and sanitizers
 '
 # additional packages for `./icesoc package`, which makes and checks Debian packages

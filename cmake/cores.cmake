@@ -140,9 +140,10 @@ macro(icesoc_core_test)
   endif()
   if(test AND "testbench" IN_LIST ROOMS)
     if(NETLIST AND NOT A_CLOCK)
-      icesoc_netlist(${name}_slot DESIGN ${top} DEPENDS ${targets})
+      icesoc_netlist(${name}_slot DESIGN ${top} DEPENDS ${targets} ${checks})
     else()
       icesoc_verilate(${name}_slot TOP ${top} SOURCES ${files} DEPENDS ${targets}
+                      CHECKS ${checks}
                       FLAGS ${A_FLAGS} ${CORE_TEST_FLAGS} EDITED
                       PARAMS ${clock} INCLUDES ${CMAKE_SOURCE_DIR}/bus ${CMAKE_SOURCE_DIR}/hdl/ddr
                         ${CMAKE_SOURCE_DIR}/hdl/system ${CMAKE_SOURCE_DIR}/hdl/cdc
@@ -212,9 +213,11 @@ function(icesoc_core)
   endif()
   cmake_language(EVAL CODE "${facts}")
   set(A_DEPENDS)
+  set(checks)
   foreach(entity IN LISTS A_ENTITIES)
     icesoc_vhdl(NAME ${entity} ${A_ENTITY_${entity}})
     list(APPEND A_VERILOG ${GEN_DIR}/${entity}.v)
+    list(APPEND checks ${GEN_DIR}/${entity}.no_latches)
     list(APPEND A_DEPENDS ${entity}_verilog)
   endforeach()
   if(A_IDLE)
@@ -241,11 +244,13 @@ function(icesoc_core)
                 ${CMAKE_SOURCE_DIR}/hdl/ddr/npi_stream_pkg.vhd ${registers})
     list(APPEND files ${GEN_DIR}/${name}.v)
     list(APPEND targets ${name}_verilog)
+    list(APPEND checks ${GEN_DIR}/${name}.no_latches)
     # GHDL writes an `open` port as a port with empty parentheses
     list(APPEND A_FLAGS -Wno-PINCONNECTEMPTY)
   endif()
   icesoc_core_clock()
-  foreach(what files headers targets regs libs manifest slices arm_sources arm_includes arm_targets)
+  foreach(what files headers targets checks regs libs manifest slices
+               arm_sources arm_includes arm_targets)
     set_property(GLOBAL PROPERTY ICESOC_CORE_${name}_${what} ${${what}})
   endforeach()
   set_property(GLOBAL PROPERTY ICESOC_CORE_${name}_flags ${A_FLAGS})
@@ -300,7 +305,8 @@ function(icesoc_chip)
     file(GLOB own CONFIGURE_DEPENDS ${folder}/*.ucf)
     list(APPEND inputs ${manifest} ${regs} ${own})
   endforeach()
-  # Building the chip runs this check that no two files contain a module of the same name.
+  # Building the chip runs this check that no two files contain a module of the same name. The
+  # simulator's model takes it as one of its CHECKS.
   icesoc_chip_property(files files)
   icesoc_chip_property(targets targets)
   add_custom_command(OUTPUT ${GEN_DIR}/cores.checked

@@ -303,10 +303,12 @@ macro(icesoc_verilate_observed)
 endmacro()
 
 # icesoc_verilate(NAME TOP module SOURCES file... [PARAMS NAME=value...] [INCLUDES dir...]
-#                 [REGS block...] [DEPENDS target-or-file...] [FLAGS ...] [FAST] [EDITED]
-#                 [CLASS class])
+#                 [REGS block...] [DEPENDS target-or-file...] [CHECKS file...] [FLAGS ...] [FAST]
+#                 [EDITED] [CLASS class])
 # Builds a Verilated model of a module as the library NAME with the class V<NAME>, or V<CLASS>. Lint
-# (-Wall) is on, and its warnings are errors. FAST is for the model of the whole chip. With
+# (-Wall) is on, and its warnings are errors. CHECKS are files that are written when checks of the
+# sources succeed; the checks run at the same time as Verilator, and without them the model is not
+# compiled. FAST is for the model of the whole chip. With
 # COVERAGE, a FAST model has coverage counters only in soc.v and platform.v, because the other
 # blocks are counted by their own tests. With counters in all modules, a few simulated seconds of
 # flight take minutes. EDITED is for a model that is compiled after each edit: the header of
@@ -315,8 +317,8 @@ endmacro()
 # Clang compiles the model. Compared with g++, compiling takes 0.6 of the time (measured with fir),
 # and the compiled model is 1.18 times as fast (measured with the chip).
 function(icesoc_verilate name)
-  cmake_parse_arguments(A "FAST;EDITED" "TOP;CLASS" "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;FLAGS"
-    ${ARGN})
+  cmake_parse_arguments(A "FAST;EDITED" "TOP;CLASS"
+    "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;CHECKS;FLAGS" ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name})
   set(class V${name})
   if(A_CLASS)
@@ -394,7 +396,7 @@ function(icesoc_verilate name)
             ${environment} make -s -j2 -C ${dir} -f ${class}.mk ${class}__ALL.a
             "CXX=${CCACHE} ${compiler}" "OPT_FAST=${fast}" OPT_GLOBAL=-O2
             "OPT_SLOW=${slow}" "USER_CPPFLAGS=-fPIC" ARCHIVE=1
-    DEPENDS ${written} ${headers} VERBATIM COMMENT "Compiling the model ${name}")
+    DEPENDS ${written} ${headers} ${A_CHECKS} VERBATIM COMMENT "Compiling the model ${name}")
   set(defines ${A_FLAGS})
   list(FILTER defines INCLUDE REGEX "^-D")
   list(TRANSFORM defines REPLACE "^-D" "+define+")

@@ -11,10 +11,11 @@ add_custom_target(ghdl DEPENDS ${GHDL})
 
 # icesoc_vhdl(NAME entity SOURCES file... [REGS block...] [LIBRARY name] [LIBRARIES name=file...]
 #             [GENERICS name=value...] [FOREIGN])
-# Converts an entity to ${GEN_DIR}/<entity>.v with the target <entity>_verilog. LIBRARY is the
-# library of SOURCES. The files may be in any order. GHDL copies the names of the files into the
-# Verilog. The names passed to GHDL are relative to the tree, so that copies of the tree give the
-# same Verilog.
+# Converts an entity to ${GEN_DIR}/<entity>.v with the target <entity>_verilog. The file
+# ${GEN_DIR}/<entity>.no_latches is written after a search for latches; a model passes it to
+# icesoc_verilate as one of its CHECKS. LIBRARY is the library of SOURCES. The files may be in any
+# order. GHDL copies the names of the files into the Verilog. The names passed to GHDL are relative
+# to the tree, so that copies of the tree give the same Verilog.
 function(icesoc_vhdl)
   cmake_parse_arguments(A "FOREIGN" "NAME;LIBRARY" "SOURCES;REGS;GENERICS;LIBRARIES" ${ARGN})
   list(TRANSFORM A_LIBRARIES REPLACE "(.+)" "--in;\\1" OUTPUT_VARIABLE members)
@@ -51,7 +52,14 @@ function(icesoc_vhdl)
       ${CMAKE_SOURCE_DIR}/cmake/vhdl_to_verilog.sh
     VERBATIM COMMENT "VHDL to Verilog: ${A_NAME}")
   add_custom_target(${A_NAME}_verilog DEPENDS ${GEN_DIR}/${A_NAME}.v)
-  set_property(GLOBAL APPEND PROPERTY ICESOC_VHDL_TARGETS ${A_NAME}_verilog)
+  set(checked ${GEN_DIR}/${A_NAME}.no_latches)
+  set(check ${CMAKE_SOURCE_DIR}/cmake/no_latches.sh)
+  add_custom_command(OUTPUT ${checked}
+    COMMAND ${check} ${work} ${A_NAME} ${GEN_DIR}/${A_NAME}.v
+    COMMAND ${CMAKE_COMMAND} -E touch ${checked}
+    DEPENDS ${GEN_DIR}/${A_NAME}.v ${check} VERBATIM COMMENT "Latches: ${A_NAME}")
+  add_custom_target(${A_NAME}_no_latches DEPENDS ${checked})
+  set_property(GLOBAL APPEND PROPERTY ICESOC_VHDL_TARGETS ${A_NAME}_verilog ${A_NAME}_no_latches)
 endfunction()
 
 # icesoc_vhdl_test(NAME core SOURCES file... [LIBS lib...]): adds the test <core>.vhdl

@@ -39,6 +39,7 @@ verilator --lint-only -Wall -I"$source/bus" -I"$work/memory" --top-module memory
 # The register block in VHDL must give the same results as the block in Verilog, word by word.
 "$source/cmake/vhdl_to_verilog.sh" "$ghdl" "$work/vhdl" kinds_regs "$work/vhdl/kinds_regs.v" \
     "$work/kinds_regs_pkg.vhd" "$work/kinds_regs.vhd"
+"$source/cmake/no_latches.sh" "$work/vhdl" kinds_regs "$work/vhdl/kinds_regs.v"
 same() { # vhdl folder
     yosys -q -p "
         verilog_defaults -add -I$source/bus -I$work

@@ -225,6 +225,7 @@ def read_module(top, files, headers=(), params=(), defines=(), is_whole=True, gh
                       library or "work", *(word for each in libraries for word in ("--in", each)),
                       *(word for p in params for word in ("--generic", p)),
                       ghdl, work, top, out, *files])
+            run_tool("Yosys", "read", top, [TREE / "cmake/no_latches.sh", work, top, out])
             files, params = [out], ()  # GHDL has already applied the generics
         elif any(end_of(f) == ".sv" for f in files):
             check_interfaces(top, files)

@@ -151,7 +151,7 @@ macro(icesoc_core_test)
     endif()
     set(state ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name}_slot/V${name}_slot)
     add_custom_command(OUTPUT ${state}_state.h
-      COMMAND awk -v top=${top}__DOT__ -v class=V${name}_slot___024root -f ${STATE_MEMBERS}
+      COMMAND awk -v top=${top}__DOT__ -v class=V${name}_slot -v slot=1 -f ${STATE_MEMBERS}
         ${state}___024root.h > ${state}_state.h
       DEPENDS ${STATE_MEMBERS} ${state}___024root.h VERBATIM)
     # As a part of the test program only, this command would wait for all libraries of the program.

@@ -304,7 +304,7 @@ endmacro()
 
 # icesoc_verilate(NAME TOP module SOURCES file... [PARAMS NAME=value...] [INCLUDES dir...]
 #                 [REGS block...] [DEPENDS target-or-file...] [CHECKS file...] [FLAGS ...] [FAST]
-#                 [EDITED] [CLASS class])
+#                 [EDITED] [STATE] [CLASS class])
 # Builds a Verilated model of a module as the library NAME with the class V<NAME>, or V<CLASS>. Lint
 # (-Wall) is on, and its warnings are errors. CHECKS are files that are written when checks of the
 # sources succeed; the checks run at the same time as Verilator, and without them the model is not
@@ -313,11 +313,12 @@ endmacro()
 # blocks are counted by their own tests. With counters in all modules, a few simulated seconds of
 # flight take minutes. EDITED is for a model that is compiled after each edit: the header of
 # Verilator's run-time library, which takes half of the compile time of a model, is precompiled.
+# STATE adds a list of the model's signals (testbench/common/model_state.h).
 #
 # Clang compiles the model. Compared with g++, compiling takes 0.6 of the time (measured with fir),
 # and the compiled model is 1.18 times as fast (measured with the chip).
 function(icesoc_verilate name)
-  cmake_parse_arguments(A "FAST;EDITED" "TOP;CLASS"
+  cmake_parse_arguments(A "FAST;EDITED;STATE" "TOP;CLASS"
     "SOURCES;PARAMS;INCLUDES;REGS;DEPENDS;CHECKS;FLAGS" ${ARGN})
   set(dir ${CMAKE_CURRENT_BINARY_DIR}/verilated_${name})
   set(class V${name})
@@ -351,31 +352,30 @@ function(icesoc_verilate name)
   if(NOT COVERAGE AND NOT SANITIZE)
     set(compiler ${CLANGXX})
   endif()
-  set(fast ${MODEL_fast})
-  set(slow ${MODEL_slow})
+  set(fast ${MODEL_OPTIONS})
   set(environment)
   set(headers)
   icesoc_verilator_runtime()
-  if(A_EDITED AND TARGET verilated_header_fast)
+  if(A_EDITED AND TARGET verilated_header)
     set(environment ${CCACHE_WITH_HEADER})
-    # The model of a core is one file, which is compiled as fast code.
-    set(kinds fast)
-    if(A_FAST)
-      list(APPEND kinds slow)
-    endif()
-    foreach(kind IN LISTS kinds)
-      set(header ${CMAKE_BINARY_DIR}/verilated_${kind}.pch)
-      list(APPEND ${kind} -include-pch ${header} -Xclang -fno-pch-timestamp)
-      list(APPEND headers ${header} verilated_header_${kind})
-    endforeach()
+    set(header ${CMAKE_BINARY_DIR}/verilated.pch)
+    list(APPEND fast -include-pch ${header} -Xclang -fno-pch-timestamp)
+    list(APPEND headers ${header} verilated_header)
   endif()
   list(JOIN fast " " fast)
-  list(JOIN slow " " slow)
   # The simulator is installed, so its messages must not contain the path of this tree.
   set(without_tree)
   if(A_FAST)
     set(without_tree COMMAND find ${dir} -name "*.cpp" -exec sed -i
       "s|MT(\"${CMAKE_SOURCE_DIR}/|MT(\"|" {} +)
+  endif()
+  set(state)
+  set(list_state)
+  if(A_STATE)
+    set(state ${class}_state)
+    set(list_state COMMAND awk -v top=${A_TOP}__DOT__ -v class=${class} -f ${STATE_MEMBERS}
+      ${dir}/${class}___024root.h > ${dir}/${state}.cpp)
+    list(APPEND deps ${STATE_MEMBERS})
   endif()
   # The headers are declared as by-products, so that ninja compiles the files that include them in
   # the same run, not in the next one, and at the same time as the model. After each change of the
@@ -386,17 +386,18 @@ function(icesoc_verilate name)
     COMMAND ${unchanged} save ${dir}
     COMMAND ${VERILATOR} ${flags} ${A_PARAMS} ${sources}
     ${without_tree}
+    ${list_state}
     COMMAND ${unchanged} restore ${dir}
     DEPENDS ${deps} ${unchanged} VERBATIM COMMENT "Verilating ${A_TOP} as ${name}")
-  # Verilator's makefile appends -Os; OPT_FAST overrides it, which doubles the measured speed. Code
-  # that runs only once (OPT_SLOW) is not optimised: with -O1, compiling this code took half of the
-  # time after an edit, and minutes with coverage counters.
+  # Verilator's makefile appends -Os; OPT_FAST overrides it, which doubles the measured speed.
+  set(makefile ${CMAKE_SOURCE_DIR}/cmake/model.mk)
   add_custom_command(OUTPUT ${lib}
     COMMAND ${CMAKE_COMMAND} -E env --unset=MAKEFLAGS CCACHE_DIR=$ENV{CCACHE_DIR}
-            ${environment} make -s -j2 -C ${dir} -f ${class}.mk ${class}__ALL.a
-            "CXX=${CCACHE} ${compiler}" "OPT_FAST=${fast}" OPT_GLOBAL=-O2
-            "OPT_SLOW=${slow}" "USER_CPPFLAGS=-fPIC" ARCHIVE=1
-    DEPENDS ${written} ${headers} ${A_CHECKS} VERBATIM COMMENT "Compiling the model ${name}")
+            ${environment} make -s -j2 -C ${dir} -f ${makefile} ${class}__ALL.a
+            CLASS=${class} STATE=${state} "CXX=${CCACHE} ${compiler}" "OPT_FAST=${fast}"
+            OPT_GLOBAL=-O2 "USER_CPPFLAGS=-fPIC -I${CMAKE_SOURCE_DIR}/testbench/common" ARCHIVE=1
+    DEPENDS ${written} ${headers} ${makefile} ${A_CHECKS}
+    VERBATIM COMMENT "Compiling the model ${name}")
   set(defines ${A_FLAGS})
   list(FILTER defines INCLUDE REGEX "^-D")
   list(TRANSFORM defines REPLACE "^-D" "+define+")
@@ -414,7 +415,7 @@ function(icesoc_verilate name)
   target_link_libraries(${name} INTERFACE ${lib} verilator_runtime)
 endfunction()
 
-# Lists the signals in a Verilated model's state.
+# Lists the signals in a Verilated model's state (STATE).
 set(STATE_MEMBERS ${CMAKE_SOURCE_DIR}/testbench/common/state_members.awk)
 
 # icesoc_netlist(NAME DESIGN design [PARAMS NAME=value...] [DEPENDS target...] [TOP module SOURCES
@@ -447,10 +448,9 @@ function(icesoc_netlist name)
     CLASS ${A_CLASS} FLAGS ${A_FLAGS} -Wno-lint -Wno-style -Wno-UNOPTFLAT)
 endfunction()
 
-# Verilator's run-time library, compiled once for all models, and its precompiled headers:
-# verilated_fast.pch for optimised code, verilated_slow.pch for code that runs only once.
-set(MODEL_fast -O3 ${TUNE})
-set(MODEL_slow -O0)
+# Verilator's run-time library, compiled once for all models, and its precompiled header,
+# verilated.pch.
+set(MODEL_OPTIONS -O3 ${TUNE})
 function(icesoc_verilator_runtime)
   if(TARGET verilator_runtime)
     return()
@@ -489,18 +489,16 @@ function(icesoc_verilator_runtime)
   if(NOT TRACE AND NOT COVERAGE AND NOT SANITIZE)
     set(makefile ${CMAKE_SOURCE_DIR}/cmake/verilated_header.mk)
     get_filename_component(compiler ${CLANGXX} REALPATH)
-    foreach(kind fast slow)
-      set(header ${CMAKE_BINARY_DIR}/verilated_${kind}.pch)
-      list(JOIN MODEL_${kind} " " options)
-      add_custom_command(OUTPUT ${header}
-        COMMAND ${CMAKE_COMMAND} -E env --unset=MAKEFLAGS
-                make -s -B -f ${makefile} VERILATOR_ROOT=${root} TO=${header}
-                CXX=${CLANGXX} "OPT_FAST=${options} -Xclang -fno-pch-timestamp"
-                USER_CPPFLAGS=-fPIC
-        DEPENDS ${makefile} ${root}/include/verilated.h ${compiler}
-        VERBATIM COMMENT "Precompiled header of Verilator's run-time library, ${kind} code")
-      add_custom_target(verilated_header_${kind} DEPENDS ${header})
-    endforeach()
+    set(header ${CMAKE_BINARY_DIR}/verilated.pch)
+    list(JOIN MODEL_OPTIONS " " options)
+    add_custom_command(OUTPUT ${header}
+      COMMAND ${CMAKE_COMMAND} -E env --unset=MAKEFLAGS
+              make -s -B -f ${makefile} VERILATOR_ROOT=${root} TO=${header}
+              CXX=${CLANGXX} "OPT_FAST=${options} -Xclang -fno-pch-timestamp"
+              USER_CPPFLAGS=-fPIC
+      DEPENDS ${makefile} ${root}/include/verilated.h ${compiler}
+      VERBATIM COMMENT "Precompiled header of Verilator's run-time library")
+    add_custom_target(verilated_header DEPENDS ${header})
   endif()
 endfunction()
 include(editors)

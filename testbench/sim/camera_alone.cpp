@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: MIT
 //
 // camera_alone: copies registers between the Verilated models of the chip, of the camera and of the
-// memory. Tables of the models' signals, made from the headers that Verilator generates
-// (state_members.awk), give the position of each signal.
+// memory. Tables of the models' signals (model_state.h) give the position of each signal.
 
 #include "camera_alone.h"
 #include "VCameraAlone.h"
-#include "VCameraAlone___024root.h"
 #include "VMemoryAlone.h"
-#include "VMemoryAlone___024root.h"
 #include "VSoc.h"
-#include "VSoc___024root.h"
 #include "map_regs.h"
 #include "mcb_model.h"
+#include "model_state.h"
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
@@ -21,8 +18,7 @@
 #include <vector>
 #include <verilated.h>
 
-// offsetof is allowed for these classes, because none of their base classes changes the layout
-#pragma GCC diagnostic ignored "-Winvalid-offsetof"
+extern const ModelState VSoc_state, VCameraAlone_state, VMemoryAlone_state;
 
 // Generated functions: eval_settle computes all signals from the registers; eval does what the
 // model's eval() does, without the work for initial blocks and messages.
@@ -33,31 +29,6 @@ void VCameraAlone___024root___eval(VCameraAlone___024root* root);
 void VMemoryAlone___024root___eval(VMemoryAlone___024root* root);
 
 namespace {
-
-struct Member {
-    size_t offset, size;
-    const char* path;
-};
-
-const Member inCamera[] = {
-#define MEMBER(name, path) \
-    {offsetof(VCameraAlone___024root, name), sizeof(VCameraAlone___024root::name), path},
-#include "sim_camera_members.inc"
-#undef MEMBER
-};
-
-const Member inMemory[] = {
-#define MEMBER(name, path) \
-    {offsetof(VMemoryAlone___024root, name), sizeof(VMemoryAlone___024root::name), path},
-#include "sim_memory_members.inc"
-#undef MEMBER
-};
-
-const Member inChip[] = {
-#define MEMBER(name, path) {offsetof(VSoc___024root, name), sizeof(VSoc___024root::name), path},
-#include "sim_soc_members.inc"
-#undef MEMBER
-};
 
 struct Register {
     size_t alone, chip, size; // offsets and size
@@ -114,7 +85,7 @@ bool isCopied(const std::string& path) {
 // Returns the path of a signal in a form that is the same in both models. Verilator marks a port of
 // an instance by a prefix. In a generate block, it puts this prefix in front of the names of the
 // blocks; here the prefix is moved behind them, to the name of the port.
-std::string pathOf(const Member& member) {
+std::string pathOf(const ModelMember& member) {
     const std::string path = member.path, prefix = "__Vcellout__";
     const size_t scope = path.rfind('.') + 1;
     if (scope == 0 || !begins(path, prefix))
@@ -145,12 +116,12 @@ bool isReadByOthers(const std::string& path) {
 
 // Returns the members that are registers: those that keep each value while all signals are
 // computed. The other ones are wires.
-template <size_t count, class Root>
-std::map<std::string, const Member*> registersOf(const Member (&members)[count], Root* root,
-                                                 void (*settle)(Root*)) {
-    std::map<std::string, const Member*> found;
-    const std::vector<unsigned char> before(bytesOf(root), bytesOf(root) + sizeof *root);
-    for (const Member& member : members) {
+template <class Root>
+std::map<std::string, const ModelMember*> registersOf(const ModelState& state, Root* root,
+                                                      void (*settle)(Root*)) {
+    std::map<std::string, const ModelMember*> found;
+    const std::vector<unsigned char> before(bytesOf(root), bytesOf(root) + state.size);
+    for (const ModelMember& member : state) {
         const std::string path = pathOf(member);
         if (!isCopied(path))
             continue;
@@ -170,13 +141,15 @@ std::map<std::string, const Member*> registersOf(const Member (&members)[count],
 } // namespace
 
 struct CameraAlone::Parts {
-    Parts(VSoc& soc, VerilatedContext* context) : chip(soc), camera(context), memory(context) {}
+    Parts(VSoc& soc, VerilatedContext* context)
+        : chip(soc), camera(context, VCameraAlone_state), memory(context, VMemoryAlone_state) {}
 
     // One of the small models, and its registers in the chip.
     template <class Model> struct Block {
-        explicit Block(VerilatedContext* context) : model(context) {}
+        Block(VerilatedContext* context, const ModelState& of) : model(context), state(of) {}
 
         Model model;
+        const ModelState& state;
         std::vector<Register> registers;
         std::vector<unsigned char> marked; // state at mark()
 
@@ -197,8 +170,8 @@ struct CameraAlone::Parts {
             });
         }
         void mark() {
-            const unsigned char* state = bytesOf(model.rootp);
-            marked.assign(state, state + sizeof *model.rootp);
+            const unsigned char* now = bytesOf(model.rootp);
+            marked.assign(now, now + state.size);
         }
         // Computes one clock; `eval` is the function that evaluates the model.
         template <class Root> void tick(void (*eval)(Root*)) {
@@ -243,11 +216,11 @@ void CameraAlone::Parts::prepare() {
         memory.model.tick_i = !memory.model.tick_i;
         memory.model.eval();
     }
-    std::map<std::string, const Member*> places;
-    for (const Member& member : inChip)
+    std::map<std::string, const ModelMember*> places;
+    for (const ModelMember& member : VSoc_state)
         if (isCopied(pathOf(member)))
             places.emplace(pathOf(member), &member);
-    auto ours = registersOf(inChip, chip.rootp, VSoc___024root___eval_settle);
+    auto ours = registersOf(VSoc_state, chip.rootp, VSoc___024root___eval_settle);
     const auto find = [&](const auto& theirs, std::vector<Register>& registers) {
         for (const auto& [path, member] : theirs) {
             const auto place = places.find(path);
@@ -261,11 +234,11 @@ void CameraAlone::Parts::prepare() {
         }
     };
     auto inCameraOnly =
-        registersOf(inCamera, camera.model.rootp, VCameraAlone___024root___eval_settle);
+        registersOf(camera.state, camera.model.rootp, VCameraAlone___024root___eval_settle);
     for (auto at = inCameraOnly.begin(); at != inCameraOnly.end();) // flip-flops of sim_camera.v
         at = isOfInputs(at->first) ? inCameraOnly.erase(at) : std::next(at);
     find(inCameraOnly, camera.registers);
-    find(registersOf(inMemory, memory.model.rootp, VMemoryAlone___024root___eval_settle),
+    find(registersOf(memory.state, memory.model.rootp, VMemoryAlone___024root___eval_settle),
          memory.registers);
     for (const auto& [path, member] : ours)
         if (!isReadByOthers(path))

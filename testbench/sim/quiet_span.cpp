@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
 // quiet_span: compares the chip's state before and after a clock, and adds skipped clocks to the
-// chip's counters. A table of the state, made from the header that Verilator generates
-// (state_members.awk), gives the position of each signal.
+// chip's counters. A table of the state (model_state.h) gives the position of each signal.
 
 #include "quiet_span.h"
 #include "VSoc.h"
-#include "VSoc___024root.h"
+#include "model_state.h"
 #include <algorithm>
 #include <cstddef>
 #include <cstring>
 #include <set>
+#include <stdexcept>
 
-// offsetof is allowed for this class, because none of its base classes changes the layout
-#pragma GCC diagnostic ignored "-Winvalid-offsetof"
+extern const ModelState VSoc_state;
 
 namespace {
 
@@ -64,55 +63,74 @@ void add(std::vector<std::pair<size_t, size_t>>& ranges, size_t offset, size_t s
         ranges.emplace_back(offset, offset + size);
 }
 
-#define PHASE sim_soc__DOT__soc__DOT__u_modem__DOT__u_baud__DOT__phase
-#define PRESCALER sim_soc__DOT__soc__DOT__u_modem__DOT__u_baud__DOT__count
-#define RATE sim_soc__DOT__soc__DOT__u_modem__DOT__u_baud__DOT__bd_i
-#define TICK sim_soc__DOT__soc__DOT__u_modem__DOT__u_baud__DOT__tick_o
-#define TIMER sim_soc__DOT__soc__DOT__u_modem__DOT__u_timer__DOT__clocks
-#define RX sim_soc__DOT__soc__DOT__u_modem__DOT__u_uart_rx__DOT__ticks
-#define TX sim_soc__DOT__soc__DOT__u_modem__DOT__u_uart_tx__DOT__ticks
-#define CYCLES sim_soc__DOT__soc__DOT__u_system_slot__DOT__cycles
+// Returns the path of a signal in soc.v, or nullptr for a signal of sim_soc.v.
+const char* pathInSoc(const ModelMember& member) {
+    static const std::string instance = "soc.";
+    return std::string(member.path).rfind(instance, 0) == 0 ? member.path + instance.size()
+                                                            : nullptr;
+}
 
-const struct Member {
-    size_t offset, size;
-    const char* path;
-} members[] = {
-#define MEMBER(name, path) {offsetof(VSoc___024root, name), sizeof(VSoc___024root::name), path},
-#include "soc_members.inc"
-};
+unsigned char* bytesOf(VSoc& top) {
+    return reinterpret_cast<unsigned char*>(top.rootp);
+}
 
-// Copies one member of the current state `from` into the image of an earlier state, at the same
+// Finds a signal in the chip's state.
+template <class T> T* find(VSoc& top, const std::string& path) {
+    for (const ModelMember& m : VSoc_state)
+        if (m.path == path && m.size == sizeof(T))
+            return reinterpret_cast<T*>(bytesOf(top) + m.offset);
+    throw std::logic_error("quiet_span: expected a signal " + path + " of " +
+                           std::to_string(sizeof(T)) + " bytes in the model of the chip");
+}
+
+// Copies one signal of the current state `from` into the image of an earlier state, at the same
 // offset.
 template <class T>
-void copyInto(std::vector<unsigned char>& image, const VSoc___024root& from, const T& member) {
-    auto at = reinterpret_cast<const unsigned char*>(&member) -
-              reinterpret_cast<const unsigned char*>(&from);
+void copyInto(std::vector<unsigned char>& image, const unsigned char* from, const T& member) {
+    auto at = reinterpret_cast<const unsigned char*>(&member) - from;
     std::memcpy(image.data() + at, &member, sizeof member);
 }
 
 } // namespace
 
 SocState::Image SocState::of(const VSoc___024root& root) {
-    Image image(sizeof root);
-    std::memcpy(image.data(), &root, image.size());
-    return image;
+    const auto* from = reinterpret_cast<const unsigned char*>(&root);
+    return {from, from + VSoc_state.size};
 }
 
 std::vector<std::string> SocState::differences(const Image& a, const Image& b) {
     std::vector<std::string> paths;
-    for (const Member& m : members)
-        if (std::memcmp(a.data() + m.offset, b.data() + m.offset, m.size) != 0)
-            paths.push_back(m.path);
+    for (const ModelMember& m : VSoc_state)
+        if (const char* path = pathInSoc(m);
+            path && std::memcmp(a.data() + m.offset, b.data() + m.offset, m.size) != 0)
+            paths.push_back(path);
     return paths;
 }
 
+QuietSpan::Signals QuietSpan::signalsOf(VSoc& top) {
+    Signals s;
+    s.cycles = find<uint64_t>(top, "soc.u_system_slot.cycles");
+    s.phase = find<uint32_t>(top, "soc.u_modem.u_baud.phase");
+    s.timer = find<uint32_t>(top, "soc.u_modem.u_timer.clocks");
+    s.prescaler = find<uint8_t>(top, "soc.u_modem.u_baud.count");
+    s.rx = find<uint8_t>(top, "soc.u_modem.u_uart_rx.ticks");
+    s.tx = find<uint8_t>(top, "soc.u_modem.u_uart_tx.ticks");
+    s.rate = find<uint8_t>(top, "soc.u_modem.u_baud.bd_i");
+    s.tick = find<uint8_t>(top, "soc.u_modem.u_baud.tick_o");
+    s.ticked = find<uint8_t>(top, "ticked");
+    return s;
+}
+
 QuietSpan::QuietSpan(VSoc& top)
-    : top_(top), image_(sizeof(VSoc___024root)), othersImage_(image_.size()) {
-    for (const Member& m : members) {
-        const bool isResting = isIn(m.path, resting);
+    : top_(top), signals_(signalsOf(top)), image_(VSoc_state.size), othersImage_(image_.size()) {
+    for (const ModelMember& m : VSoc_state) {
+        const char* path = pathInSoc(m);
+        if (!path)
+            continue;
+        const bool isResting = isIn(path, resting);
         // All registers are in instances of soc.v, except for the output of the interrupt.
         const bool isOther =
-            !isResting && std::string(m.path).rfind("u_", 0) == 0 && !isIn(m.path, alone);
+            !isResting && std::string(path).rfind("u_", 0) == 0 && !isIn(path, alone);
         if (isResting)
             add(platform_, m.offset, m.size);
         if (isOther)
@@ -121,8 +139,8 @@ QuietSpan::QuietSpan(VSoc& top)
 }
 
 QuietSpan::Counters QuietSpan::counters() const {
-    const VSoc___024root& r = *top_.rootp;
-    return {r.CYCLES, r.PHASE, r.TIMER, r.PRESCALER, r.RX, r.TX};
+    const Signals& s = signals_;
+    return {*s.cycles, *s.phase, *s.timer, *s.prescaler, *s.rx, *s.tx};
 }
 
 void QuietSpan::takeImage() {
@@ -138,16 +156,15 @@ void QuietSpan::takeImage() {
 
 // Returns true if the whole state of the platform, except its counters, equals the image.
 bool QuietSpan::isPlatformLikeImage() {
-    const VSoc___024root& r = *top_.rootp;
-    copyInto(image_, r, r.tick_i);
-    copyInto(image_, r, r.sim_soc__DOT__ticked);
-    copyInto(image_, r, r.CYCLES);
-    copyInto(image_, r, r.PHASE);
-    copyInto(image_, r, r.PRESCALER);
-    copyInto(image_, r, r.TIMER);
-    copyInto(image_, r, r.RX);
-    copyInto(image_, r, r.TX);
-    const auto* now = reinterpret_cast<const unsigned char*>(&r);
+    const unsigned char* now = bytesOf(top_);
+    copyInto(image_, now, top_.tick_i);
+    copyInto(image_, now, *signals_.ticked);
+    copyInto(image_, now, *signals_.cycles);
+    copyInto(image_, now, *signals_.phase);
+    copyInto(image_, now, *signals_.prescaler);
+    copyInto(image_, now, *signals_.timer);
+    copyInto(image_, now, *signals_.rx);
+    copyInto(image_, now, *signals_.tx);
     return std::all_of(platform_.begin(), platform_.end(), [&](const auto& range) {
         const auto [from, to] = range;
         return std::memcmp(image_.data() + from, now + from, to - from) == 0;
@@ -219,7 +236,7 @@ bool QuietSpan::learn(const Counters& now) {
         return isFixed_;
     }
     if (ticks_ && !nullAge_) {
-        if (ticks_ > 1 || rx > 1 || tx > 1 || ((rx | tx) && top_.rootp->RATE < everyCarryTicks))
+        if (ticks_ > 1 || rx > 1 || tx > 1 || ((rx | tx) && *signals_.rate < everyCarryTicks))
             return false;
         rxStep_ = rx;
         txStep_ = tx;
@@ -229,7 +246,7 @@ bool QuietSpan::learn(const Counters& now) {
 }
 
 void QuietSpan::sample() {
-    ticks_ += top_.rootp->TICK;
+    ticks_ += *signals_.tick;
     ++since_;
     ++samples_;
     stirred_ = stirs_;
@@ -244,7 +261,7 @@ QuietSpan::Clocks QuietSpan::look(Clocks most) {
     if (most.platform < worth)
         return {};
     Counters now = counters();
-    if (now.phase & phaseCarry || top_.rootp->TICK)
+    if (now.phase & phaseCarry || *signals_.tick)
         return {}; // a tick is in progress
     if (!hasImage_) {
         takeImage();
@@ -294,7 +311,7 @@ void QuietSpan::lookAtOthers(Clocks& clocks, const Counters& now, uint64_t most)
     const uint64_t until = untilEvent(now, most, true);
     if (until < worthAlone)
         return;
-    const auto* state = reinterpret_cast<const unsigned char*>(top_.rootp);
+    const unsigned char* state = bytesOf(top_);
     const bool isNext = hasOthers_ && samples_ == othersAt_ + 1;
     if (!isNext) {
         for (const auto& [from, to] : others_)
@@ -329,7 +346,7 @@ void QuietSpan::replaced() {
 }
 
 uint64_t QuietSpan::untilCarry(uint64_t carry) const {
-    return step_ ? ((carry << 18) - 1 - (top_.rootp->PHASE & phaseMask)) / step_ : ~0ull;
+    return step_ ? ((carry << 18) - 1 - (*signals_.phase & phaseMask)) / step_ : ~0ull;
 }
 
 bool QuietSpan::stirs() const {
@@ -341,19 +358,19 @@ void QuietSpan::rest(bool rests) {
 }
 
 uint64_t QuietSpan::pass(uint64_t clocks) {
-    VSoc___024root& r = *top_.rootp;
-    const uint64_t low = r.PHASE & phaseMask;
+    Signals& s = signals_;
+    const uint64_t low = *s.phase & phaseMask;
     uint64_t passed = clocks;
     while (passed && low + passed * step_ > phaseMask && age(low + passed * step_) < nullAge_)
         --passed;
     const uint64_t phase = low + passed * step_, ticks = phase >> 18;
-    r.CYCLES += passed;
-    r.PHASE = static_cast<uint32_t>(phase & phaseMask);
-    r.PRESCALER = static_cast<uint8_t>((r.PRESCALER + ticks) & 31);
-    r.RX = static_cast<uint8_t>((r.RX + rxStep_ * ticks) & lastTick);
-    r.TX = static_cast<uint8_t>((r.TX + txStep_ * ticks) & lastTick);
+    *s.cycles += passed;
+    *s.phase = static_cast<uint32_t>(phase & phaseMask);
+    *s.prescaler = static_cast<uint8_t>((*s.prescaler + ticks) & 31);
+    *s.rx = static_cast<uint8_t>((*s.rx + rxStep_ * ticks) & lastTick);
+    *s.tx = static_cast<uint8_t>((*s.tx + txStep_ * ticks) & lastTick);
     if (timerRuns_)
-        r.TIMER += static_cast<uint32_t>(passed);
+        *s.timer += static_cast<uint32_t>(passed);
     before_ = counters();
     return clocks - passed;
 }

@@ -94,6 +94,17 @@ private:
         uint8_t prescaler, rx, tx; // prescaler: counts the carries of `phase`
     };
 
+    // The signals that are read and changed, in the state of the chip.
+    struct Signals {
+        uint64_t* cycles = nullptr;
+        uint32_t *phase = nullptr, *timer = nullptr;
+        uint8_t *prescaler = nullptr, *rx = nullptr, *tx = nullptr;
+        const uint8_t *rate = nullptr,
+                      *tick = nullptr;   // input and output of the baud rate's counter
+        const uint8_t* ticked = nullptr; // last value of the model's input tick_i
+    };
+
+    static Signals signalsOf(VSoc& top);
     Counters counters() const;
     void takeImage();
     bool isPlatformLikeImage();
@@ -105,6 +116,7 @@ private:
     uint64_t untilEvent(const Counters& now, uint64_t most, bool passesTicks) const;
 
     VSoc& top_;
+    Signals signals_;
     std::vector<unsigned char> image_; // state of the chip at the last full comparison
     bool hasImage_ = false;
     Counters before_{};       // counters at the last comparison

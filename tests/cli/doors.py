@@ -286,6 +286,11 @@ MISTAKES = {
     "--core-folders: expected existing folders of cores, got '",
     "./icesoc board show nucleo-qmtec": "did you mean nucleo-qmtech?",
     "./icesoc core wave frr Impulse": "; did you mean fir?",
+    "./icesoc core wave frr.vhdl": "; did you mean fir?",
+    "./icesoc core wave fir Impulsee": "; did you mean Impulse?",
+    "./icesoc core wave fir FirCore.RefusesNothink": "got no test of this name in ip/fir; did you "
+                                                     "mean RefusesNothing?",
+    "./icesoc core wave test_fsmc_bridge TooErly": "; did you mean TooEarly?",
     "./icesoc contract diff nowhere": "unknown commit BASE=nowhere",
     "./icesoc core remove fri": "ip/fri not found; did you mean fir?",
     "./icesoc core new Fir --lang vhdl": "expected words of small letters and digits",
@@ -383,7 +388,8 @@ class Mistakes(Work):
                       "run CORES=nobody", "run PROBE=u_fir.sent=1", "run APP=minimal",
                       "run THRESHOLD=300", "ip-test IP=fri", "synth DESIGN=scs", "test LABEL=rlt",
                       "regress NAME=Brust", "mutants BLOCK=busses", "bench ONLY=airr",
-                      "contract-diff BASE=nowhere"):
+                      "contract-diff BASE=nowhere", "wave IP=fri TEST=Impulse",
+                      "wave IP=fir TEST=Impulsee", "wave IP=fri.vhdl"):
             status, text = quickly("make", "-s", *wrong.split(),
                                    ICESOC_TREE=str(self.work / "tree"))
             self.assertEqual(status, 2, wrong)

@@ -16,6 +16,7 @@ HARDWARE = (*RTL, "synth")
 SEARCHED = (*ROOMS, "cmake", "tools")  # folders with tests and targets
 MODULE = re.compile(r"^ *(?:module|entity) +(\w+)", re.M | re.I)
 CASE = re.compile(r"^ *(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", re.M)
+INSTANCE = re.compile(r"^ *INSTANTIATE_\w+\(\s*(\w+)", re.M)  # of cases with parameters
 
 
 def files(folders, *endings):
@@ -142,10 +143,20 @@ def blocks(values=None):
     return sorted((found | set(cores())) - {"tests", "ip"})
 
 
-def cases(values=None):
-    """Returns the cases of the C++ tests as Suite.Case."""
-    return sorted({".".join(names) for text in texts(SEARCHED, "_test.cpp")
+def cases(values=None, folders=SEARCHED):
+    """Returns the cases of the C++ tests in folders as Suite.Case."""
+    return sorted({".".join(names) for text in texts(folders, "_test.cpp")
                    for names in CASE.findall(text)})
+
+
+def may_be_case(text, folders):
+    """Returns whether a text may select a case of the C++ tests in folders. A regular expression
+    may always do so, and a word if it is a part of a case's name. If the folders contain no cases,
+    every word may, because the tests may then be generated."""
+    names = [*cases(folders=folders),
+             *(name for each in texts(folders, "_test.cpp") for name in INSTANCE.findall(each))]
+    return not names or not re.fullmatch(r"[\w.]+", text) or \
+        any(re.search(text, name) for name in names)
 
 
 @expecting("a word of a test name")

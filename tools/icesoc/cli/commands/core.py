@@ -122,6 +122,27 @@ def rows_of(fst, build, core):
     return rows[:most]
 
 
+def check_wave(values):
+    """Fails if the core or the test is unknown. Called before anything is configured or built,
+    because that takes minutes."""
+    core, text = values.ip.removesuffix(".vhdl"), values.test
+    is_program = core.startswith("test_")
+    cores = choices.cores(values)
+    if not is_program and core not in cores:
+        raise Stop(f"unknown core '{core}': expected one of {' '.join(cores)}"
+                   + nearest(core, cores), 2)
+    folder = BuildFolder(values.build, values).core(core)
+    folders = choices.SEARCHED if is_program else (str(folder),)
+    if not values.ip.endswith(".vhdl") and not choices.may_be_case(text, folders):
+        names = [name.rpartition(".")[2] for name in choices.cases(folders=folders)]
+        parts = [word for name in names
+                 for words in ("{1}", "{2}")
+                 for word in re.findall(rf"(?=((?:[A-Z][a-z0-9]*){words}))", name)]
+        raise Stop(f"{option('test', text)}: expected the name of a test, or a part of it, got no "
+                   f"test of this name{'' if is_program else f' in {folder}'}"
+                   + nearest(text.rpartition(".")[2], [*names, *parts]), 2)
+
+
 def traced(values):
     """Returns the build folder of a test with a waveform, and the command that runs the test."""
     what = values.ip
@@ -165,6 +186,8 @@ def wave(values):
     if not what or not (values.test or what.endswith(".vhdl")):
         raise Stop("core wave: expected a core or test program, and a test: ./icesoc core "
                    "wave fir Impulse; or only CORE.vhdl: ./icesoc core wave fir.vhdl", 2)
+    if not values.built:
+        check_wave(values)
     build, words = traced(values)
     folder = Path("build/wave").absolute()
     folder.mkdir(parents=True, exist_ok=True)

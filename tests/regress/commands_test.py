@@ -6,6 +6,7 @@ Usage: commands_test.py commands_... work-folder build-folder
 """
 import os
 import re
+import shutil
 import signal
 import subprocess
 from pathlib import Path
@@ -253,6 +254,21 @@ class Cases(Project):
         self.assertEqual(Path("ip/cores.list").read_text(), "fir\n")
         self.assertTrue((mine / "ground.py").exists())
         self.bad("wave IP=mine TEST=Impulse", "'mine'.*fir")
+        # If the folder of a core or of a repository is deleted, the build continues without it.
+        mine = self.work / "repository/mine"
+        write(mine / "core.toml", "")
+        write(mine / "mine_test.cpp", "")
+        write(mine.parent / "cores.list", "fir\nmine\n")
+        self.good(f"ip-test IP=mine CORE_FOLDERS={mine.parent}")
+        self.has(f"^CORES:.*={mine.parent}/cores.list$", file="build/main/CMakeCache.txt")
+        shutil.rmtree(mine.parent)
+        self.good("ip-test IP=fir")
+        self.has(f"^icesoc: {mine} no longer exists; the build continues without it: "
+                 "CORE_FOLDERS=FOLDER adds a core again$")
+        self.has("^CORE_FOLDERS:.*=$", "^CORES:.*=.*/ip/cores.list$",
+                 file="build/main/CMakeCache.txt")
+        self.good("ip-test IP=fir")
+        self.lacks("no longer exists")
 
     def test_commands_nightly(self):
         """A step runs even if earlier steps failed, and each failure is reported."""

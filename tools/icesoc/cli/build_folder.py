@@ -16,6 +16,7 @@ from icesoc.util.lock import lock
 from icesoc.util.ninja import run_ninja
 from icesoc.util.process import run, tool
 from icesoc.util.rooms import rooms
+from icesoc.util.spelling import option
 
 DEFAULT_BOARD, DEFAULT_BRIDGE = "nucleo-qmtech", "async"
 ROOMS_OF_PROGRAMS = ";".join(rooms("program"))
@@ -96,6 +97,7 @@ class BuildFolder:
                 checked.write_text(packages_now(words))
             if self.ucos2:
                 self.set(UCOS2=os.path.abspath(self.ucos2))
+            self.forget_deleted_cores()
             if self.core_folders:
                 self.set(CORE_FOLDERS=";".join(map(str, self.other_cores())),
                          **({"CORES": str(self.chip_list())} if self.chip_list() else {}))
@@ -159,6 +161,21 @@ class BuildFolder:
         folders = self.core_folders or self.cached("CORE_FOLDERS")
         return [core for folder in folders.split(";") if folder
                 for core in cores_in(Path(folder).absolute())]
+
+    def forget_deleted_cores(self):
+        """Removes folders of cores that no longer exist from the configuration, unless the command
+        names the folders. CMake would refuse the missing folders, and every command would fail."""
+        folders = [folder for folder in self.cached("CORE_FOLDERS").split(";") if folder]
+        kept = [folder for folder in folders if os.path.isdir(folder)]
+        if self.core_folders or kept == folders:
+            return
+        gone = [folder for folder in folders if folder not in kept]
+        warn(f"{' '.join(gone)} no longer exist{'s' * (len(gone) == 1)}; the build continues "
+             f"without {'it' if len(gone) == 1 else 'them'}: {option('core-folders', 'FOLDER')} "
+             "adds a core again")
+        chip = self.cached("CORES")  # may be the cores.list of a deleted repository
+        self.set(CORE_FOLDERS=";".join(kept), **(
+            {"CORES": os.path.abspath("ip/cores.list")} if not os.path.isfile(chip) else {}))
 
     def chip_list(self):
         """Returns the path of the list of the chip's cores, or None if the command does not change

@@ -11,7 +11,8 @@ def option(name, values=()):
     values = [str(values)] if not isinstance(values, (list, tuple)) else values
     if not IS_MAKE:
         return " ".join([f"--{name}", *map(shlex.quote, values)])
-    return f"{name.upper()}={quoted(' '.join(values))}" if values else name.upper()
+    name = name.upper().replace("-", "_")
+    return f"{name}={quoted(' '.join(values))}" if values else name
 
 
 def switch(name):

@@ -6,6 +6,7 @@
 #include "link_backoff.h"
 
 #include "link_config.h"
+#include "link_frame.h"
 
 /* A loss is called quick if the radio reported it about as fast as it reports a delivered packet.
  * The modem has then made no retries, so the loss was not a collision: after a collision, the modem
@@ -13,11 +14,11 @@
  * after each further loss, and shrinks to a quarter after each delivered packet. The limit of the
  * pause grows with the peer's silence. */
 U32 link_noteAnswer(Link_Backoff* c, U32 now, int isDelivered, U32 silence, int isBusy) {
-    U32 took = now - c->answeredAt;
+    U32 took = now - c->begunAt;
     U32 last = LINK_REST_LAST + 4U * silence;
     int wasBusy = c->isBusy;
     c->quick -= c->quick / 128U;
-    c->answeredAt = now;
+    c->begunAt = LINK_BEFORE(now, c->readyAt) ? c->readyAt : now;
     c->isBusy = (U8)isBusy;
     if (isDelivered) {
         c->rest /= 4U;

@@ -24,9 +24,11 @@ typedef struct Link_Backoff {
     U8 isCalled; /* 1: the peer calls while this side sends a stream */
     /* 1: the radio has had packets to send, without a pause, since its last result */
     U8 isBusy;
-    U32 answeredAt; /* time of the last result of the radio, us */
-    U32 rest;       /* longest pause after the next loss, us */
-    U32 usualUs;    /* mean time per delivered packet while the radio is busy, us */
+    U32 readyAt; /* time at which the radio has received the newest packet, us */
+    /* time at which the radio could begin with the packet that it sends now, us */
+    U32 begunAt;
+    U32 rest;    /* longest pause after the next loss, us */
+    U32 usualUs; /* mean time per delivered packet while the radio is busy, us */
     /* share of recent packets that were lost quickly, that is without retries by the modem; 65,536
      * means all packets */
     U32 quick;
@@ -35,6 +37,9 @@ typedef struct Link_Backoff {
 /* Returns whether the peer makes calls while this side sends a stream and the peer sends no
  * stream. */
 #define LINK_IS_CALLED(c) ((c)->isCalled && !(c)->peers.isStream)
+
+/* Records that a packet is passed to the radio. */
+#define LINK_NOTE_PACKET(c, now) ((c)->readyAt = (now) + LINK_HAND_OVER_US)
 
 /* Records the radio's result for a packet at time `now`. `silence` is the time since the peer was
  * heard, us. `isBusy` is 1 if the radio has further packets to send. Returns the longest pause

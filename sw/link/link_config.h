@@ -126,9 +126,8 @@
 
 /* While the peer calls, the next packet of a stream is passed to the radio this long before the
  * next result of the radio is expected. The value is the time of the packet on a line of 250,000
- * baud (4.3 ms) and a margin. */
-#define LINK_HAND_OVER_US 5000U
-#define LINK_HAND_OVER_ENCRYPTED_US 6000U /* the same for a modem that encrypts */
+ * baud (4.2 ms) and a margin. */
+#define LINK_HAND_OVER_US 4500U
 
 /* Time after which a driver counts a packet without a result as lost. */
 #define LINK_ANSWER_LAST 3000000U

@@ -61,6 +61,7 @@ static int handOverAnswered(Link_Pacing* pacing) {
         pacing->env.port->transmit(pacing->env.context, pacing->packet, pacing->packed) != 0)
         return 0;
     radio->owners[(radio->first + radio->waiting++) % LINK_MOST_WAITING] = pacing->owner;
+    LINK_NOTE_PACKET(&pacing->backoff, pacing->env.now);
     ++pacing->handed;
     ++pacing->waiting;
     pacing->packed = pacing->heard = 0;
@@ -144,12 +145,8 @@ U32 link_paceByAnswer(Link_Pacing* pacing, int isDelivered, U32 silence) {
      * is not possible on a slow line, for which more than two packets may wait. */
     pacing->isHeld = 0;
     if (pacing->waiting && pacing->mostWaiting == 2U && LINK_IS_CALLED(&pacing->backoff)) {
-        U32 full = (U32)pacing->longest + env->codec->overhead;
-        U32 ahead = full > LINK_MAX_ENCRYPTED ? LINK_HAND_OVER_US : LINK_HAND_OVER_ENCRYPTED_US;
-        if (pacing->backoff.usualUs > ahead) {
-            pacing->isHeld = 1;
-            pacing->paceUntil += pacing->backoff.usualUs - ahead;
-        }
+        pacing->isHeld = 1;
+        pacing->paceUntil += pacing->backoff.usualUs - LINK_HAND_OVER_US;
     }
     if (rest) {
         pacing->paceUntil += env->port->random(env->context) % rest;

@@ -275,17 +275,23 @@ public:
 };
 
 // Two modems with serial lines of 111,111 baud, and the air, without any link layer. Their
-// throughput is the upper limit for a link.
+// throughput is the upper limit for a link. `rate` is the second modem's parameter BD.
 struct BareModems {
     struct End {
         End(RfChannel& channel, const XBee::Options& options) : modem(line, channel, options) {}
         TimedLine line;
         XBee modem;
     };
-    BareModems(const RfWeather& weather, uint64_t seed, bool encrypts, unsigned leastExponent)
+    BareModems(const RfWeather& weather, uint64_t seed, bool encrypts, unsigned leastExponent,
+               unsigned rate = 7)
         : air(seed), a(air, modemOptions(0, encrypts, leastExponent)),
-          b(air, modemOptions(1, encrypts, leastExponent)) {
+          b(air, options(encrypts, leastExponent, rate)) {
         air.weather = weather;
+    }
+    static XBee::Options options(bool encrypts, unsigned leastExponent, unsigned rate) {
+        XBee::Options o = modemOptions(1, encrypts, leastExponent);
+        o.set["BD"] = rate;
+        return o;
     }
     void step() {
         air.advance(now);
@@ -325,6 +331,62 @@ inline double floorMs(size_t out, size_t back, bool isEncrypted = false) {
         }
         times.push_back(static_cast<double>(w.now - start) / 1e6);
         w.now += 160'000'000;
+    }
+    std::sort(times.begin(), times.end());
+    return times[times.size() / 2];
+}
+
+// Returns the lower limit of a call during a stream, in ms: the median of many simulated calls. The
+// second modem always sends full packets; each packet is complete in the modem just before the
+// modem needs it. The first modem sends `out` bytes. The next packet after their arrival begins
+// with the reply, `back` bytes. A lost packet is sent again at once. RN is 2, and the second
+// modem's line has 250,000 baud.
+inline double floorDuringStreamMs(size_t out, size_t back, const RfWeather& weather,
+                                  bool isEncrypted) {
+    BareModems w(weather, 1, isEncrypted, 2, 250'000);
+    const size_t packet = isEncrypted ? LINK_MAX_ENCRYPTED : LINK_MAX_FRAME;
+    const std::vector<uint8_t> call(out, 1);
+    // `isDue`: the call has arrived, its reply has not; `isSent`: the current packet has the reply
+    bool isDue = false, isSent = false;
+    const auto sendPacket = [&](uint64_t now) {
+        std::vector<uint8_t> bytes(packet, 0);
+        std::fill_n(bytes.begin(), isDue ? back : 0, 1);
+        isSent = isDue;
+        w.b.line.send(bytes.data(), packet, now - packet * 40'000);
+    };
+    w.air.onPacket([&](uint64_t now, const RfPacket& sent, RfChannel::Outcome outcome) {
+        const bool isThere = outcome == RfChannel::Outcome::Delivered;
+        if (sent.from == 1) {
+            isDue = isDue && !(isSent && isThere);
+            sendPacket(now);
+        } else if (!isThere) {
+            w.a.line.send(call.data(), out, now - out * 90'000);
+        }
+    });
+    const auto arrived = [](const TimedLine& line) {
+        return static_cast<size_t>(std::count(line.received.begin(), line.received.end(), 1));
+    };
+    std::vector<double> times;
+    w.now += 10'000'000;
+    w.step(); // ends the boot of the modems
+    sendPacket(w.now);
+    for (uint64_t i = 0; i < 201; ++i) {
+        const uint64_t start = w.now;
+        bool isCalled = true;
+        w.a.line.received.clear();
+        w.b.line.received.clear();
+        w.a.line.send(call.data(), out, w.now);
+        for (; isCalled || w.now < start + 200'000'000 + i * 330'000; w.next()) {
+            w.step();
+            if (arrived(w.b.line) == out) {
+                isDue = true;
+                w.b.line.received.clear();
+            }
+            if (isCalled && arrived(w.a.line) == back) {
+                isCalled = false;
+                times.push_back(static_cast<double>(w.now - start) / 1e6);
+            }
+        }
     }
     std::sort(times.begin(), times.end());
     return times[times.size() / 2];

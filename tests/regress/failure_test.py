@@ -308,7 +308,8 @@ add_custom_target(test_w)
 
     def test_vhdl(self):
         """For a GHDL test, the report lists only files that GHDL compiles for it. In the waveform,
-        the instance of the first of these files comes first."""
+        the instance of the first of these files comes first, with the names of this instance for
+        signals that its parents contain as well."""
         join = "testbench/common/join_waves.sh"
         write(join, (TREE / join).read_text())
         write("cmake/vhdl_test.sh", '#!/bin/sh\n[ ! -e wrong ] && exit\n'
@@ -317,8 +318,9 @@ add_custom_target(test_w)
         scope, up = "$scope module ", "$upscope $end\n"
         write("cmake/t.vcd", "$timescale 1ns $end\n" + "".join(
             f"{scope}{name} $end\n$var wire 4 {key} {signal} $end\n" for name, key, signal in (
-                ("core_tb", "!", "count"), ("u_core", "#", "state"), ("u_inner", "&", "sum"),
-                ("u_leaf", "%", "carry"))) + 4 * up + "$enddefinitions $end\n#0\n" + "\n".join(
+                ("core_tb", "&", "result"), ("u_dut", "!", "count"), ("u_core", "#", "state"),
+                ("u_inner", "&", "sum"), ("u_leaf", "%", "carry"))) + 5 * up +
+              "$enddefinitions $end\n#0\n" + "\n".join(
             f"b{value:04b} {key}" if key else f"#{value}" for value, key in (
                 (0, "!"), (0, "#"), (0, "&"), (0, "%"), (50, ""), (1, "!"), (1, "#"), (1, "&"),
                 (1, "%"))) + "\n")
@@ -342,10 +344,10 @@ add_custom_target(test_w)
         self.regress("--name vhdl", 1)
         self.has(r"^        changed since it passed at [0-9a-f]+: ip/core/inner.vhd:7 \(1 line\)$",
                  "^Waveform of core.vhdl around clock 12 ")
-        self.has(r'"signals":\[\["core_tb.u_core.u_inner.sum"',
+        self.has(r'"signals":\[\["core_tb.u_dut.u_core.u_inner.sum"',
                  file="build/regress/report.html")
         rows = Path("build/regress/failures/core.vhdl-1.gtkw").read_text()
-        self.assertIn("\ncore_tb.u_core.u_inner.sum[3:0]\n", rows)
+        self.assertIn("\ncore_tb.u_dut.u_core.u_inner.sum[3:0]\n", rows)
         self.assertNotIn("u_leaf", rows)
 
     def test_flight(self):

@@ -189,6 +189,7 @@ class Signal:
     def __init__(self, scopes, name, bits):
         self.name, self.depth = ".".join([*scopes, name]), len(scopes)
         self.bits = bits  # 0: text
+        self.order: tuple = ()  # the name with the lowest order is shown if there are several
         self.changes = collections.deque(maxlen=MOST_CHANGES)  # (time, value), newest last
 
 
@@ -202,16 +203,17 @@ def shown(bits, width):
     return bits if len(bits) <= 1 else strange[0] if strange else f"{int(bits, 2):0{digits}x}"
 
 
-def read_vcd(text):
+def read_vcd(text, scope=""):
     """Returns the signals of a VCD file that change, and the first and last time of the file. A
-    signal with several names gets the outermost name."""
+    signal with several names gets the outermost name below `scope`, or else the outermost name."""
     signals, moments = {}, []
     _, variables, changes = vcd.read(text)
     for each in variables:
         if not each.name.startswith("smt_"):  # names that begin with smt_ are signals of the solver
             signal = Signal(each.scopes, each.name, each.width * (each.kind != "string"))
+            signal.order = scope not in each.scopes, signal.depth
             known = signals.get(each.key)
-            if not known or signal.depth < known.depth:
+            if not known or signal.order < known.order:
                 signals[each.key] = signal
     for now, key, value in changes:
         signal = signals.get(key)
@@ -234,9 +236,9 @@ def drawing_of(failure, room):
     signals. Signals with names that a converter has invented are left out. If the drawing exceeds
     `room` bytes, its older changes are left out, then the last signals."""
     try:
-        signals, moments = read_vcd(collect(["fst2vcd", "-f", failure.wave])[1]
-                                    if failure.wave.endswith(".fst")
-                                    else pathlib.Path(failure.wave).read_text())
+        text = collect(["fst2vcd", "-f", failure.wave])[1] if failure.wave.endswith(".fst") \
+            else pathlib.Path(failure.wave).read_text()
+        signals, moments = read_vcd(text, failure.scope)
     except (ValueError, IndexError, StopIteration, RuntimeError) as error:
         print(f"{failure.wave} is damaged, so the page does not draw it ({error})")
         return None

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 """doors: checks that ./icesoc and make accept the same options, report errors with advice, and
 never pass a value to a shell. lists.py tests the lists of commands."""
-import concurrent.futures, contextlib, importlib.util, io, json, os, shutil, subprocess, tempfile
-import time, unittest
+import concurrent.futures, contextlib, importlib.util, io, json, os, resource, shutil, subprocess
+import tempfile, time, unittest
 from pathlib import Path
 from types import SimpleNamespace
 from unittest import mock
@@ -422,6 +422,22 @@ class Mistakes(Work):
                               _ARGCOMPLETE_SUPPRESS_SPACE="1"))
                 self.assertIn(wanted, done.stdout, line)
 
+    def test_a_full_disk_leaves_the_old_files(self):
+        old, limit = "# a line\n" * 3000, resource.getrlimit(resource.RLIMIT_FSIZE)
+        (self.work / "wiring.svg").write_text(old)
+        (self.work / "cores.list").write_text(old)
+        self.addCleanup(resource.setrlimit, resource.RLIMIT_FSIZE, limit)
+        # every write beyond this limit fails, as on a full disk
+        resource.setrlimit(resource.RLIMIT_FSIZE, (20000, limit[1]))
+        self.assertEqual(ask("./icesoc", "board", "make", "nucleo-qmtech", "--out", self.work),
+                         (1, f"icesoc: cannot write {self.work}/wiring.svg: File too large\n"))
+        with contextlib.chdir(TREE), contextlib.redirect_stdout(io.StringIO()), \
+                self.assertRaisesRegex(Stop, "cannot write .*/cores.list: File too large"):
+            core_folder.put_into_repository(self.work, "low_pass")
+        for file in ("wiring.svg", "cores.list"):
+            self.assertEqual((self.work / file).read_text(), old)
+        self.assertEqual([*self.work.glob("*.part")], [])
+
     def test_where_one_may_not_write_what_to_do_is_said(self):
         theirs = self.work / "theirs"
         theirs.mkdir()
@@ -448,7 +464,7 @@ class Mistakes(Work):
         self.assertEqual((status, text), (127, "icesoc: program 'cmake' not found: "
                                           "./icesoc setup --tests installs missing packages\n"))
         self.assertEqual(ask("./icesoc", "commands", "--man", "/dev/full"),
-                         (1, "icesoc: No space left on device: /dev/full\n"))
+                         (1, "icesoc: cannot write /dev/full: No space left on device\n"))
 
     def test_an_interrupt_ends_all_with_one_message(self):
         self.interrupt("./icesoc", "build")

@@ -60,6 +60,9 @@ def whole(path):
     try:
         yield temporary
         os.replace(temporary, path)
+    except OSError as error:  # a failed write, for example on a full disk, has no file name
+        error.filename = error.filename or path
+        raise
     finally:
         with contextlib.suppress(FileNotFoundError):
             os.remove(temporary)

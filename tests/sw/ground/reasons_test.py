@@ -6,6 +6,7 @@ import unittest
 
 import Ice
 
+from mission_log import whole
 from reasons import reason_of
 
 
@@ -32,6 +33,13 @@ class Reasons(unittest.TestCase):
     def test_an_exception_of_the_vehicle_is_not_mistaken_for_one_of_the_ground(self):
         self.assertEqual(reason_of(Ice.UnknownException("::Ice::TimeoutException")),
                          "the servant reported ::Ice::TimeoutException")
+
+    def test_a_failed_write_names_its_file(self):
+        with self.assertRaises(OSError) as caught, whole("/dev/none/report.md"), \
+                open("/dev/full", "w") as file:
+            file.write("text")
+        self.assertEqual(reason_of(caught.exception),
+                         "/dev/none/report.md: No space left on device")
 
 
 if __name__ == "__main__":

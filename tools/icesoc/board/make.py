@@ -9,6 +9,8 @@ from pathlib import Path
 
 from icesoc.board import check, firmware, model, picture, simulator, ucf, wiring
 from icesoc.regs.model import Wrong
+from icesoc.util import files
+from icesoc.util.errors import Stop
 
 
 def for_build(board):
@@ -27,16 +29,16 @@ def for_bench(board):
             "page.md": wiring.page(board)}
 
 
-def write(files, folder):
+def write(texts, folder):
     """Writes the files with changed text, and leaves the others as they are. Returns the paths
     of all files."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    for name, text in files.items():
+    for name, text in texts.items():
         path = folder / name
         if not path.is_file() or path.read_text() != text:
-            path.write_text(text)
-    return [folder / name for name in files]
+            files.write(path, text)
+    return [folder / name for name in texts]
 
 
 def main():
@@ -46,7 +48,7 @@ def main():
             print("multiplexed" if board.muxed else "separate")
             return
         write(for_build(board), sys.argv[2])
-    except Wrong as e:
+    except (Wrong, Stop) as e:
         sys.exit(str(e))
 
 

@@ -17,6 +17,7 @@ from pathlib import Path
 
 from icesoc.synth.baseline import read_baseline
 from icesoc.util.errors import reason_of
+from icesoc.util.files import write
 
 KEYWORD = b"Description"  # keyword of the PNG chunk with the text
 
@@ -273,7 +274,7 @@ def correct(tree, given=None):
     was = readme.read_text()
     now = TRANSCRIPT.sub(lambda found: content(tree, MISSION) or found[0], was)
     if now != was:
-        readme.write_text(now)
+        write(readme, now)
         yield "README.md"
     for place, texts in PLACES.items():
         if place.endswith(".png"):
@@ -290,7 +291,7 @@ def correct(tree, given=None):
                     new = f"{int(value):,}" if "," in shown and "." not in value else value
                     now = now[:found.start(group)] + new + now[found.end(group):]
         if now != was:
-            page.write_text(now)
+            write(page, now)
             yield place
 
 

@@ -16,6 +16,7 @@ from icesoc.cli.command import command
 from icesoc.cli.options import BUILD, FILE, FOLDER, JOBS, SWITCH, TEXT, Option, one_of
 from icesoc.util.console import say
 from icesoc.util.errors import Stop, nearest
+from icesoc.util.files import write
 from icesoc.util.process import logged, output, run
 from icesoc.util.reserved import REFUSAL, RESERVED
 from icesoc.util.rooms import RTL
@@ -139,7 +140,7 @@ def put_into_repository(room, name):
             (room / file).write_text(text)
     listed = read_list(room / "cores.list")
     end = "" if listed.endswith("\n") or not listed else "\n"
-    (room / "cores.list").write_text(f"{listed}{end}{name}\n")
+    write(room / "cores.list", f"{listed}{end}{name}\n")
     say(f"Next: make -C {room} test; make -C {room} run calls it by radio")
 
 
@@ -251,7 +252,7 @@ def remove(values):
     if core not in others:
         shutil.rmtree(core)
     listed = Path("ip/cores.list")
-    listed.write_text(re.sub(rf"^[ \t]*{name}(?![^\s#]).*\n?", "", read_list(listed), flags=re.M))
+    write(listed, re.sub(rf"^[ \t]*{name}(?![^\s#]).*\n?", "", read_list(listed), flags=re.M))
     if (build / "build.ninja").exists():
         (build / f"files/{name}_slot.f").unlink(missing_ok=True)
         others = ";".join(str(folder) for folder in others if folder != core)

@@ -12,6 +12,7 @@ from icesoc.cli.options import BUILD, CORE_FOLDERS, FILE, FOLDER, JOBS, TEXT, WO
 from icesoc.regress.history import History
 from icesoc.util.console import warn
 from icesoc.util.errors import Stop
+from icesoc.util.files import write
 from icesoc.util.lock import lock
 from icesoc.util.process import logged, output, run, tool
 from icesoc.util.tree import commit
@@ -176,7 +177,7 @@ def compare(build, jobs, base, head=None):
                 output([*GIT, "describe", "--always", "--abbrev=10", which]).strip()
                 for which in (base, head or "--dirty=+")])]
         text = "\n".join(lines) + "\n"
-        Path("build/summary.md").write_text(text)
+        write("build/summary.md", text)
         print(text, end="")
     return 0
 

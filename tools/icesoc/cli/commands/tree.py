@@ -16,6 +16,7 @@ from icesoc.regs.model import Block
 from icesoc.release import version as product
 from icesoc.util.console import say
 from icesoc.util.errors import SKIPPED
+from icesoc.util.files import write
 from icesoc.util.lock import lock
 from icesoc.util.process import ICESOC, run
 from icesoc.util.table import Table
@@ -91,9 +92,9 @@ def commands(values):
     if values.completion:
         return say(completion.code())
     if values.man:
-        Path(values.man).write_text(manual())
+        write(values.man, manual())
     if values.schema:
-        Path(values.schema).write_text(flight.schema_text())
+        write(values.schema, flight.schema_text())
     if values.only and values.brief:
         return run_all(values.only)
     if values.brief:

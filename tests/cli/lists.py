@@ -4,11 +4,14 @@
 terminals."""
 import ast, contextlib, io, json, re, shlex, shutil, subprocess, sys, tempfile, unittest
 from pathlib import Path
+from unittest import mock
 
 from doors import TREE, ask, quickly
 from icesoc.cli import command, flight
 from icesoc.cli.commands import figures
 from icesoc.cli.commands.tree import manual
+from icesoc.regress import waves
+from icesoc.util import spelling
 from icesoc.util.errors import Stop
 from icesoc.util.ninja import run_ninja
 from icesoc.util.table import Table
@@ -161,9 +164,20 @@ class Lists(unittest.TestCase):
     def test_a_recording_that_is_cut_has_no_span(self):
         with tempfile.TemporaryDirectory() as work:
             for text, span in (('{"ns":0,"digest":1}\n{"ns":3000000000,"down":2}\n',
-                                "FROM=0.000 TO=3.000"), ('{"ns":0,"digest":1}\n{"ns":30', None)):
+                                ["--from 0.000", "--to 3.000"]),
+                               ('{"ns":0,"digest":1}\n{"ns":30', None)):
                 Path(work, "flight.jsonl").write_text(text)
                 self.assertEqual(flight.last_span(work), span)
+
+    def test_the_regression_finds_the_end_of_a_flight_in_its_log(self):
+        for is_make in (False, True):
+            with mock.patch.object(spelling, "IS_MAKE", is_make):
+                for out in ("fly", "my fly"):
+                    end = spelling.command("run", spelling.option("replay", out),
+                                           spelling.option("from", "1.5"),
+                                           spelling.option("to", "2.0"))
+                    found = waves.END_OF_FLIGHT.search(f"of its end: {end}\n")
+                    self.assertEqual((found[1].strip("'"), found[2]), (out, "2.0"))
 
     def test_pictures_need_a_report_of_all_designs(self):
         with tempfile.TemporaryDirectory() as work:

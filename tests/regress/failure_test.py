@@ -126,8 +126,8 @@ mission: the vision core's result differs from the C++ reference: 141 corners, n
 icesoc-sim: Cortex-M3: 748300 instructions; asleep 99.5 % of the time
 icesoc-sim: 2.0 s simulated, 37 packets on the air
 The mission failed (exit status 1).
-To write a waveform of its end: make run REPLAY='fly' FROM=1.500 TO=2.000
-To debug it backwards from its end: ./icesoc gdb --replay 'fly'
+To write a waveform of its end: ./icesoc run --replay fly --from 1.500 --to 2.000
+To debug it backwards from its end: ./icesoc gdb --replay fly
 """
 SIMULATOR = """#!/bin/sh
 echo "$@" >asked
@@ -204,7 +204,7 @@ class Cases(Project):
                  "^The longest: .* s ")
         self.assertEqual(re.search("^.* x  .*", self.said, re.M)[0],
                          "2 x  hdl/a/broken_proof.vh:2: assert (full || !taken);")
-        self.assertIn("broken", re.search("^    make test.*", self.said, re.M)[0])
+        self.assertIn("broken", re.search(r"^    \./icesoc test.*", self.said, re.M)[0])
         trace = "build/regress/failures/formal.broken.vcd"
         self.assertTrue(Path(trace).is_file())
         self.has('message="! error: unexpected operation mode',

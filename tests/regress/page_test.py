@@ -290,7 +290,7 @@ top.document.body.append("wider: " + [...document.querySelectorAll(".tabulator-c
         speed(60)
         measure(size="green", speed="green")
         size(40, state="changed since")
-        measure(size="grey   1 of 1 designs changed since: make synth")
+        measure(size="grey   1 of 1 designs changed since: ./icesoc synth")
         size(41)
         measure(size="red   *1 beyond their limits: whole 41 [(]at most 40[)]", tests="green",
                 speed="green")

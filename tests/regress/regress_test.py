@@ -65,7 +65,8 @@ class Cases(Project):
         self.regress("--seed 5", 1)
         self.has("4 passed, 2 failed, 0 skipped",
                  "^proofs *green *1 hold, 1 of them as before, from unchanged files$",
-                 r"make test NAME='\^test_b\\\.Bad\$' SEED=5", "1 x  SegFault without a word")
+                 r"\./icesoc test --name '\^test_b\\\.Bad\$' --seed 5",
+                 "1 x  SegFault without a word")
         self.has("value 5 is not 7", file="build/regress/failures/test_b.Bad-5.log")
         self.has('failures="1" errors="1"', '<error message="SegFault without a word [(]SEED=5[)]"',
                  '<failure message="value 5 is not 7 &lt;/script&gt; [(]SEED=5[)]"',
@@ -359,7 +360,14 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.needs("--changed --name '^script.says'", "other tools")
         git("checkout -q tests/room/t.sh")
         self.regress("--prepare --name '^test_a.Nobody'", 2)
-        self.has(r"no test matches --name '\^test_a.Nobody'; .ctest --test-dir")
+        self.has(r"no test matches --name '\^test_a.Nobody'; .*/regress --build .* --list. lists",
+                 r"^labels: ")
+        # the command that prints the names works
+        listing = re.search("`(.*)` lists", self.said)[1].partition(" ")[2]
+        self.regress(listing)
+        self.has("^test_a.One$")
+        self.regress("--by-make --name '^test_b.Bad$'", 1)
+        self.has(r"make test NAME='\^test_b\\\.Bad\$' SEED=1")
         self.regress("--block romo", 2)
         self.has("no test matches --block 'romo'; did you mean room[?]; ")
         git("checkout -q HEAD~1 tests/room/CMakeLists.txt")

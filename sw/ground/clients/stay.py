@@ -62,7 +62,7 @@ def is_wanted(args):
         return False
     if gateway_program(args):
         return True
-    print("stay: no gateway, so the page cannot make calls: make run LIVE=1 builds the gateway",
+    print("stay: no gateway, so the page cannot make calls: LIVE=1 or --live builds the gateway",
           file=sys.stderr)
     return False
 

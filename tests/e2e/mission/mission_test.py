@@ -433,8 +433,8 @@ class Cases(Script):
             self.ask("pkill", "-INT", "-f", f"icesoc-sim.*{self.out}")
             self.assertEqual(run.wait(), 130, Path("log").read_text())
         # The failed mission prints a command that shows the end of the flight.
-        span = re.search(f"^To write a waveform of its end: make run REPLAY='{self.out}' "
-                         r"FROM=([\d.]+) TO=([\d.]+)$", Path("log").read_text(), re.M)
+        span = re.search(f"^To write a waveform of its end: ./icesoc run --replay {self.out} "
+                         r"--from ([\d.]+) --to ([\d.]+)$", Path("log").read_text(), re.M)
         self.replay(self.out, "--from", span[1], "--to", span[2],
                     expected="the recording ends here|bit by bit")
         self.ask("pgrep", "-f", f"mission.py.*{self.out}", status=1)  # the ground station has ended

@@ -35,7 +35,7 @@ def of_flight(folder, vehicle):
     found = {folder: objects.flight(folder)} if folder else objects.flights()
     if not any(found.values()):
         place = f"in {folder}" if folder else "below build/"
-        raise Stop(f"no flight is in progress {place}: start one with make run LIVE=1, or give "
+        raise Stop(f"no flight is in progress {place}: start one with ./icesoc run --live, or give "
                    "--flight, --device or --gateway", 4)
     folder, live = next(iter(found.items()))
     name = vehicle or next(iter(live.vehicles))

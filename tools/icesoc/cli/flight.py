@@ -330,9 +330,9 @@ def recorded(folder):
 
 
 def last_span(out):
-    """Returns the options FROM= and TO= that select the end of a recorded flight. FROM is the last
-    checkpoint that is at least 10 ms before the end. Returns None if the recording is incomplete,
-    for example after the disk was full."""
+    """Returns the options `from` and `to` that select the end of a recorded flight. `from` is the
+    last checkpoint that is at least 10 ms before the end. Returns None if the recording is
+    incomplete, for example after the disk was full."""
     last = before = finish = 0.0
     recording = Path(out) / RECORDING
     if not recording.read_bytes().endswith(b"\n"):
@@ -341,4 +341,5 @@ def last_span(out):
         finish = row.get("ns", 0) / 1e9 or finish
         if "digest" in row:
             before, last = last, finish
-    return f"FROM={last if finish - last > 0.01 else before:.3f} TO={finish:.3f}"
+    return [option("from", f"{last if finish - last > 0.01 else before:.3f}"),
+            option("to", f"{finish:.3f}")]

@@ -307,7 +307,7 @@ def main():
               if not proof.module.endswith("_proof") and proof.is_in_tree()]
     if not proofs:
         sys.exit(f"mutants: no proof has a name that begins with {options.block}: "
-                 "ctest -N -L formal lists them")
+                 f"{options.build}/tests/regress/regress --list --label formal lists them")
     with only_one(out, "mutants"):
         return measure(proofs, options, out)
 

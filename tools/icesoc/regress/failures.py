@@ -8,6 +8,7 @@ import re
 import shutil
 
 from icesoc.regress.junit import Result
+from icesoc.util import spelling
 from icesoc.util.files import write
 
 # Lines that a test runner prints, or that end the log of a flight. They cannot be the reason of a
@@ -176,8 +177,9 @@ def examine(results, tests, out):
         short = re.sub(r"0x[0-9a-fA-F]+|[0-9]+(\.[0-9]+)?", "#", re.sub("[^ ]*/", "", words))
         exact = re.sub(r"([.+*?()\[\]{}|^$\\])", r"\\\1", result.name)
         base = f"{folder}/{re.sub('[^A-Za-z0-9_.-]', '_', result.name)}"
-        failure = Failure(result, words, short[:160], f"make test NAME='^{exact}$' "
-                          f"SEED={result.seed}", log=f"{base}-{result.seed}.log", about=words)
+        again = spelling.command("test", spelling.option("name", f"^{exact}$"),
+                                 spelling.option("seed", result.seed))
+        failure = Failure(result, words, short[:160], again, log=f"{base}-{result.seed}.log", about=words)
         find_assertion(failure)
         if place := re.search(r"(?:^|\n)(?:[.][.]/)*(\S+:\d+): Failure\n", result.log):
             failure.place = os.path.relpath(place[1]) if place[1][0] == "/" else place[1]

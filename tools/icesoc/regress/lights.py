@@ -2,6 +2,7 @@
 """lights: summarises a run in seven statuses: tests, proofs, plan, mutants, coverage, size, speed.
 A status is green, red, or grey (not measured, or the sources have changed since). Each status is
 computed from separate figures, so that one kind of bug turns only one status red."""
+from icesoc.util.spelling import command
 from icesoc.util.tree import tree_state
 
 
@@ -86,7 +87,7 @@ def of_size(utilisation):
     """Returns the status of size, from the result of `make synth`. Designs that failed turn it red;
     designs that were not measured with the current sources turn it grey."""
     if not utilisation:
-        return missing("size", "make synth")
+        return missing("size", command("synth"))
     if utilisation["failures"]:
         return judge("size", "", "designs failed", utilisation["failures"])
     states = list(utilisation["states"].values())
@@ -95,8 +96,8 @@ def of_size(utilisation):
     if counts:
         number, _, state = counts[0].partition(" ")
         text = ", ".join([f"{number} of {len(states)} designs {state}", *counts[1:]])
-        return light("size", "grey", text + ": make synth")
-    return of_entries("size", utilisation["entries"], "make synth")
+        return light("size", "grey", f"{text}: {command('synth')}")
+    return of_entries("size", utilisation["entries"], command("synth"))
 
 
 def of_plan(plan):

@@ -12,6 +12,7 @@ import re
 import sys
 import time
 
+from icesoc.util import spelling
 from icesoc.util.errors import Interrupted, Stop, nearest
 from icesoc.util.lock import lock, only_one
 from icesoc.util.ninja import run_ninja
@@ -75,7 +76,10 @@ def parse(words):
     add("--plan", action="store_true", help="only check that each pattern of tests/plan.toml "
         "matches a test")
     add("--list", action="store_true", help="only print the chosen tests")
-    return parser.parse_args(words)
+    add("--by-make", action="store_true", help="print commands of make in place of ./icesoc")
+    options = parser.parse_args(words)
+    spelling.IS_MAKE = options.by_make
+    return options
 
 
 class Regression:
@@ -193,9 +197,10 @@ class Regression:
         labels = sorted({label for test in tests for label in test.labels})
         similar = nearest(o.block, {word for test in tests for word in test.blocks()}) \
             if o.block else ""
-        print(f"regress: no test matches{given}{similar}; `ctest --test-dir {o.build} -N` lists "
-              "the names. A plain word is a whole word of a name; --name 'fir.*' also matches "
-              "parts of words.\n"
+        regress = o.build / "tests/regress/regress"
+        print(f"regress: no test matches{given}{similar}; `{regress} --build {o.build} --list` "
+              "lists the names. A plain word is a whole word of a name; --name 'fir.*' also "
+              "matches parts of words.\n"
               f"labels: {' '.join(labels)}\n"
               f"folders: {' '.join(sorted({test.place for test in tests}))}", file=sys.stderr)
         return 2
@@ -316,7 +321,8 @@ def summary(data, failures, out):
     longest = sorted(((row[2], row[0]) for row in data["results"]), reverse=True)[:3]
     print("\nThe longest:", *(f"{name} {seconds:.1f} s" for seconds, name in longest))
     if data["seeds"]:
-        print(f"\n{len(data['seeds'])} failing seeds are kept: make regress KEPT=1 runs them again")
+        again = spelling.command("regress", spelling.switch("kept"))
+        print(f"\n{len(data['seeds'])} failing seeds are kept: {again} runs them again")
     stopped = f"stopped {data['stopped']}: " if data["stopped"] else ""
     print(f"\n{text_of(data['lights'])}{stopped}{data['passed']} passed, {data['failed']} failed, "
           f"{data['skipped']} skipped in {data['seconds']:.0f} s; {out}/report.html", flush=True)

@@ -17,6 +17,8 @@ from icesoc.util.rows import read as read_rows
 
 CLOCKS_PER_SECOND = 1e8  # frequency of the chip in a flight, Hz
 SECONDS = {"ms": 1e-3, "us": 1e-6, "ns": 1e-9, "ps": 1e-12, "fs": 1e-15}  # GHDL's units of time
+END_OF_FLIGHT = re.compile("(?:REPLAY=|--replay )('[^']+'|[^ ]+) (?:FROM=|--from )[0-9.]+ "
+                           "(?:TO=|--to )([0-9.]+)")  # in the log of a failed flight
 FIRST_CORE = 2  # slot
 SOURCES = (".v", ".sv", ".vh", ".vhd", ".vhdl")
 MOST_CHANGES, FEWEST_CHANGES, MOST_SIGNALS = 400, 25, 200  # limits of a drawing: changes and
@@ -39,8 +41,8 @@ def scene_of(failure, test):
     log = failure.result.log
     if failure.result.end.startswith("Hang"):  # the repetition would hang as well
         return None
-    if match := re.search(r"make run REPLAY='([^']+)' FROM=[0-9.]+ TO=([0-9.]+)", log):
-        scene = Scene("icesoc-sim", int(float(match[2]) * CLOCKS_PER_SECOND), match[1])
+    if match := END_OF_FLIGHT.search(log):
+        scene = Scene("icesoc-sim", int(float(match[2]) * CLOCKS_PER_SECOND), match[1].strip("'"))
         for event in read_rows(pathlib.Path(scene.flight, "events.jsonl")):
             # the core that last reported an event to the processor is shown or, without one, the
             # modem

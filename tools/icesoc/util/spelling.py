@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""spelling: writes options in messages as the user types them: as options of ./icesoc, or as
-variables of make."""
+"""spelling: writes commands and options in messages as the user types them: with ./icesoc, or with
+make."""
 import shlex
 
 IS_MAKE = False  # make started this program; the entry points set it
@@ -18,6 +18,11 @@ def option(name, values=()):
 def switch(name):
     """Returns an option without a value: `--open` or `OPEN=1`."""
     return option(name, "1" if IS_MAKE else ())
+
+
+def command(name, *options):
+    """Returns a command with options: `./icesoc run --live` or `make run LIVE=1`."""
+    return " ".join([f"make {name}" if IS_MAKE else f"./icesoc {name}", *options])
 
 
 def quoted(text):

@@ -20,6 +20,7 @@ from icesoc.util.console import say, warn
 from icesoc.util.errors import Interrupted, Stop
 from icesoc.util.lock import lock
 from icesoc.util.process import end, run, start, tool, until, wait
+from icesoc.util import spelling
 from icesoc.util.spelling import option, switch
 
 FROM = Option("from", SECONDS, "start of the waveform, simulated time")
@@ -259,9 +260,11 @@ def explain_failure(values, status, has_flown):
         text += (f"It cannot be replayed, because {out}/flight.jsonl is incomplete; check whether "
                  "the disk is full.\n")
     if span:
-        text += f"To write a waveform of its end: make run REPLAY='{out}' {span}\n"
+        end = spelling.command("run", option("replay", out), *span)
+        text += f"To write a waveform of its end: {end}\n"
         if values.cpu == "m3":
-            text += f"To debug it backwards from its end: ./icesoc gdb --replay '{out}'\n"
+            gdb = spelling.command("gdb", option("replay", out))
+            text += f"To debug it backwards from its end: {gdb}\n"
     sys.stderr.write(text)
 
 

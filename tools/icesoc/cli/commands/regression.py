@@ -16,6 +16,7 @@ from icesoc.cli.options import (BLOCK, BUILD, CORE_FOLDERS, COUNT, FRESH, JOBS, 
 from icesoc.regress.history import History
 from icesoc.regress.tests import write_numbers
 from icesoc.regress.unchanged import Passes
+from icesoc.util import spelling
 from icesoc.util.console import say
 from icesoc.util.errors import Stop, nearest
 from icesoc.util.lock import lock
@@ -64,7 +65,8 @@ def test(values):
         build.ninja("regress")
         numbers = build / "chosen.tests"
         run([build / "tests/regress/regress", *([] if values.built else ["--prepare"]), "--select",
-             numbers, "--build", build.folder, *selection(values, "folder")])
+             numbers, "--build", build.folder, *selection(values, "folder"),
+             *(["--by-make"] if spelling.IS_MAKE else [])])
         chosen = ["-I", numbers.absolute()]
     else:
         build.ninja()
@@ -127,7 +129,7 @@ def regress(values):
     build = configured(values, "regress", tests=True)
     switches = [
         f"--{word}" for word, on in (("changed", values.changed), ("rerun-failed", values.failed),
-                                     ("kept", values.kept)) if on]
+                                     ("kept", values.kept), ("by-make", spelling.IS_MAKE)) if on]
     return run([build / "tests/regress/regress", "--make", "--build", build.folder, "--jobs",
                 at_once(values), "--seed", values.seed, "--repeat", values.repeat, "--waves",
                 values.waves, *selection(values, "block"), *switches], check=False,

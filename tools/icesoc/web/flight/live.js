@@ -187,7 +187,7 @@ async function look() {
         $('phase').textContent = state.over ? ['the mission is over', state.found === undefined ? '' : `${state.found} corners`, verdict].filter(Boolean).join(', ') : state.air ? 'flying' : 'waiting for the simulator';
     } catch (error) {
         $('phase').className = 'bad';
-        $('phase').textContent = 'the mission has ended, and its page with it (make run LIVE=1 keeps it)';
+        $('phase').textContent = 'the mission has ended, and its page with it (LIVE=1 or --live keeps it)';
         wait = 2000;
     }
     setTimeout(look, wait);

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""mutants_test: tests run.py and drawn.py with small designs.
+"""mutants_test: tests run.py and drawn.py, and the exit status of proofs, with small designs.
 
-Usage: mutants_test.py run|drawn work-folder verilators-runtime.a
+Usage: mutants_test.py run|drawn|prove work-folder [verilators-runtime.a]
 """
 import json
 import os
@@ -183,6 +183,24 @@ class Cases(Script):
         self.bugs(wrong=(TWICE, ""))
         self.draw(2, "nothing")
         self.has("no proof has a name that begins with nothing")
+
+    def test_prove(self):
+        """A proof that cannot run ends with another status than a proof that fails."""
+        write("hdl/small/pair.v", PAIR)
+        write("hdl/small/parent.v", "module parent(input a);\n    lost u_a (.a(a));\nendmodule\n")
+        write("bus/none.v", "")
+        write("ip/none", "")
+
+        def prove(module, status, *said):
+            self.ask(f"{TREE}/tools/python", "-m", "icesoc.proof.prove", module, "4", self.work,
+                     f"build/{module}", status=status)
+            self.has(*said)
+        prove("pair", 0, "^pair: proven")
+        prove("paar", 2, "^paar: no paar.v below bus, hdl, ip or testbench/sim$")
+        prove("parent", 2, "Module .*lost.* referenced in module .*parent.* is not part",
+              "^parent: Yosys cannot read the module")
+        edit("hdl/small/pair.v", "assert (same_o == a_i)", "assert (same_o != a_i)")
+        prove("pair", 1, "^pair: an assertion fails")
 
     def a_flip_flop_is_found_by_its_signal(self):
         """Yosys creates the flip-flops of a line in an order that depends on other modules."""

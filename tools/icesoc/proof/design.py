@@ -171,4 +171,5 @@ class Module:
         (work / "yosys.log").write_text(ran.stdout)
         if ran.returncode:
             print(ran.stdout, end="")
-            sys.exit(1)
+            print(f"{self.name}: Yosys cannot read the module (above)", file=sys.stderr)
+            sys.exit(2)

@@ -86,8 +86,8 @@ begin
         wait until falling_edge(clk); -- settled
         if out_valid = '1' and out_ready = '1' then
           assert to_integer(signed(result)) = wanted(got)
-            report "result " & to_string(got) & " is " & to_string(to_integer(signed(result))) &
-                   ", the model expects " & to_string(wanted(got)) severity failure;
+            report "result(" & to_string(got) & "): expected " & to_string(wanted(got)) & ", got " &
+                   to_string(to_integer(signed(result))) severity failure;
           assert saturated = '0' or abs (2 * wanted(got) + 1) = 65535
             report "saturated inside the range" severity failure;
           got := got + 1;

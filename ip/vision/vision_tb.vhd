@@ -155,8 +155,8 @@ begin
     bus_addr <= std_logic_vector(to_unsigned(VISION_FOUND, 4));
     wait for 1 ns;
     assert to_integer(unsigned(bus_rdata)) = index
-      report "FOUND is " & to_string(to_integer(unsigned(bus_rdata))) & ", the model expects " &
-             to_string(index) severity failure;
+      report "FOUND: expected " & to_string(index) & ", got " &
+             to_string(to_integer(unsigned(bus_rdata))) severity failure;
     report "vision: " & to_string(index) & " records equal the model's";
     done <= true;
     wait;

@@ -79,7 +79,8 @@ REASONS = {
     "%Error: m.v:1:44: syntax error, unexpected ';', expecting TYPE-IDENTIFIER":
         "{}\n    1 | module m(input a); assign b = c +;\n%Error: Exiting due to 1 error(s)",
     "m.v:1: ERROR: syntax error, unexpected ';'": "{}",
-    "e2.vhd:2:44:@0ms:(assertion failure): dark": "{}\nghdl:error: assertion failed",
+    "result(2): expected 5, got 4": "/a/e2.vhd:2:44:@0ms:(assertion failure): {}\n"
+                                    "ghdl:error: assertion failed\nfir: vectors of SEED=1",
     "SUMMARY: AddressSanitizer: heap-buffer-overflow u.cpp:2 in main":
         "==13123==ERROR: AddressSanitizer: heap-buffer-overflow on address 0x602000000014\n{}",
     "u.cpp:2:47: runtime error: signed integer overflow: 2147483647 + 1": "begun\n{}",
@@ -312,7 +313,7 @@ add_custom_target(test_w)
         join = "testbench/common/join_waves.sh"
         write(join, (TREE / join).read_text())
         write("cmake/vhdl_test.sh", '#!/bin/sh\n[ ! -e wrong ] && exit\n'
-              'echo "core_tb.vhd:5:9:@120ns:(assertion error): differs"\n'
+              'echo "$PWD/ip/core/core_tb.vhd:5:9:@120ns:(assertion error): differs"\n'
               '[ -z "${WAVE:-}" ] || vcd2fst "${0%/*}/t.vcd" "$WAVE"\nexit 1\n')
         scope, up = "$scope module ", "$upscope $end\n"
         write("cmake/t.vcd", "$timescale 1ns $end\n" + "".join(
@@ -342,6 +343,7 @@ add_custom_target(test_w)
         write("wrong", "")
         self.regress("--name vhdl", 1)
         self.has(r"^        changed since it passed at [0-9a-f]+: ip/core/inner.vhd:7 \(1 line\)$",
+                 "^1 x  differs$", "^        at ip/core/core_tb.vhd:5$",
                  "^Waveform of core.vhdl around clock 12 ")
         self.has(r'"signals":\[\["core_tb.u_dut.u_core.u_inner.sum"',
                  file="build/regress/report.html")

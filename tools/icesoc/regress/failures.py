@@ -33,6 +33,9 @@ EQUALITY = re.compile(r"(?m)^Expected equality of these values:"
                       r"\n +(.*)(?:\n +Which is: (.*))?\n +(.*)(?:\n +Which is: (.*))?$")
 # GoogleTest's line about an unexpected exception; the description can have several lines.
 THROWN = re.compile(r'(?m)^C\+\+ exception with description "((?:.|\n)*?)" thrown in .*\.$')
+# GHDL's line about a failed assertion: file and line, then the text of the assertion.
+ASSERTED = re.compile(r"(?m)^(\S+\.vhdl?:\d+):\d+:@\w+:\(assertion \w+\): (.*)$")
+PLACE = re.compile(r"(?:^|\n)(?:[.][.]/)*(\S+:\d+): Failure\n")  # in GoogleTest's log
 CONDITION = re.compile(r"(?m)^Value of: (.*)\n +Actual: (.*)\nExpected: (.*)$")
 
 
@@ -43,8 +46,8 @@ class Failure:
     # the reason without its numbers; failures with the same bucket probably have the same cause
     bucket: str = ""
     repeat: str = ""  # command that repeats the test
-    # place of the failure as printed by GoogleTest, such as "tests/sw/link/link_test.cpp:185", or
-    # ""
+    # place of the failure as printed by GoogleTest or GHDL, such as
+    # "tests/sw/link/link_test.cpp:185", or ""
     place: str = ""
     changed: str = ""  # text about files that have changed since the test passed, or ""
     log: str = ""  # path of the log
@@ -95,11 +98,13 @@ def comparison(match):
 
 
 def reason_of(log):
-    """Returns the reason in a test's log: GoogleTest's lines after the first "Failure"; otherwise
-    the first compiler message about a file, the first line about an error, or the last line. If an
-    exception ends in a colon, the next line is included. From a diff, the first removed line and
-    the line that replaces it are included."""
+    """Returns the reason in a test's log: the text of a failed assertion in VHDL, or GoogleTest's
+    lines after the first "Failure"; otherwise the first compiler message about a file, the first
+    line about an error, or the last line. If an exception ends in a colon, the next line is
+    included. From a diff, the first removed line and the line that replaces it are included."""
     last, of_file, of_value, failure = "", "", "", None
+    if asserted := ASSERTED.search(log):
+        return asserted[2]
     # the description of a failed test, which Python's unittest prints, is not a reason
     log = re.sub(r"(?m)^((?:ERROR|FAIL): test_.*\n)(?:.*\n)*?-{70}$", r"\1", log)
     log = CONDITION.sub(r"\1 is \2, not \3", EQUALITY.sub(comparison, log))
@@ -179,9 +184,10 @@ def examine(results, tests, out):
         base = f"{folder}/{re.sub('[^A-Za-z0-9_.-]', '_', result.name)}"
         again = spelling.command("test", spelling.option("name", f"^{exact}$"),
                                  spelling.option("seed", result.seed))
-        failure = Failure(result, words, short[:160], again, log=f"{base}-{result.seed}.log", about=words)
+        failure = Failure(result, words, short[:160], again, log=f"{base}-{result.seed}.log",
+                          about=words)
         find_assertion(failure)
-        if place := re.search(r"(?:^|\n)(?:[.][.]/)*(\S+:\d+): Failure\n", result.log):
+        if place := PLACE.search(result.log) or ASSERTED.search(result.log):
             failure.place = os.path.relpath(place[1]) if place[1][0] == "/" else place[1]
         trace = re.search(r"trace: (\S+[.]vcd)", result.log)  # proofs print this line
         if trace and os.path.exists(trace[1]):

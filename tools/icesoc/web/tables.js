@@ -3,6 +3,19 @@
 // tables: tables by Tabulator and charts by uPlot, in the page's colours. If the build could not
 // download these libraries, a table is plain and has all rows, and a chart is a table of its points.
 
+// Returns a list of the cells that do not fit into a row of a narrow page; empty cells are left out.
+function collapsed(fields) {
+  const list = element("table");
+  for (const {title, value} of fields) {
+    const node = value instanceof Node ? value : document.createTextNode(value ?? "");
+    if (!node.textContent.trim() && !node.childElementCount) continue;
+    const row = list.insertRow();
+    row.insertCell().append(element("strong", title));
+    row.insertCell().append(node);
+  }
+  return list.rows.length ? list : "";
+}
+
 // Shows rows in `place`, replacing its content. A column is [title, value(row), cell(row),
 // Tabulator's options]. The value is used to sort, to filter, and for the download; the cell is shown
 // (a text or an element; default: the value).
@@ -74,7 +87,7 @@ function table(place, columns, rows, options = {}) {
   });
   const tabulator = place.drawn = new Tabulator(box, {
     data: rows.map(record), layout: "fitColumns", maxHeight: "560px", renderVertical: rows.length > 100 ? "virtual" : "basic",
-    responsiveLayout: place.clientWidth < 800 && "collapse", dataTree: Boolean(options.children), dataTreeFilter: true, dataTreeStartExpanded: row => options.open?.(row.getData().row) ?? false,
+    responsiveLayout: place.clientWidth < 800 && "collapse", responsiveLayoutCollapseFormatter: collapsed, dataTree: Boolean(options.children), dataTreeFilter: true, dataTreeStartExpanded: row => options.open?.(row.getData().row) ?? false,
     columnDefaults: {headerSortTristate: true, sorter: (a, b) => a < b ? -1 : a > b ? 1 : 0}, placeholder: "nothing",
     columns: columns.map((column, i) => {
       const number = rows.length > 0 && rows.every(row => typeof column[1](row) === "number"), wide = widest(column) + (number ? 32 : 28);

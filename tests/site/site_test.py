@@ -5,7 +5,7 @@ build.
 
 Usage: site_test.py CASE WORK-FOLDER
 """
-import sys
+import os, sys, tempfile, unittest.mock
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -84,6 +84,15 @@ class Cases(Script):
         self.assertEqual(text, "/** Returns it. */\nint f(void);\nint a; /**< bytes */\n")
         self.assertEqual(doxygen_filter.convert("typedef BUFFERS(1, 2) All;\n", "f.h"),
                          "typedef struct All All;\n")
+
+    def test_browser(self):
+        """A browser that a test has started leaves no files behind."""
+        with tempfile.TemporaryDirectory() as folder, \
+                unittest.mock.patch.object(tempfile, "tempdir", folder), \
+                unittest.mock.patch.dict(os.environ, {"TMPDIR": folder}):
+            with Browser() as browser:
+                browser.open("about:blank")
+            self.assertEqual(os.listdir(folder), [])
 
     def test_broken_link(self):
         """A browser can read the site from files, without a server: its scripts run, and the reader

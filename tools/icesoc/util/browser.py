@@ -16,8 +16,8 @@ class Browser:
 
     def __init__(self, *options, width=1400, height=1000, home=None):
         """home: folder for the profile and certificates; by default a temporary folder."""
-        self.home = home or tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
-        folder = home or self.home.name
+        self.temporary = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)
+        folder = home or self.temporary.name
         commands, self.send_to = os.pipe()
         self.read_from, answers = os.pipe()
 
@@ -31,7 +31,9 @@ class Browser:
              "--remote-debugging-pipe", f"--user-data-dir={folder}",
              "--hide-scrollbars", f"--window-size={width},{height}", *options, "about:blank"],
             close_fds=False, preexec_fn=connect, stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL, env={**os.environ, "HOME": str(folder)})
+            # Chromium leaves its temporary files behind, because it is killed
+            stderr=subprocess.DEVNULL, env={**os.environ, "HOME": str(folder),
+                                            "TMPDIR": self.temporary.name})
         os.close(commands)
         os.close(answers)
         self.stream, self.number, self.session, self.errors = b"", 0, None, []
@@ -50,8 +52,7 @@ class Browser:
         self.process.wait()
         os.close(self.send_to)
         os.close(self.read_from)
-        if isinstance(self.home, tempfile.TemporaryDirectory):
-            self.home.cleanup()
+        self.temporary.cleanup()
 
     def receive(self):
         while b"\0" not in self.stream:

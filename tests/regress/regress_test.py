@@ -49,9 +49,16 @@ foreach(n soon radio tame)
   set_tests_properties(test_${n}_NOT_BUILT PROPERTIES LABELS "${n};x")
 endforeach()
 """
-HANG = """#include <unistd.h>
+HANG = """#include <pthread.h>
+#include <unistd.h>
+static void* rest(void* p) { pause(); return p; }
 static void spin(volatile int hangs) { while (hangs) {} }
-int main(void) { spin(access("../../../../flicker", F_OK) == 0); return 0; }
+int main(void) {
+    pthread_t other;
+    pthread_create(&other, 0, rest, 0);
+    spin(access("../../../../flicker", F_OK) == 0);
+    return 0;
+}
 """
 LATE = "add_test(NAME test_late_NOT_BUILT COMMAND false)\n"
 
@@ -164,9 +171,27 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.has("^1 passed, 1 failed",
                  "^1 x  Hang, ended after [2-9] s of CPU time, usually 0.. s, in spin, called by "
                  "main: Aborted")
-        self.has("^Stack of test_h:$", "^#0 .*spin [(]",
+        # the thread that waits comes last
+        self.has("^Stack of test_h:$", "^Thread 1 .*\n#0 .*spin [(](.*\n)*Thread 2 .*\n#0 .*pause",
                  file="build/regress/failures/script.Wraps-1.log")
         self.has('<error message="Hang, ended after', file="build/regress/junit.xml")
+
+    def test_stack(self):
+        """The stack of a hang begins with the thread that uses the CPU, and names of functions have
+        no types."""
+        text = "\n".join(["[New LWP 8]", 'Thread 2 (Thread 0x7f (LWP 8) "t"):',
+                          "#0  wait (private=0) at ./futex.h:57",
+                          'Thread 1 (Thread 0x7e (LWP 7) "t"):',
+                          "#0  0x55 in (anonymous namespace)::Fir_Hangs_Test::TestBody() ()",
+                          "#1  0x56 in void testing::Run<testing::Test, void>(int (*)()) ()",
+                          "#2  0x57 in bool Core<F<int> >::call<bool>(int) ()"])
+        for busy, first in (("7", "1"), ("8", "2"), ("", "1")):
+            threads = execution.stacks_of(text, lambda thread: int(thread == busy))
+            self.assertEqual([thread[0].split()[1] for thread in threads],
+                             [first, "1" if first == "2" else "2"])
+        self.assertEqual([*map(execution.function_of, execution.stacks_of(
+            text, lambda thread: 0)[0][1:])],
+            ["Fir_Hangs_Test::TestBody", "testing::Run", "Core::call"])
 
     def test_stopped(self):
         """After Ctrl-C, or the end of the terminal, the page, JUnit and the history contain the

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """execution: runs selected tests with CTest, prints the progress, and ends hangs."""
 import contextlib
+import functools
 import os
 import pathlib
 import re
@@ -137,12 +138,40 @@ def process_of(name, running):
     return processes[list(running).index(name)] if len(processes) == len(running) else 0
 
 
+def cpu_ticks(pid, thread):
+    try:
+        fields = pathlib.Path(f"/proc/{pid}/task/{thread}/stat").read_text().rpartition(")")[2]
+        return sum(map(int, fields.split()[11:13]))
+    except GONE:
+        return 0
+
+
+def stacks_of(text, ticks):
+    """Returns GDB's stacks of a program, a list of lines for each thread. The thread that has used
+    the most CPU time comes first; if no thread has used any, the first thread. ticks: function that
+    returns the CPU time of a thread."""
+    threads = re.split(r"(?m)^(?=Thread \d+ \()", text)[1:]
+
+    def order(thread):
+        number, process = re.match(r"Thread (\d+) \((?:.*?LWP (\d+))?", thread).groups()
+        return -ticks(process), int(number)
+    return [re.findall(r"(?m)^(?:#|Thread ).*", thread) for thread in sorted(threads, key=order)]
+
+
+def function_of(frame):
+    """Returns the name of the function in a line of GDB's stack, without its types."""
+    name = re.sub(r"^#\d+ +(0x\w+ in )?", "", frame).replace("(anonymous namespace)::", "")
+    while (plain := re.sub(r"<[^<>]*>", "", name)) != name:
+        name = plain
+    return (name.partition("(")[0].split() or [""])[-1]
+
+
 def end_hang(process, build):
     """Ends a test's processes. Returns the functions that the first of its programs was executing,
     and the stacks of all programs. The programs are aborted, so that they print the chip's state
     (testbench/common/tell_on_abort.h)."""
     below = [process, *descendants(process)]
-    stacks = ""
+    stacks, names = "", []
     for pid in below:
         # ending an earlier process may also have ended this one
         with contextlib.suppress(OSError):
@@ -151,14 +180,17 @@ def end_hang(process, build):
                 continue
             text = collect(["timeout", 60, "gdb-multiarch", "-nx", "-batch", "-p", pid, "-ex",
                         "thread apply all backtrace 40"])[1]
-            frames = re.findall(r"(?m)^(?:#|Thread ).*", text) or text.splitlines()[-1:]
+            threads = stacks_of(text, functools.partial(cpu_ticks, pid))
+            frames = sum(threads, []) or text.splitlines()[-1:]
+            names = names or [*map(function_of, threads[0][1:] if threads else [])]
             stacks += "\n".join([f"Stack of {os.path.basename(program)}:", *frames, ""])
             os.kill(pid, signal.SIGABRT)
             time.sleep(1)
     for pid in below:
         with contextlib.suppress(OSError):
             os.kill(pid, signal.SIGKILL)
-    names = re.findall(r"(?m)^#\d+ +(?:0x\w+ in )?([\w:]+)", stacks)[:3]
+    # the functions of GoogleTest say nothing about the test
+    names = [name for name in names if name.strip("?") and not name.startswith("testing::")][:3]
     return ", in " * bool(names) + ", called by ".join(names), stacks
 
 

@@ -3,7 +3,8 @@
 # board.cmake: selects the board for which the firmware and the simulator are built. The pins
 # (board_pins.h), constraints (board.ucf) and wires (board_wires.inc) of the board are generated
 # from boards/BOARD/board.toml.
-set(BOARD nucleo-qmtech CACHE STRING
+set(DEFAULT_BOARD nucleo-qmtech)
+set(BOARD ${DEFAULT_BOARD} CACHE STRING
   "Board of the firmware and the simulator: a folder of boards/, or the path of a file board.toml")
 set(board_file ${CMAKE_SOURCE_DIR}/boards/${BOARD}/board.toml)
 if(BOARD MATCHES "[.]toml$")

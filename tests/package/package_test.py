@@ -286,6 +286,7 @@ cc -std=c90 -ffunction-sections -fdata-sections -o by_pkg_config -Imade \\
         self.use("vvp", "-n", "bridge.vvp")
         self.has("^PASS$")
         self.use("verilator", "--binary", "--timing", "-Wno-fatal", "-O0", "--Mdir", "verilated",
+                 "-MAKEFLAGS", "OPT_FAST=-O0 OPT_SLOW=-O0 OPT_GLOBAL=-O0",
                  "--top-module", "fsmc_bridge_tb", "-f", lists, bench, env=hdl)
         self.use("verilated/Vfsmc_bridge_tb")
         self.has("^PASS$")

@@ -39,11 +39,16 @@ def mirror():
     return debian[0] if debian else "http://deb.debian.org/debian"
 
 
+def stored(checksum):
+    """Returns the path at which the cache stores a download."""
+    return CACHE / "foreign" / checksum
+
+
 def kept(url, checksum, part=None):
     """Returns the path of a download in the cache, after downloading it if necessary. `part` is a
     regular expression: if it is given, only the text that its group matches is checked and
     stored."""
-    file = CACHE / "foreign" / checksum
+    file = stored(checksum)
     if not file.exists():
         # imported only when needed, because the import takes a fifth of the time in which a command
         # starts
@@ -70,7 +75,9 @@ def kept(url, checksum, part=None):
 
 def released(path, checksum):
     """Returns the path of a released source, downloaded from Debian's archive."""
-    return kept(f"{mirror()}/pool/main/{path}", checksum)
+    # apt-get needs nearly a second, so it looks for the mirror only before a download.
+    file = stored(checksum)
+    return file if file.exists() else kept(f"{mirror()}/pool/main/{path}", checksum)
 
 
 def unpack(archive, folder, target, suffix=""):

@@ -390,10 +390,11 @@ function(icesoc_verilate name)
     COMMAND ${unchanged} restore ${dir}
     DEPENDS ${deps} ${unchanged} VERBATIM COMMENT "Verilating ${A_TOP} as ${name}")
   # Verilator's makefile appends -Os; OPT_FAST overrides it, which doubles the measured speed.
+  # The model of the chip is compiled as three files.
   set(makefile ${CMAKE_SOURCE_DIR}/cmake/model.mk)
   add_custom_command(OUTPUT ${lib}
     COMMAND ${CMAKE_COMMAND} -E env --unset=MAKEFLAGS CCACHE_DIR=$ENV{CCACHE_DIR}
-            ${environment} make -s -j2 -C ${dir} -f ${makefile} ${class}__ALL.a
+            ${environment} make -s -j3 -C ${dir} -f ${makefile} ${class}__ALL.a
             CLASS=${class} STATE=${state} "CXX=${CCACHE} ${compiler}" "OPT_FAST=${fast}"
             OPT_GLOBAL=-O2 "USER_CPPFLAGS=-fPIC -I${CMAKE_SOURCE_DIR}/testbench/common" ARCHIVE=1
     DEPENDS ${written} ${headers} ${makefile} ${A_CHECKS}

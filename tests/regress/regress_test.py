@@ -175,6 +175,15 @@ sys.exit(regress.main(["--name", "Wraps|a.One"]))""", status=1)
         self.has("^Stack of test_h:$", "^Thread 1 .*\n#0 .*spin [(](.*\n)*Thread 2 .*\n#0 .*pause",
                  file="build/regress/failures/script.Wraps-1.log")
         self.has('<error message="Hang, ended after', file="build/regress/junit.xml")
+        # `make test` and `core test` end it as well
+        self.ask(TREE / "tools/python", "-c", """import sys
+from icesoc.regress import ctest, execution
+execution.SHORTEST_HANG = 2
+sys.argv[1:] = ["--test-dir", "build/main", "--end-hangs", "-R", "Wraps|a.One"]
+sys.exit(ctest.main())""", status=8)
+        self.has("a.One .* Passed", "^        #0 .*spin [(]",
+                 "^    script.Wraps: Hang, ended after [2-9] s of CPU time, usually 0.. s, in "
+                 "spin, called by main$")
 
     def test_stack(self):
         """The stack of a hang begins with the thread that uses the CPU, and names of functions have

@@ -6,6 +6,7 @@ notes of tests that passed (lines that begin with `note: `), each skipped test w
 each failed test with the reason. The failed tests come last, because a CI system or a terminal may
 keep only the end of the output.
 After Ctrl-C, TERM or HUP it ends the tests, and FILE contains the tests that have finished.
+`--end-hangs` ends a test that hangs, as a regression does, and prints its stacks.
 """
 
 import contextlib
@@ -15,17 +16,54 @@ import re
 import subprocess
 import sys
 import tempfile
+import textwrap
+import threading
 import time
 
+from icesoc.regress.execution import Progress
 from icesoc.regress.failures import reason_of
+from icesoc.regress.history import History
 from icesoc.regress.junit import ended, finished, read_junit, write_junit
 from icesoc.util.errors import Interrupted
 from icesoc.util.process import (adopt_orphans, end_descendants, hear_signals, reading, start,
                                  wait, wait_for)
 
 
+FAILED = 8  # CTest's exit status if a test has failed
 # A run of more tests prints no notes: they are about a core that a user is working on.
 MOST_WITH_NOTES = 50
+
+
+class Watch(Progress):
+    """Ends tests that hang. CTest prints the progress."""
+
+    def __init__(self, history):
+        super().__init__([], history, 1)
+        self.history = history
+
+    def start(self, name):
+        self.usual[name] = self.history.usual(name)
+        super().start(name)
+
+    def end(self, name, status, seconds):
+        self.running.pop(name, None)
+
+    def _show(self, keep):
+        pass
+
+
+@contextlib.contextmanager
+def watching(watch, build):
+    """Watches the tests of a build folder in a thread. Without `watch`, does nothing."""
+    done = threading.Event()
+    thread = threading.Thread(target=watch.watch, args=[done, build], daemon=True) \
+        if watch else None
+    if thread:
+        thread.start()
+    yield
+    done.set()
+    if thread:
+        thread.join()
 
 
 def reason_for_skipping(text):
@@ -48,15 +86,21 @@ def write_finished(folder, results, ends, total):
           + f": {' '.join(failed)}" * bool(failed), flush=True)
 
 
-def run(words, results):
-    """Runs CTest. Returns its exit status, and whether it was stopped."""
+def run(words, results, watch=None):
+    """Runs CTest. Returns its exit status, and whether it was stopped. watch: Watch that ends
+    tests that hang, or None."""
     ends, total = {}, 0
+    build = words[words.index("--test-dir") + 1]
 
     def hear(line):
         nonlocal total
+        if watch and (begun := re.match(r" *Start +\d+: (\S+)", line)):
+            watch.start(begun[1])
         if end := ended(line):
             name, outcome, seconds, total = end
             ends[name] = outcome, seconds
+            if watch:
+                watch.end(name, outcome, seconds)
         with contextlib.suppress(OSError):  # the terminal is gone
             print(line, end="", flush=True)
     # CTest gets a separate process group. Otherwise Ctrl-C would reach the tests, and CTest would
@@ -65,7 +109,8 @@ def run(words, results):
                     stdout=subprocess.PIPE, text=True, errors="replace")
     output_ended = reading(program, hear)
     try:
-        wait_for(output_ended)
+        with watching(watch, str(pathlib.Path(build).resolve())):
+            wait_for(output_ended)
         status = wait(program)
         if results.exists() or status < 128:
             return status, False
@@ -79,13 +124,26 @@ def run(words, results):
         status = stop.status
     # CTest was stopped, by us or by a signal, before it wrote its JUnit file, which it does only
     # when it ends.
-    write_finished(words[words.index("--test-dir") + 1], results, ends, total)
+    write_finished(build, results, ends, total)
     return status, True
 
 
-def print_summary(results, stopped):
-    """Prints the notes of passed tests, then the skipped and the failed tests with their reasons.
-    If the run was stopped, write_finished has already printed the names of the failed tests."""
+def fail(results, hangs, path, status):
+    """Marks the tests that hung as failed, also in the JUnit file. Returns the exit status. A
+    script may report success although its program hung and was ended."""
+    for result in results:
+        if result.name in hangs:
+            result.status, (result.end, stacks) = "failed", hangs[result.name]
+            result.log += stacks
+    now = datetime.datetime.now().astimezone().isoformat(timespec="seconds")
+    write_junit(path, results, now, lambda result: (result.end or reason_of(result.log), ""))
+    return status or FAILED
+
+
+def print_summary(results, stopped, hangs):
+    """Prints the notes of passed tests, then the skipped and the failed tests with their reasons,
+    and the stacks of tests that hung. hangs: name -> (reason, stacks). If the run was stopped,
+    write_finished has already printed the names of the failed tests."""
     if len(results) <= MOST_WITH_NOTES:
         for result in results:
             if result.status == "passed":
@@ -96,20 +154,26 @@ def print_summary(results, stopped):
         if chosen and not (stopped and status == "skipped"):
             print(f"\n{status.capitalize()}, {len(chosen)}:")
             for result in chosen:
-                print(f"    {result.name}: {reason(result.log) or 'no output'}")
+                why, stacks = hangs.get(result.name, (reason(result.log) or "no output", ""))
+                print(f"    {result.name}: {why}")
+                print(textwrap.indent(stacks, "        "), end="")
 
 
 def main():
     hear_signals()
     with tempfile.TemporaryDirectory() as folder:
-        words = sys.argv[1:]
+        words = [word for word in sys.argv[1:] if word != "--end-hangs"]
+        watch = Watch(History(costs=pathlib.Path("tests/costs.txt"))) \
+            if "--end-hangs" in sys.argv else None
         if "--output-junit" not in words:
             words += ["--output-junit", f"{folder}/results.xml"]
         path = pathlib.Path(words[words.index("--output-junit") + 1]).resolve()
         path.unlink(missing_ok=True)
-        status, stopped = run(words, path)
+        status, stopped = run(words, path, watch)
         results = read_junit(path) if path.exists() else []
-    print_summary(results, stopped)
+        if watch and watch.hangs:
+            status = fail(results, watch.hangs, path, status)
+    print_summary(results, stopped, watch.hangs if watch else {})
     return status
 
 

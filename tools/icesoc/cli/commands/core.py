@@ -57,8 +57,8 @@ def test(values):
     build.ninja(f"tests_of_{core}")
     if core not in build.cached("TESTED_CORES").split(";"):
         raise Stop(f"{core} has no test: {core}_test.cpp not found in the core's folder")
-    return build.ctest("-R", rf"^(test_ip_{core}[.]|{core}[.]vhdl$)", tests=values.jobs,
-                       junit=f"junit-{core}.xml", SEED=values.seed)
+    return build.ctest("--end-hangs", "-R", rf"^(test_ip_{core}[.]|{core}[.]vhdl$)",
+                       tests=values.jobs, junit=f"junit-{core}.xml", SEED=values.seed)
 
 
 @command("core synth", [CORE, CORE_FOLDERS, CHIP, BUILD, JOBS], make="ip-synth",

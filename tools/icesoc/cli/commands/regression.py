@@ -56,7 +56,7 @@ def test(values):
     build = BuildFolder(values.build, values).prepare(tests=True)
     some, tests, seed = values.folder or values.name or values.label, at_once(values), {
         "SEED": values.seed, "FRESH": "1" if values.fresh else ""}
-    chosen = []
+    chosen = ["--end-hangs"]
     # the tests with this label belong to a configuration of CTest; -C selects it
     if values.label == "zeroc":
         build.ninja()
@@ -67,7 +67,7 @@ def test(values):
         run([build / "tests/regress/regress", *([] if values.built else ["--prepare"]), "--select",
              numbers, "--build", build.folder, *selection(values, "folder"),
              *(["--by-make"] if spelling.IS_MAKE else [])])
-        chosen = ["-I", numbers.absolute()]
+        chosen += ["-I", numbers.absolute()]
     else:
         build.ninja()
         return every_test(build, values, tests, seed)
@@ -100,7 +100,9 @@ def changed_tests(build, values, tests, seed, label=""):
     write_numbers(numbers, some)
     (build / "junit.xml").unlink(missing_ok=True)
     try:
-        return build.ctest("-I", numbers.absolute(), tests=tests, check=False, **seed)
+        # tests with sanitizers take longer than usual
+        return build.ctest(*([] if label else ["--end-hangs"]), "-I", numbers.absolute(),
+                           tests=tests, check=False, **seed)
     finally:  # also after Ctrl-C: junit.xml then has the finished tests
         passes.note(build / "junit.xml")
 

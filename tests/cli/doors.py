@@ -286,6 +286,7 @@ MISTAKES = {
     "--core-folders: expected existing folders of cores, got '",
     "./icesoc board show nucleo-qmtec": "did you mean nucleo-qmtech?",
     "./icesoc core wave frr Impulse": "; did you mean fir?",
+    "./icesoc core wave fir (": "--test '(': expected a regular expression",
     "./icesoc core wave frr.vhdl": "; did you mean fir?",
     "./icesoc core wave fir Impulsee": "; did you mean Impulse?",
     "./icesoc core wave fir FirCore.RefusesNothink": "got no test of this name in ip/fir; did you "

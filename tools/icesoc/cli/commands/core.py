@@ -131,6 +131,11 @@ def check_wave(values):
     if not is_program and core not in cores:
         raise Stop(f"unknown core '{core}': expected one of {' '.join(cores)}"
                    + nearest(core, cores), 2)
+    try:
+        re.compile(text)
+    except re.error:
+        raise Stop(f"{option('test', text)}: expected a regular expression; .* matches any text",
+                   2) from None
     folder = BuildFolder(values.build, values).core(core)
     folders = choices.SEARCHED if is_program else (str(folder),)
     if not values.ip.endswith(".vhdl") and not choices.may_be_case(text, folders):
@@ -205,4 +210,7 @@ def wave(values):
         warn(f"{name} failed: {log}")
     if os.environ.get("DISPLAY") and shutil.which("gtkwave"):
         return run(["gtkwave", fst, save], check=False)
+    if not shutil.which("gtkwave"):
+        return say(f"{fst}: open it with a viewer, such as GTKWave, which ./icesoc setup --tests "
+                   "installs")
     say(f"gtkwave {fst} {save}")

@@ -289,8 +289,8 @@ MISTAKES = {
     "./icesoc core wave fir (": "--test '(': expected a regular expression",
     "./icesoc core wave frr.vhdl": "; did you mean fir?",
     "./icesoc core wave fir Impulsee": "; did you mean Impulse?",
-    "./icesoc core wave fir FirCore.RefusesNothink": "got no test of this name in ip/fir; did you "
-                                                     "mean RefusesNothing?",
+    "./icesoc core wave fir FirCore.RefusesEmty": "got no test of this name in ip/fir; did you "
+                                                     "mean RefusesEmpty?",
     "./icesoc core wave test_fsmc_bridge TooErly": "; did you mean TooEarly?",
     "./icesoc contract diff nowhere": "unknown commit BASE=nowhere",
     "./icesoc core remove fri": "ip/fri not found; did you mean fir?",

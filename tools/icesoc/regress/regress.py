@@ -319,7 +319,8 @@ def summary(data, failures, out):
     if data["flaky"]:
         print("\nFlaky:", *data["flaky"])
     longest = sorted(((row[2], row[0]) for row in data["results"]), reverse=True)[:3]
-    print("\nThe longest:", *(f"{name} {seconds:.1f} s" for seconds, name in longest))
+    if longest:
+        print("\nThe longest:", *(f"{name} {seconds:.1f} s" for seconds, name in longest))
     if data["seeds"]:
         again = spelling.command("regress", spelling.switch("kept"))
         print(f"\n{len(data['seeds'])} failing seeds are kept: {again} runs them again")

@@ -173,7 +173,12 @@ struct CameraAlone::Parts {
             const unsigned char* now = bytesOf(model.rootp);
             marked.assign(now, now + state.size);
         }
-        // Computes one clock; `eval` is the function that evaluates the model.
+        // Computes one clock; in the first one, the model also runs its initial blocks.
+        void tick() {
+            model.tick_i = !model.tick_i;
+            model.eval();
+        }
+        // Computes a later clock quickly; `eval` is the function that evaluates the model.
         template <class Root> void tick(void (*eval)(Root*)) {
             model.tick_i = !model.tick_i;
             eval(model.rootp);
@@ -211,10 +216,8 @@ void CameraAlone::Parts::prepare() {
         return;
     isReady = true;
     for (unsigned clock = 0; clock < 2; ++clock) { // until the constant inputs have been sampled
-        camera.model.tick_i = !camera.model.tick_i;
-        camera.model.eval();
-        memory.model.tick_i = !memory.model.tick_i;
-        memory.model.eval();
+        camera.tick();
+        memory.tick();
     }
     std::map<std::string, const ModelMember*> places;
     for (const ModelMember& member : VSoc_state)

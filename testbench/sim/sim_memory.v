@@ -38,17 +38,11 @@ module sim_memory (
 
     reg  ticked = 1'b0;
     wire clk_i = tick_i != ticked;
-    reg [63:0] rd_data;
-    reg        cmd_full, wr_full, rd_empty, calib_done;
-    reg [1:0]  low;
+    `include "sampled_mcb.vh"
+    reg [1:0] low;
     always @(posedge clk_i) begin
-        low        <= low_i;
-        ticked     <= tick_i;
-        rd_data    <= mcb_rd_data_i;
-        cmd_full   <= mcb_cmd_full_i;
-        wr_full    <= mcb_wr_full_i;
-        rd_empty   <= mcb_rd_empty_i;
-        calib_done <= mcb_calib_done_i;
+        ticked <= tick_i;
+        low    <= low_i;
     end
     wire rst = low[1], none = low[0];
 

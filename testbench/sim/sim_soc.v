@@ -72,17 +72,9 @@ module sim_soc #(
 `else
     wire clk_i = tick_i != ticked;
 `endif
-
-    reg [63:0] rd_data;
-    reg        cmd_full, wr_full, rd_empty, calib_done;
-    always @(posedge clk_i) begin
-        ticked     <= tick_i;
-        rd_data    <= mcb_rd_data_i;
-        cmd_full   <= mcb_cmd_full_i;
-        wr_full    <= mcb_wr_full_i;
-        rd_empty   <= mcb_rd_empty_i;
-        calib_done <= mcb_calib_done_i;
-    end
+    always @(posedge clk_i)
+        ticked <= tick_i;
+    `include "sampled_mcb.vh"
 
 `ifdef RESTS
     // The simulator's copies of soc.v and platform.v use these clocks (rest.awk). The platform's

@@ -11,7 +11,8 @@
 
 struct ModelMember {
     size_t offset, size; // bytes
-    const char* path;    // path of the signal in the top module
+    // path of the signal in the top module; empty for a variable that is not part of the design
+    const char* path;
 };
 
 struct ModelState {

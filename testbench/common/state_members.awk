@@ -4,8 +4,9 @@
 # `class`___024root, and lists the signals with the prefix `top`. The list is the constant
 # `class`_state (model_state.h). If `slot` is set, the list is the function stateOf
 # (registers_apart.h).
-# Two kinds of variables that Verilator adds are not listed: random values for reads beyond the end
-# of an array, and variables that take writes beyond the end of an array.
+# Two kinds of variables that Verilator adds are not signals: random values for reads beyond the end
+# of an array, and variables that take writes beyond the end of an array. Their path is empty, and
+# the function stateOf does not contain them.
 
 BEGIN {
     root = class "___024root"
@@ -29,10 +30,9 @@ END {
             "members + sizeof members / sizeof members[0]};"
 }
 /__DOT____V/ && slot { next } # variables that Verilator adds
-/__DOT____V(xrand|lvbound)/ { next }
 /;$/ && match($0, "[ ]" top "[A-Za-z0-9_]*;$") {
     name = substr($0, RSTART + 1, RLENGTH - 2)
-    path = substr(name, length(top) + 1)
+    path = name ~ /__DOT____V(xrand|lvbound)/ ? "" : substr(name, length(top) + 1)
     gsub(/__DOT__/, ".", path)
     gsub(/__BRA__/, "[", path)
     gsub(/__KET__/, "]", path)

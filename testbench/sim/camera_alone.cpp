@@ -74,6 +74,8 @@ bool begins(const std::string& path, const std::string& with) {
 // Returns true for a signal that may be a register of a block in both models. Verilator may name a
 // register that drives a port after the port, in the scope outside of the block.
 bool isCopied(const std::string& path) {
+    if (path.empty())
+        return false;
     for (const char* block :
          {"soc.u_camera.", "soc.u_platform.u_memory.", "u_gate_memory.",
           "soc.__Vcellout__u_camera__", "soc.u_platform.__Vcellout__u_memory__"})

@@ -123,19 +123,34 @@ QuietSpan::Signals QuietSpan::signalsOf(VSoc& top) {
 
 QuietSpan::QuietSpan(VSoc& top)
     : top_(top), signals_(signalsOf(top)), image_(VSoc_state.size), othersImage_(image_.size()) {
+    size_t at = 0; // end of the last member that is not in remainder_
     for (const ModelMember& m : VSoc_state) {
+        const bool isSignal = *m.path;
         const char* path = pathInSoc(m);
-        if (!path)
-            continue;
-        const bool isResting = isIn(path, resting);
+        const bool isResting = path && isIn(path, resting);
         // All registers are in instances of soc.v, except for the output of the interrupt.
         const bool isOther =
-            !isResting && std::string(path).rfind("u_", 0) == 0 && !isIn(path, alone);
+            path && !isResting && std::string(path).rfind("u_", 0) == 0 && !isIn(path, alone);
         if (isResting)
             add(platform_, m.offset, m.size);
         if (isOther)
             add(others_, m.offset, m.size);
+        if (isResting || !isSignal) {
+            if (at < m.offset)
+                add(remainder_, at, m.offset - at);
+            at = m.offset + m.size;
+        }
     }
+    add(remainder_, at, image_.size() - at);
+}
+
+// Returns true if the state equals the image in all of the ranges.
+bool QuietSpan::isLike(const Image& image, const Ranges& ranges) const {
+    const unsigned char* state = bytesOf(top_);
+    return std::all_of(ranges.begin(), ranges.end(), [&](const auto& range) {
+        const auto [from, to] = range;
+        return std::memcmp(image.data() + from, state + from, to - from) == 0;
+    });
 }
 
 QuietSpan::Counters QuietSpan::counters() const {
@@ -165,10 +180,7 @@ bool QuietSpan::isPlatformLikeImage() {
     copyInto(image_, now, *signals_.timer);
     copyInto(image_, now, *signals_.rx);
     copyInto(image_, now, *signals_.tx);
-    return std::all_of(platform_.begin(), platform_.end(), [&](const auto& range) {
-        const auto [from, to] = range;
-        return std::memcmp(image_.data() + from, now + from, to - from) == 0;
-    });
+    return isLike(image_, platform_);
 }
 
 void QuietSpan::beginPause() {
@@ -287,10 +299,10 @@ QuietSpan::Clocks QuietSpan::look(Clocks most) {
             lookAtOthers(clocks, now, most.camera);
         return clocks;
     }
-    const bool isLike = std::memcmp(image_.data(), top_.rootp, image_.size()) == 0;
-    isAllFixed_ = isLike && (isAllFixed_ || since_ == 1);
+    const bool isSame = isLike(image_, remainder_);
+    isAllFixed_ = isSame && (isAllFixed_ || since_ == 1);
     since_ = 0;
-    if (isLike) {
+    if (isSame) {
         rest_ = least;
         // if anything except counters has changed, the next clock is compared again
         return isAllFixed_ ? clocks : Clocks{};
@@ -323,11 +335,7 @@ void QuietSpan::lookAtOthers(Clocks& clocks, const Counters& now, uint64_t most)
         return;
     }
     hasOthers_ = false;
-    const auto isLike = [&](const auto& range) {
-        const auto [from, to] = range;
-        return std::memcmp(othersImage_.data() + from, state + from, to - from) == 0;
-    };
-    if (othersIrq_ == (top_.irq_o != 0) && std::all_of(others_.begin(), others_.end(), isLike))
+    if (othersIrq_ == (top_.irq_o != 0) && isLike(othersImage_, others_))
         clocks.camera = until;
     else
         refuseCamera();

@@ -104,9 +104,14 @@ private:
         const uint8_t* ticked = nullptr; // last value of the model's input tick_i
     };
 
+    using Image = SocState::Image;
+    // parts of an image, each with its first offset and its end offset
+    using Ranges = std::vector<std::pair<size_t, size_t>>;
+
     static Signals signalsOf(VSoc& top);
     Counters counters() const;
     void takeImage();
+    bool isLike(const Image& image, const Ranges& ranges) const;
     bool isPlatformLikeImage();
     void beginPause();
     void lookAtOthers(Clocks& clocks, const Counters& now, uint64_t most);
@@ -117,7 +122,7 @@ private:
 
     VSoc& top_;
     Signals signals_;
-    std::vector<unsigned char> image_; // state of the chip at the last full comparison
+    Image image_; // state of the chip at the last full comparison
     bool hasImage_ = false;
     Counters before_{};       // counters at the last comparison
     bool isFixed_ = false;    // true if the platform's state, except for counters, does not change
@@ -131,11 +136,10 @@ private:
     unsigned since_ = 0;
     // number of clocks for which only the platform is skipped before the next call of look()
     uint64_t rest_ = 0;
-    // parts of an image that belong to the platform: first offset and end offset
-    std::vector<std::pair<size_t, size_t>> platform_;
-    // parts of the state that belong neither to the platform nor to camera and memory
-    std::vector<std::pair<size_t, size_t>> others_;
-    std::vector<unsigned char> othersImage_; // state at clock othersAt_; only others_ is valid
+    Ranges platform_;   // state of the platform
+    Ranges remainder_;  // all other state
+    Ranges others_;     // state that belongs neither to the platform nor to camera and memory
+    Image othersImage_; // state at clock othersAt_; only others_ is valid
     bool hasOthers_ = false, othersIrq_ = false;
     uint64_t samples_ = 0, othersAt_ = 0; // numbers of evaluated clocks
     // othersPatience_: number of calls of look() between two trials for the camera; othersPause_:

@@ -270,7 +270,7 @@ QuietSpan::Clocks QuietSpan::look(Clocks most) {
         --pause_;
         return {};
     }
-    if (most.platform < worth)
+    if (most.chip < worth && most.platform < worth)
         return {};
     Counters now = counters();
     if (now.phase & phaseCarry || *signals_.tick)

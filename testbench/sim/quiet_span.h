@@ -60,7 +60,8 @@ public:
     };
     // Returns the number of clocks that can be skipped. `most` is the number of clocks until an
     // input of the chip, of the platform, or of the chip without the camera's pins may change; the
-    // result does not exceed `most`. most.camera is 0 while the camera's pins do not change.
+    // result does not exceed `most`. The caller must end a span early if an input changes earlier.
+    // most.camera is 0 while the camera's pins do not change.
     Clocks look(Clocks most);
     // The camera cannot work alone although look() said so; the next trial is later.
     void refuseCamera();

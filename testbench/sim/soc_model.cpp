@@ -78,7 +78,8 @@ void SocModel::timeModels() {
     fromModem();
 }
 
-// Passes the levels of the modem's outputs to the chip.
+// Passes the levels of the modem's outputs to the chip. If a level changes, the clocks before the
+// change are computed first.
 void SocModel::fromModem() {
     bool rxd = line_.rxd(), ctsN = line_.ctsN();
     if (!wires_.areOthersStraight()) {
@@ -87,8 +88,9 @@ void SocModel::fromModem() {
         rxd = wires_.arrives(BoardWires::ModemRxd);
         ctsN = wires_.arrives(BoardWires::ModemCts);
     }
-    if (top_->modem_rxd_i != rxd || top_->modem_cts_n_i != ctsN)
-        span_.forget();
+    if (top_->modem_rxd_i == rxd && top_->modem_cts_n_i == ctsN)
+        return;
+    wake();
     top_->modem_rxd_i = rxd;
     top_->modem_cts_n_i = ctsN;
 }
@@ -120,18 +122,18 @@ void SocModel::standStill() {
     quiet_ = now() < nextEvent_ ? (nextEvent_ - now() - 1) / clkNs : 0;
 }
 
-// Returns three numbers of clocks: until a model outside the chip must be called, and until a model
-// at the platform pins must be called; the latter also for a camera whose pins change in each
-// clock.
+// Returns three numbers of clocks: until an input of the chip may change, except for the pins from
+// the modem; until any input of the platform may change; and the first one again for a camera whose
+// pins change in each clock. If a pin from the modem changes, fromModem() ends the span.
 QuietSpan::Clocks SocModel::mayBeQuiet() const {
     if (!skips_ || now() >= nextEvent_)
         return {};
     const uint64_t platform = (nextEvent_ - now() - 1) / clkNs;
-    uint64_t clocks = std::min(platform, memory_.untilEvent());
+    uint64_t clocks = memory_.untilEvent();
     if (drive_)
         clocks = std::min(clocks, std::max(driveAt_, cycles_) - cycles_);
     const bool isSensed = drive_ && driveAt_ <= cycles_ + 1 && camera_.exists();
-    return {clocks, platform, isSensed ? platform : 0};
+    return {clocks, platform, isSensed ? ~uint64_t(0) : 0};
 }
 
 // Adds the clocks that have passed without evaluation to the chip's counters.
@@ -187,6 +189,8 @@ uint64_t SocModel::workAlone(uint64_t clocks) {
         observedClock = cycles_;
         if (!goesOn)
             pay();
+        if (now() >= nextEvent_)
+            timeModels();
     }
     evaluated_ += done;
     evaluatedAlone_ += done;

@@ -41,14 +41,22 @@ public:
     void tick(); // computes one clock cycle
 
     // Skips clocks while the chip is quiet, or computes clocks in which only the camera works, but
-    // not beyond clock `until`. Returns the number of these clocks.
+    // not beyond clock `until`, and not beyond a call of the models of modem and air. Returns the
+    // number of these clocks.
     uint64_t passQuiet(uint64_t until) {
         if (alone_ && until > cycles_)
             return workAlone(until - cycles_);
-        const uint64_t clocks = until > cycles_ ? std::min(quiet_, until - cycles_) : 0;
+        uint64_t clocks = until > cycles_ ? std::min(quiet_, until - cycles_) : 0;
+        if (clocks)
+            clocks = std::min(clocks, untilModels());
         quiet_ -= clocks;
         owed_ += clocks;
         cycles_ += clocks;
+        if (clocks && now() >= nextEvent_) {
+            pay();
+            if (now() >= nextEvent_)
+                timeModels();
+        }
         return clocks;
     }
     // Keeps the clocks of idle cores running (hdl/system/core_gate.v). Call it before reset(); used
@@ -148,6 +156,10 @@ private:
     void wake();
     void look();
     uint64_t workAlone(uint64_t clocks);
+    // Returns the number of clocks after which the models outside the chip must be called.
+    uint64_t untilModels() const {
+        return nextEvent_ > now() ? (nextEvent_ - now() - 1) / clkNs + 1 : 1;
+    }
     // Returns true if drive_ must be called before the next clock.
     bool isDriven() const { return drive_ && cycles_ >= driveAt_; }
     void endAlone();

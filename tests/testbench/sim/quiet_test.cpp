@@ -198,6 +198,25 @@ void passUntil(SocModel& soc, uint64_t clock) {
         soc.tick();
 }
 
+// Calls of the models outside the chip need no evaluation of the chip if its pins do not change.
+TEST(Quiet, CallsOfModelsDoNotWakeTheChip) {
+    RfChannel air(testSeed());
+    SocModel soc(air, Ground::uavModem());
+    uint64_t calls = 0;
+    soc.onTime([&calls](uint64_t now) {
+        ++calls;
+        return now + 10'000;
+    });
+    soc.reset();
+    passUntil(soc, 20'000'000); // until the modem controller waits
+    calls = 0;
+    const uint64_t before = soc.evaluated();
+    passUntil(soc, soc.cycles() + 1'000'000);
+    EXPECT_GE(calls, 1'000'000 * SocModel::clkNs / 10'000);
+    EXPECT_LT(soc.evaluated() - before, calls);
+    std::printf("%lu clocks evaluated, %lu calls\n", soc.evaluated() - before, calls);
+}
+
 // The first tick of the baud rate after an access is evaluated, and changes only counters and
 // Verilator's scratch. The scratch is no state of the chip, so the chip is then quiet.
 TEST(Quiet, ATickDoesNotWakeTheChip) {

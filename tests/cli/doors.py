@@ -10,7 +10,7 @@ from unittest import mock
 
 from icesoc import TREE
 from icesoc.cli import command, everything, flight  # noqa: F401
-from icesoc.cli.commands import core_folder, fresh, regression
+from icesoc.cli.commands import core, core_folder, fresh, regression
 from icesoc.cli.main import QUICK
 from icesoc.cli.options import FLIGHT, SWITCH
 from icesoc.regress import regress
@@ -438,6 +438,13 @@ class Mistakes(Work):
         for file in ("wiring.svg", "cores.list"):
             self.assertEqual((self.work / file).read_text(), old)
         self.assertEqual([*self.work.glob("*.part")], [])
+
+    def test_an_incomplete_waveform_is_reported(self):
+        """GHDL ends with status 0 even if it could not write the whole file."""
+        file = self.work / "fir.fst"
+        file.write_bytes(b"\0" * 400)
+        with self.assertRaisesRegex(Stop, f"{file}: the waveform is incomplete"):
+            core.rows_of(file, None, "fir.vhdl")
 
     def test_where_one_may_not_write_what_to_do_is_said(self):
         theirs = self.work / "theirs"

@@ -19,7 +19,8 @@ FETCH = TREE / "tools/python", "-m", "icesoc.util.fetch"
 WAVED = r"""#!/bin/sh
 case $1 in
 --gtest_list_tests) printf 'Fir.\n  Impulse\n  ImpulseAndStep\n' ;;
-*) echo "$1" >"$WAVE" ;;
+*) printf '$comment %s $end\n$var wire 1 a a $end\n$enddefinitions $end\n#0\n1a\n' "$1" >"$WAVE.vcd"
+   vcd2fst "$WAVE.vcd" "$WAVE" ;;
 esac
 """
 TESTS = r"""
@@ -173,7 +174,7 @@ class Cases(Project):
         os.environ["DISPLAY"] = ""
         self.good("wave IP=fir TEST=Impulse")
         self.has("^gtkwave .*/build/wave/fir.fst")
-        self.has("^--gtest_filter=Fir.Impulse$", file="build/wave/fir.fst")
+        self.has(" --gtest_filter=Fir.Impulse ", file="build/wave/fir.fst.vcd")
         self.good("wave IP=fir TEST=And")
         self.good("wave IP=test_ip_fir TEST=Impulse")  # any program
         self.has("^gtkwave .*/build/wave/test_ip_fir.fst")

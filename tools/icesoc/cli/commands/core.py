@@ -14,7 +14,7 @@ from icesoc.cli.options import BUILD, CORE_FOLDERS, JOBS, SEED, SWITCH, TEXT, Op
 from icesoc.util import vcd
 from icesoc.util.console import say, warn
 from icesoc.util.errors import Stop, nearest
-from icesoc.util.process import output, run
+from icesoc.util.process import collect, output, run
 from icesoc.util.spelling import option
 
 GROUPS["core"] = "cores: create, test, view waveforms, remove"
@@ -109,8 +109,11 @@ def ports(build, core):
 def rows_of(fst, build, core):
     """Returns the rows of GTKWave's save file, at most 200: the ports, then the signals of the
     instances, outermost first. The signals of an instance follow a comment with its name."""
-    _, signals, _ = vcd.read(output(["fst2vcd", "-f", fst], check=False, stderr=-3)
-                             if shutil.which("fst2vcd") else "")
+    status, text = collect(["fst2vcd", "-f", fst]) if shutil.which("fst2vcd") else (0, "")
+    if status:
+        raise Stop(f"{fst}: the waveform is incomplete: the test was aborted (its output is in "
+                   f"{fst.with_suffix('.log')}), or the disk is full")
+    _, signals, _ = vcd.read(text)
     rows, most, last = [*ports(build, core)], 200, []
     for signal in sorted(filter(lambda s: s.is_shown, signals), key=lambda s: len(s.scopes)):
         if signal.scopes == ["TOP"] and rows and not last:

@@ -17,19 +17,23 @@ large := $(filter $(VM_CLASSES_FAST),\
 small := $(filter-out $(large),$(VM_CLASSES_FAST) $(VM_SUPPORT_FAST))
 once := $(VM_CLASSES_SLOW) $(VM_SUPPORT_SLOW) $(STATE)
 is_clang := $(findstring clang,$(CXX))
+objects := $(addsuffix .o,$(large) $(CLASS)_rest $(if $(is_clang),,$(CLASS)_once))
 
-override VM_CLASSES_FAST := $(large) $(CLASS)_rest
-override VM_CLASSES_SLOW := $(if $(is_clang),,$(CLASS)_once)
+# Verilator's makefile then compiles none of the files itself; newer versions would use precompiled
+# headers that contain the state of the model.
+override VM_CLASSES_FAST :=
+override VM_CLASSES_SLOW :=
 override VM_SUPPORT_FAST :=
 override VM_SUPPORT_SLOW :=
 override VM_GLOBAL_FAST :=
 override VM_PARALLEL_BUILDS := 1
-OPT_SLOW := -O0
 include $(CLASS).mk
 
+$(CLASS)__ALL.a: $(objects)
+$(CLASS)_once.o: override OPT_FAST = -O0
 $(CLASS)_rest.cpp: $(addsuffix .cpp,$(small) $(once))
 	printf '#include "%s.cpp"\n' $(small) >$@
 	$(if $(is_clang),printf '#pragma clang optimize off\n' >>$@)
 	$(if $(is_clang),printf '#include "%s.cpp"\n' $(once) >>$@)
 $(CLASS)_once.cpp: $(addsuffix .cpp,$(once))
-	printf '#include "%s.cpp"\n' $^ >$@
+	printf '#include "%s.cpp"\n' $(once) >$@

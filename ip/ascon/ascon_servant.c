@@ -49,6 +49,10 @@ static int fits(const Cores_Bytes* bytes) {
     return bytes->size <= ASCON_LIMIT;
 }
 
+static Ice_Status refuseSizes(const Ice_Current* current) {
+    return Ice_Current_refuse(current, "nonce, tag: expected 16 bytes; texts: at most 1024");
+}
+
 /* Returns 1 if an earlier operation of the core is still in progress. This happens if the memory
  * does not respond. The core would then ignore a new key, nonce or start, and the end of the
  * earlier operation would look like the end of the new operation. */
@@ -56,8 +60,8 @@ static int hangs(const Ascon_Core* self) {
     return (FSMC_read(self->core.slot, ASCON_STATUS) & ASCON_STATUS_BUSY_MASK) != 0;
 }
 
-static Ice_Status run(Ascon_Core* self, U32 control, const Cores_Bytes* associated,
-                      const Cores_Bytes* message) {
+static Ice_Status run(Ascon_Core* self, const Ice_Current* current, U32 control,
+                      const Cores_Bytes* associated, const Cores_Bytes* message) {
     U32 associatedSize = associated ? (U32)associated->size : 0U, size = (U32)message->size;
     if (associatedSize > 0U)
         FSMC_writeMemory(self->memory + ASSOCIATED, associated->data, associatedSize);
@@ -77,14 +81,14 @@ static Ice_Status run(Ascon_Core* self, U32 control, const Cores_Bytes* associat
             set(self, ASCON_CONTROL, ASCON_CONTROL_ABORT_MASK);
             return ICE_TIMEOUT;
         }
-    return self->core.done[REFUSED] ? ICE_UNKNOWN_EXCEPTION : ICE_OK;
+    return self->core.done[REFUSED] ? Ice_Current_refuse(current, "expected a key, see setKey")
+                                    : ICE_OK;
 }
 
 Ice_Status Cores_Ascon_setKey(Cores_AsconPtr servant, const Cores_Bytes* key,
                               const Ice_Current* current) {
-    (void)current;
     if (key->size != KEY_BYTES)
-        return ICE_UNKNOWN_EXCEPTION;
+        return Ice_Current_refuse(current, "key: expected 16 bytes");
     if (hangs((Ascon_Core*)servant))
         return ICE_TIMEOUT;
     setFour((Ascon_Core*)servant, ASCON_KEY, key->data);
@@ -104,13 +108,12 @@ Ice_Status Cores_Ascon_seal(Cores_AsconPtr servant, const Cores_Bytes* nonce,
                             Cores_Bytes* text, Cores_Bytes* tag, const Ice_Current* current) {
     Ascon_Core* self = (Ascon_Core*)servant;
     Ice_Status status;
-    (void)current;
     if (nonce->size != KEY_BYTES || !fits(associated) || !fits(message))
-        return ICE_UNKNOWN_EXCEPTION;
+        return refuseSizes(current);
     if (hangs(self))
         return ICE_TIMEOUT;
     setFour(self, ASCON_NONCE, nonce->data);
-    status = run(self, ASCON_CONTROL_ENCRYPT_MASK, associated, message);
+    status = run(self, current, ASCON_CONTROL_ENCRYPT_MASK, associated, message);
     if (status != ICE_OK)
         return status;
     FSMC_readMemory(self->memory + RESULT, self->result, (U32)message->size);
@@ -128,14 +131,13 @@ Ice_Status Cores_Ascon_unseal(Cores_AsconPtr servant, const Cores_Bytes* nonce,
                               const Ice_Current* current) {
     Ascon_Core* self = (Ascon_Core*)servant;
     Ice_Status status;
-    (void)current;
     if (nonce->size != KEY_BYTES || tag->size != KEY_BYTES || !fits(associated) || !fits(text))
-        return ICE_UNKNOWN_EXCEPTION;
+        return refuseSizes(current);
     if (hangs(self))
         return ICE_TIMEOUT;
     FSMC_writeMemory(self->memory + TAG, tag->data, KEY_BYTES);
     setFour(self, ASCON_NONCE, nonce->data);
-    status = run(self, ASCON_CONTROL_DECRYPT_MASK, associated, text);
+    status = run(self, current, ASCON_CONTROL_DECRYPT_MASK, associated, text);
     if (status != ICE_OK)
         return status;
     *result = (FSMC_read(self->core.slot, ASCON_STATUS) & ASCON_STATUS_VALID_MASK) != 0;
@@ -149,12 +151,11 @@ Ice_Status Cores_Ascon_hash(Cores_AsconPtr servant, const Cores_Bytes* message, 
                             const Ice_Current* current) {
     Ascon_Core* self = (Ascon_Core*)servant;
     Ice_Status status;
-    (void)current;
     if (!fits(message))
-        return ICE_UNKNOWN_EXCEPTION;
+        return refuseSizes(current);
     if (hangs(self))
         return ICE_TIMEOUT;
-    status = run(self, ASCON_CONTROL_HASH_MASK, 0, message);
+    status = run(self, current, ASCON_CONTROL_HASH_MASK, 0, message);
     if (status != ICE_OK)
         return status;
     FSMC_readMemory(self->memory + RESULT, self->result, ASCON_DIGEST_BYTES);

@@ -54,8 +54,11 @@ TEST(AsconServant, SealsOpensAndHashes) {
     auto tooMuch = counted(0, 1025);
     auto shortKey = counted(0, 15);
     Cores_Bytes m = bytes(tooMuch), k = bytes(shortKey), got{};
-    EXPECT_EQ(Cores_Ascon_hash(&core.servant, &m, &got, nullptr), ICE_UNKNOWN_EXCEPTION);
-    EXPECT_EQ(Cores_Ascon_setKey(&core.servant, &k, nullptr), ICE_UNKNOWN_EXCEPTION);
+    DirectCall call;
+    EXPECT_EQ(Cores_Ascon_hash(&core.servant, &m, &got, &call.current), ICE_UNKNOWN_EXCEPTION);
+    EXPECT_EQ(call.reason(), "nonce, tag: expected 16 bytes; texts: at most 1024");
+    EXPECT_EQ(Cores_Ascon_setKey(&core.servant, &k, &call.current), ICE_UNKNOWN_EXCEPTION);
+    EXPECT_EQ(call.reason(), "key: expected 16 bytes");
 }
 
 TEST(AsconServant, AHungCoreGivesNoResult) {
@@ -89,9 +92,11 @@ TEST(AsconServant, AHungCoreGivesNoResult) {
     EXPECT_EQ(hex(AsconBytes(tag.data, tag.data + tag.size)), hex(want.tag));
     Hw_Core_interrupt(&core.core); // an interrupt without an event must have no effect
     EXPECT_EQ(Cores_Ascon_forget(&core.servant, nullptr), ICE_OK);
-    EXPECT_EQ(Cores_Ascon_seal(&core.servant, &n, &m, &m, &text, &tag, nullptr),
+    DirectCall call;
+    EXPECT_EQ(Cores_Ascon_seal(&core.servant, &n, &m, &m, &text, &tag, &call.current),
               ICE_UNKNOWN_EXCEPTION)
         << "no key was set";
+    EXPECT_EQ(call.reason(), "expected a key, see setKey");
 }
 
 } // namespace

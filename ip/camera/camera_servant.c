@@ -41,28 +41,33 @@ static Ice_Status stop(Camera_Core* self) {
     return ICE_TIMEOUT;
 }
 
+static Ice_Status refuse(const Ice_Current* current) {
+    return Ice_Current_refuse(current,
+                              "width: expected 8 to 2048 in steps of 8; height: 1 to 4095; "
+                              "3 frames: at most 4 MiB");
+}
+
 Ice_Status Cores_Camera_capture(Cores_CameraPtr servant, Ice_Short width, Ice_Short height,
                                 const Ice_Current* current) {
     Camera_Core* self = (Camera_Core*)servant;
     Hw_Frames* frames = self->core.port->frames;
     U32 stride;
     Ice_Status status = stop(self);
-    (void)current;
     if (status != ICE_OK)
         return status;
     if (width <= 0 || height <= 0)
-        return ICE_UNKNOWN_EXCEPTION;
+        return refuse(current);
     stride =
         ((U32)width * (U32)height + CAMERA_ALIGNMENT - 1U) / CAMERA_ALIGNMENT * CAMERA_ALIGNMENT;
     if (stride > CAMERA_MEMORY_BYTES / CAMERA_BUFFERS)
-        return ICE_UNKNOWN_EXCEPTION;
+        return refuse(current);
     set(self, CAMERA_SIZE,
         (U32)width << CAMERA_SIZE_WIDTH_LSB | (U32)height << CAMERA_SIZE_HEIGHT_LSB);
     set(self, CAMERA_BASE, self->core.memory);
     set(self, CAMERA_STRIDE, stride);
     set(self, CAMERA_CONTROL, CAMERA_CONTROL_START_MASK);
     if (!(get(self, CAMERA_STATUS) & CAMERA_STATUS_ACTIVE_MASK))
-        return ICE_UNKNOWN_EXCEPTION;
+        return refuse(current);
     frames->base = self->core.memory;
     frames->stride = stride;
     frames->height = (U32)height;

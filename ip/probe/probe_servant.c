@@ -69,9 +69,8 @@ Ice_Status Probes_Probe_arm(Probes_ProbePtr servant, Ice_Int mask, Ice_Int value
                             Ice_Int after, const Ice_Current* current) {
     Probe_Core* self = (Probe_Core*)servant;
     Ice_Status status;
-    (void)current;
     if (after < 0 || (U32)after >= (1U << PROBE_LOG2_BYTES) / changeBytes(self))
-        return ICE_UNKNOWN_EXCEPTION;
+        return Ice_Current_refuse(current, "after: expected less than the ring's changes");
     status = stop(self);
     if (status != ICE_OK)
         return status;
@@ -91,10 +90,9 @@ Ice_Status Probes_Probe_read(Probes_ProbePtr servant, Ice_Int first, Ice_Int cou
                              Probes_Bytes* result, const Ice_Current* current) {
     Probe_Core* self = (Probe_Core*)servant;
     U32 size = changeBytes(self), changes = (1U << PROBE_LOG2_BYTES) / size;
-    (void)current;
     if (first < 0 || count < 0 || (U32)count > PROBE_READ_BYTES / size || (U32)first > changes ||
         (U32)count > changes - (U32)first)
-        return ICE_UNKNOWN_EXCEPTION;
+        return Ice_Current_refuse(current, "expected changes in the ring, at most 4096 bytes");
     FSMC_readMemory(self->core.memory + (U32)first * size, self->bytes, (U32)count * size);
     result->data = self->bytes;
     result->size = (Ice_Int)((U32)count * size);

@@ -54,7 +54,7 @@ protected:
         record_ = true;
         given_.clear();
         return Probes_Probe_arm(servant(), static_cast<Ice_Int>(mask), static_cast<Ice_Int>(value),
-                                edge, after, nullptr);
+                                edge, after, &call_.current);
     }
     Probes_State finish(unsigned limit = 20000) {
         for (unsigned i = 0; i < limit && state().phase != Probes_done; ++i)
@@ -118,6 +118,7 @@ protected:
 
     CoreSlot<Module> slot_;
     Probe_Core core_{};
+    DirectCall call_; // context of arm and read
     Random random_{testSeed()};
     std::map<uint64_t, Value> given_;
     Value value_{};
@@ -224,6 +225,7 @@ TYPED_TEST(ProbeTest, TimesAreCorrectAfterTheClockCountOverflows) {
 TYPED_TEST(ProbeTest, RefusesSignalsThatDoNotExist) {
     EXPECT_EQ(this->arm(0, 0, false, -1), ICE_UNKNOWN_EXCEPTION);
     EXPECT_EQ(this->arm(0, 0, false, static_cast<int>(this->ring)), ICE_UNKNOWN_EXCEPTION);
+    EXPECT_EQ(this->call_.reason(), "after: expected less than the ring's changes");
     EXPECT_EQ(this->state().phase, Probes_off);
     Probes_Bytes bytes;
     for (auto [first, count] : {std::pair<int, int>{-1, 1},
@@ -232,7 +234,7 @@ TYPED_TEST(ProbeTest, RefusesSignalsThatDoNotExist) {
                                 {this->ring, 1},
                                 {this->ring - 1, 2},
                                 {this->ring + 1, 0}})
-        EXPECT_EQ(Probes_Probe_read(this->servant(), first, count, &bytes, nullptr),
+        EXPECT_EQ(Probes_Probe_read(this->servant(), first, count, &bytes, &this->call_.current),
                   ICE_UNKNOWN_EXCEPTION)
             << first << " " << count;
     EXPECT_EQ(Probe_Core_init(&this->core_, coreSlot, 0x1020000, &this->slot_.port, &this->slot_),

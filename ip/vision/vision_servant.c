@@ -110,9 +110,8 @@ static Ice_Status finishFrame(Vision_Core* self) {
 
 Ice_Status Autopilot_HwProcessingEngine_setParameterA(Autopilot_HwProcessingEnginePtr servant,
                                                       Ice_Short value, const Ice_Current* current) {
-    (void)current;
     if (value < 0 || value > 255)
-        return ICE_UNKNOWN_EXCEPTION;
+        return Ice_Current_refuse(current, "value: expected 0 to 255");
     set((Vision_Core*)servant, VISION_THRESHOLD, (U32)value);
     return ICE_OK;
 }

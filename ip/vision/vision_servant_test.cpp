@@ -104,10 +104,13 @@ TEST_F(VisionServant, ReturnsTheStrongestCornersOfThePicture) {
     EXPECT_EQ(result(), ICE_OK);
     expectCorners(); // again
     EXPECT_EQ(Vision_Core_poll(&core_, 0), HW_NEVER);
-    for (int value : {-1, 256})
+    for (int value : {-1, 256}) {
+        DirectCall call;
         EXPECT_EQ(Autopilot_HwProcessingEngine_setParameterA(
-                      &core_.servant, static_cast<Ice_Short>(value), nullptr),
+                      &core_.servant, static_cast<Ice_Short>(value), &call.current),
                   ICE_UNKNOWN_EXCEPTION);
+        EXPECT_EQ(call.reason(), "value: expected 0 to 255");
+    }
 }
 
 TEST_F(VisionServant, UsesTheFramesOfTheCameraIfThereIsOne) {

@@ -100,10 +100,10 @@ static Ice_Status runCounted(Ice_ObjectPtr servant, const Ice_Current* current,
     Ice_Status status;
     ic->decoding = is;
     status = Ice_Object_invoke(servant, current, is, os);
-    if (is->failed && (status == ICE_OK || status == ICE_MARSHAL)) {
-        os->failed = is->failed;
+    if (is->bound)
         os->bound = is->bound;
-    }
+    if (is->failed && (status == ICE_OK || status == ICE_MARSHAL))
+        os->failed = is->failed;
     ic->decoding = outer;
     if (status == ICE_LATER || !icec_countPending(ic, current->connection, generation, -1))
         *answers = 0;
@@ -142,10 +142,13 @@ static void writeHead(Ice_OutputStreamPtr os, Ice_Int id) {
  * longer known. */
 static Ice_Status sendReply(Ice_CommunicatorPtr ic, int connection, Ice_OutputStreamPtr os,
                             Ice_Int id, Ice_Status status, const Icec_Target* target) {
-    const char* reason;
-    if (os->failed)
+    const char* reason = os->bound;
+    if (os->failed) {
         status = ICE_MARSHAL;
-    reason = os->failed ? Ice_Failed_text(os->failed, os->bound) : Ice_Status_text(status);
+        reason = Ice_Failed_text(os->failed, reason);
+    } else if (!reason) {
+        reason = Ice_Status_text(status);
+    }
     /* A reply with one of these failures must repeat the names in the request. If the request's
      * bytes no longer exist, another failure is sent. */
     if (!target && status >= ICE_OBJECT_NOT_EXIST && status <= ICE_OPERATION_NOT_EXIST)
@@ -279,6 +282,11 @@ Ice_Bool Ice_Current_context(const Ice_Current* current, const char* key, Ice_St
         if (Ice_String_is(&found, key))
             return 1;
     return 0;
+}
+
+Ice_Status Ice_Current_refuse(const Ice_Current* current, const char* text) {
+    current->communicator->decoding->bound = text;
+    return ICE_UNKNOWN_EXCEPTION;
 }
 
 Ice_Status Ice_Current_fail(const Ice_Current* current, const char* text) {

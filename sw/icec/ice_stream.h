@@ -92,8 +92,8 @@ typedef struct Ice_OutputStream {
     /* 1 if user exceptions are written in the sliced format, which lets a peer skip slices of
      * unknown types */
     Ice_Byte sliced;
-    Ice_Byte sliceFlags;             /* flags of the current slice */
-    const char* bound;               /* text of the reason ICE_FAILED_BOUND */
+    Ice_Byte sliceFlags; /* flags of the current slice */
+    const char* bound;   /* text of the reason ICE_FAILED_BOUND, or reason of a refused call */
     struct Ice_OutputValues* values; /* table of class instances; 0 until the first instance */
 } Ice_OutputStream, *Ice_OutputStreamPtr;
 
@@ -103,7 +103,7 @@ typedef struct Ice_InputStream {
     Ice_Byte minor;
     Ice_Byte failed;
     Ice_Byte sliceFlags; /* flags of the current slice; 0 outside a slice */
-    const char* bound;   /* text of the reason ICE_FAILED_BOUND */
+    const char* bound;   /* text of the reason ICE_FAILED_BOUND, or reason of a refused call */
     Ice_Int sliceEnd;    /* end of the current slice; 0 if it is not known */
     U32* arena;          /* memory for decoded sequences */
     /* used part of the arena, and its size, in words of 4 bytes */

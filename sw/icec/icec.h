@@ -85,6 +85,10 @@ Ice_Bool Ice_Current_contextAt(const Ice_Current* current, Ice_Int index, Ice_St
  * is not enough room. */
 void* Ice_Current_allocate(const Ice_Current* current, Ice_Int bytes);
 
+/* Refuses a call: `return Ice_Current_refuse(current, "litres: expected 1 to 9")`. The caller gets
+ * UnknownException with this text. Full run time. */
+Ice_Status Ice_Current_refuse(const Ice_Current* current, const char* text);
+
 /* Ends an operation with `text` as the reason of its failure: `return Ice_Current_fail(current,
  * "...")`. ICE_CHECK calls this function if its condition is false; the text then contains the
  * servant's file and line, and the caller gets UnknownLocalException("pump.c:42: litres > 0"). Full

@@ -12,6 +12,7 @@
 #include "same.h"
 #include <functional>
 #include <gtest/gtest.h>
+#include <memory>
 #include <ostream>
 #include <stdexcept>
 #include <string>
@@ -54,6 +55,21 @@ public:
 
 private:
     Ice_Status status_;
+};
+
+// Context of a call that a test makes directly to a servant. A servant that refuses calls needs it.
+struct DirectCall {
+    DirectCall() {
+        communicator_->decoding = &parameters_;
+        current.communicator = communicator_.get();
+    }
+    // Returns the reason of the last refusal; "" without one.
+    std::string reason() const { return parameters_.bound ? parameters_.bound : ""; }
+    Ice_Current current{};
+
+private:
+    Ice_InputStream parameters_{};
+    std::unique_ptr<Ice_Communicator> communicator_ = std::make_unique<Ice_Communicator>();
 };
 
 // Models the DDR3 memory at the core's memory port, if the core has such a port.

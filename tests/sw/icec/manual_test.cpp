@@ -179,6 +179,22 @@ TEST_F(Manual, AFailedAssertionOfAServantReportsItsLineToTheCaller) {
     EXPECT_EQ(text.substr(text.size() - line.size()), line);
 }
 
+TEST_F(Manual, ARefusalTellsItsReason) {
+    servant_.run = [](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
+        const Ice_Int litres = Ice_InputStream_readInt(is);
+        if (litres < 1)
+            return Ice_Current_refuse(&current, "litres: expected 1 or more");
+        Ice_OutputStream_writeInt(os, litres);
+        return litres == 9 ? ICE_UNKNOWN_EXCEPTION : ICE_OK;
+    };
+    Ice_Int out = 0;
+    EXPECT_EQ(call(prx_, "op", 0, &out), ICE_UNKNOWN_EXCEPTION);
+    EXPECT_EQ(reason(prx_), "litres: expected 1 or more");
+    EXPECT_EQ(call(prx_, "op", 5, &out), ICE_OK);
+    EXPECT_EQ(call(prx_, "op", 9, &out), ICE_UNKNOWN_EXCEPTION);
+    EXPECT_EQ(reason(prx_), Ice_Status_text(ICE_UNKNOWN_EXCEPTION)) << "an old reason";
+}
+
 TEST_F(Manual, AServantHasRoomForItsResults) {
     servant_.run = [](const Ice_Current& current, Ice_InputStreamPtr is, Ice_OutputStreamPtr os) {
         Ice_Int wanted = Ice_InputStream_readInt(is);

@@ -119,8 +119,8 @@ class Cases(Script):
                        f"--XBeeAT.KeyFile={self.out}/{name}.key")
 
     def test_call(self):
-        """A call from the command line reaches a vehicle with the same key, and gets no answer from
-        a vehicle with another key."""
+        """A call from the command line reaches a vehicle with the same key, and gets the reason if
+        a core refuses it. A vehicle with another key does not answer."""
         os.umask(0o077)
         for name, text in ("a", KEY), ("b", KEY[:-1] + "e"):
             write(f"{name}.key", text + "\n")
@@ -128,6 +128,9 @@ class Cases(Script):
                 "{guard}", "--key")
         self.simulate(*call, self.out / "a.key", "uav.isAlive", "7", options=("--key", "a.key"))
         self.has("^true$")
+        self.simulate(*call, self.out / "a.key", "ascon.setKey", "[1, 2, 3]", status=6,
+                      options=("--key", "a.key"))
+        self.has("ascon.setKey: the call was refused: key: expected 16 bytes")
         self.simulate(*call, self.out / "b.key", "uav.isAlive", "7", "--timeout", "3", status=4,
                       options=("--key", "a.key"))
         self.has("no answer from the vehicle 0x0001 at .* within 3 s; check that it is switched on")

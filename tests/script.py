@@ -19,6 +19,9 @@ TREE = Path(__file__).resolve().parents[1]
 # must not decide a test
 LONGEST = 600
 
+# `./icesoc test --fresh` sets FRESH for the tests, but not for the commands that they run.
+os.environ.pop("FRESH", None)
+
 
 def write(path, text):
     """Writes a file and creates its folders. A text that begins with #! becomes an executable

@@ -26,5 +26,5 @@ def command(name, *options):
 
 
 def quoted(text):
-    """Returns the value of a variable, in quotes if it contains several words or a pair."""
-    return f"'{text}'" if set(text) & set(" =*") else text
+    """Returns the value of a variable, in quotes if the shell needs them or if it is a pair."""
+    return f"'{text}'" if "=" in text and "'" not in text else shlex.quote(text)

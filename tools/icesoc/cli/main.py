@@ -11,7 +11,7 @@ import traceback
 from pathlib import Path
 
 from icesoc import TREE
-from icesoc.cli import command, completion
+from icesoc.cli import command
 from icesoc.util import spelling
 from icesoc.util.console import say, warn
 from icesoc.util.errors import Interrupted, Stop
@@ -65,10 +65,10 @@ def act(words):
     place = surroundings()
     made = make_gave()
     declare(words)
-    if "_ARGCOMPLETE" in os.environ:
-        return completion.complete()
-    if line := os.environ.get("_ICESOC_MAKE"):
-        return say("\n".join(completion.complete_make(line)))
+    if "_ARGCOMPLETE" in os.environ or os.environ.get("_ICESOC_MAKE"):
+        from icesoc.cli import completion  # not part of the installed icesoc-call
+        line = os.environ.get("_ICESOC_MAKE")
+        return say("\n".join(completion.complete_make(line))) if line else completion.complete()
     if not words and (not made or made[0] == "help"):
         return say(command.overview())
     if made:

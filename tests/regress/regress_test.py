@@ -24,7 +24,7 @@ from pathlib import Path
 from project import (BREAK, LONGEST, REGRESS, TREE, Project, append, commit, edit, git, main,
                      write)
 from icesoc.mutants import results
-from icesoc.regress import execution, unchanged
+from icesoc.regress import execution, junit, unchanged
 from icesoc.regress.ctest import write_finished
 from icesoc.regress.tests import Test
 
@@ -135,6 +135,12 @@ class Cases(Project):
             if said is not None:
                 self.assertEqual(out.getvalue().splitlines(), said, age)
         self.idle_and_starved(progress, usual)
+        # names of cases with parameters contain spaces
+        for name in ("test_a.One", "test_p.Of/Case.Works/1  # GetParam() = (true, 2)",
+                     "test_t.Case.Works<(anonymous namespace)::Kind<V, 2u>>"):
+            self.assertEqual(junit.begun(f"      Start  978: {name}\n"), name)
+            self.assertEqual(junit.ended(f" 9/12 Test #978: {name} ......   Passed    0.01 sec\n"),
+                             (name, "Passed", 0.01, 12))
 
     def idle_and_starved(self, progress, usual):
         """A test that uses no CPU time for ten seconds is considered to hang. A test that gets a

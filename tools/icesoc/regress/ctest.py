@@ -23,7 +23,7 @@ import time
 from icesoc.regress.execution import Progress
 from icesoc.regress.failures import reason_of
 from icesoc.regress.history import History
-from icesoc.regress.junit import ended, finished, read_junit, write_junit
+from icesoc.regress.junit import begun, ended, finished, read_junit, write_junit
 from icesoc.util.errors import Interrupted
 from icesoc.util.process import (adopt_orphans, end_descendants, hear_signals, reading, start,
                                  wait, wait_for)
@@ -94,8 +94,8 @@ def run(words, results, watch=None):
 
     def hear(line):
         nonlocal total
-        if watch and (begun := re.match(r" *Start +\d+: (\S+)", line)):
-            watch.start(begun[1])
+        if watch and (name := begun(line)):
+            watch.start(name)
         if end := ended(line):
             name, outcome, seconds, total = end
             ends[name] = outcome, seconds

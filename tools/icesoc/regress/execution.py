@@ -9,7 +9,7 @@ import signal
 import threading
 import time
 
-from icesoc.regress.junit import ended, finished, logs, read_junit, status_of
+from icesoc.regress.junit import begun, ended, finished, logs, read_junit, status_of
 from icesoc.regress.tests import write_numbers
 from icesoc.util.errors import Interrupted, Stop
 from icesoc.util.process import children, collect, descendants, end_descendants
@@ -214,8 +214,8 @@ def run_tests(tests, build, out, seed, jobs, history):
     print(f"{len(tests)} tests, SEED={seed}", flush=True)
 
     def on_line(line):
-        if begun := re.match(r" *Start +\d+: (\S+)", line):
-            progress.start(begun[1])
+        if name := begun(line):
+            progress.start(name)
         if end := ended(line):
             name, outcome, seconds, _ = end
             ends[name] = outcome, seconds

@@ -37,6 +37,13 @@ def read_junit(path):
     return results
 
 
+def begun(line):
+    """Returns the name in a line that CTest prints when a test starts; None for any other line. A
+    name can contain spaces, for example if it ends with the parameters of a GoogleTest case."""
+    found = re.match(r" *Start +\d+: (.*\S)", line)
+    return found and found[1]
+
+
 def ended(line):
     """Parses a line that CTest prints when a test has ended. Returns (name, outcome, seconds,
     number of tests of the run), with an outcome such as "***Skipped"; None for any other line."""

@@ -17,13 +17,13 @@ from figures import figure, leave
 # name, test program, test case, expression that finds the figure in the output, function that
 # converts the figure to bytes per clock
 FIGURES = (
-    ("vision core, frame read", "vision", "OnePixelAClock", "^(.*) clocks a pixel",
+    ("vision core, frame read", "vision", "ProcessesOnePixelPerClock", "^(.*) clocks a pixel",
      lambda clocks: 1 / clocks),
-    ("Ascon-AEAD128, each direction", "ascon", "Speed", "AEAD128 (.*) bytes", float),
-    ("Ascon-Hash256, read", "ascon", "Speed", "Hash256 ([0-9.]*)", float),
-    ("FIR filter, each direction", "fir", "OneSampleAClock", "^(.*) clocks a sample",
+    ("Ascon-AEAD128, each direction", "ascon", "ReachesItsRate", "AEAD128 (.*) bytes", float),
+    ("Ascon-Hash256, read", "ascon", "ReachesItsRate", "Hash256 ([0-9.]*)", float),
+    ("FIR filter, each direction", "fir", "ProcessesOneSamplePerClock", "^(.*) clocks a sample",
      lambda clocks: 2 / clocks),
-    ("camera, written", "camera", "APixelEach", "^(.*) pixels a clock", float))
+    ("camera, written", "camera", "StoresOnePixelPerClock", "^(.*) pixels a clock", float))
 
 
 def main(build, output, *_):

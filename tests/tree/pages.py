@@ -5,10 +5,11 @@
     pages.py TREE
 
 A link must lead to a file in the repository and, if it names a heading, to a heading that exists. A
-path in backquotes must exist. An empty line must end each table. docs/architecture.md must list
-every page in docs/. Prints a line for each fault; the exit status is then 1. (icesoc.site.figures
-checks the figures in pages.)
+path in backquotes must exist, and so must a GoogleTest case. An empty line must end each table.
+docs/architecture.md must list every page in docs/. Prints a line for each fault; the exit status is
+then 1. (icesoc.site.figures checks the figures in pages.)
 """
+import fnmatch
 import os
 import re
 import subprocess
@@ -29,7 +30,27 @@ def anchors(page):
     return {re.sub(r"[^\w -]", "", h).lower().replace(" ", "-") for h in headings}
 
 
-def check(tree, page, files):
+def cases(tree, files):
+    """Returns the GoogleTest cases of the tree, as Suite.Case."""
+    texts = (open(os.path.join(tree, f), encoding="utf-8").read() for f in files
+             if f.endswith("_test.cpp"))
+    return {".".join(names) for text in texts
+            for names in re.findall(r"^(?:TYPED_)?TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)", text, re.M)}
+
+
+def missing_cases(line, known):
+    """Yields the names in backquotes that look like a case, or a pattern of cases, but match none
+    of the known cases."""
+    suites = {name.split(".")[0] for name in known}
+    for text, name in re.findall(r"`((?:test_\w+\.)?([A-Z]\w*\.[A-Z*][\w*]*)(?:/[\w*]+)?)`", line):
+        if name.split(".")[0] in suites and not fnmatch.filter(known, name):
+            yield text
+    for text, pattern in re.findall(r"`(test_\w+\.(\*\w[\w*]*))`", line):
+        if not fnmatch.filter(known, pattern):
+            yield text
+
+
+def check(tree, page, files, tests):
     code, before = False, ""
     folders = "|".join(sorted({re.escape(f.split("/")[0]) for f in files if "/" in f}))
     for number, line in enumerate(open(os.path.join(tree, page)), 1):
@@ -56,6 +77,8 @@ def check(tree, page, files):
             example = re.search("low_pass|my_uart|[pP]ump|NAME", path)
             if not example and not exists(tree, path, files):
                 yield f"{page}:{number}: {path} does not exist"
+        for text in missing_cases(line, tests):
+            yield f"{page}:{number}: no test is called {text}"
 
 
 def main(words):
@@ -65,7 +88,8 @@ def main(words):
     listing = "grep --no-index --exclude-standard --no-color -l".split()
     files = subprocess.check_output(["git", "-C", tree, *listing, ""], text=True).split("\n")
     pages = [f for f in files if f.endswith(".md") and os.path.exists(os.path.join(tree, f))]
-    wrong = [w for page in pages for w in check(tree, page, files)]
+    tests = cases(tree, files)
+    wrong = [w for page in pages for w in check(tree, page, files, tests)]
     index = open(os.path.join(tree, "docs/architecture.md")).read()
     wrong += [f"docs/architecture.md: its index has no {page}" for page in pages
               if re.match(r"docs/(?!architecture|index)[^/]*$", page)

@@ -53,8 +53,19 @@ uint64_t ChipWorld::advance(uint64_t now) {
     for (auto& f : wanted)
         f();
     step_.wait(now);
+    waitForRealTime(now);
     return std::min(
         {groundModem.nextEvent(), std::max(step_.nextEvent(), now + 1), now + clockStepNs});
+}
+
+void ChipWorld::waitForRealTime(uint64_t now) {
+    const std::chrono::nanoseconds simulated(now);
+    if (!isRealTime_)
+        origin_.reset();
+    else if (!origin_)
+        origin_ = std::chrono::steady_clock::now() - simulated;
+    else
+        std::this_thread::sleep_until(*origin_ + simulated);
 }
 
 void ChipWorld::run() {

@@ -13,8 +13,10 @@
 #include "uav_machine.h"
 #include <Ice/Ice.h>
 #include <atomic>
+#include <chrono>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 struct EchoUav_Port; // echo_uav.h
@@ -32,6 +34,9 @@ public:
     void with(std::function<void()> f);
     uint64_t ns() const { return clock_.ns(); }
     void sleep(double seconds) const; // simulated
+    // Limits the speed of simulated time to that of real time, or lifts this limit. Programs on the
+    // ground then take as much of the simulated time as on a real ground station.
+    void follow(bool isRealTime) { isRealTime_ = isRealTime; }
     // Restarts processor and chip, but not memory and modem.
     void reboot() { reboot_ = true; }
 
@@ -44,6 +49,7 @@ public:
 
 private:
     uint64_t advance(uint64_t now);
+    void waitForRealTime(uint64_t now);
     void run();
     static XBee::Options modem(const char* name, std::map<std::string, uint32_t> set);
 
@@ -64,7 +70,9 @@ public:
 
 private:
     GroundStep step_;
-    std::atomic<bool> stop_{false}, reboot_{false};
+    std::atomic<bool> stop_{false}, reboot_{false}, isRealTime_{false};
+    // real time that corresponds to the simulated time 0; null while the speed is not limited
+    std::optional<std::chrono::steady_clock::time_point> origin_;
     std::mutex mutex_;
     std::vector<std::function<void()>> wanted_;
     std::thread thread_;
